@@ -1,1 +1,1 @@
-"""ros2_control: hardware, controllers, and who runs them."""
+"""ros2_control: hardware, controllers, and the manager that runs them."""

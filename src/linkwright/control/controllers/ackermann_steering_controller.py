@@ -1,4 +1,4 @@
-"""``ackermann_steering_controller/AckermannSteeringController``: two wheels that drive, two that are steered."""
+"""``ackermann_steering_controller/AckermannSteeringController``: two driven wheels, two steered ones."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.kinematics.drives import CarDrive
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(SteeringParameters):
-    """Of the controller."""
+    """Parameters of the controller: those of all steered vehicles, and its sizes."""
 
     traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m", only=JAZZY)
     traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m", only=JAZZY)
@@ -23,14 +23,14 @@ class Parameters(SteeringParameters):
 
 
 class AckermannSteeringController(SteeringController[Parameters]):
-    """A car."""
+    """A car: two driven wheels behind, two steered ones in front."""
 
     PARAMETERS = Parameters
     KIND = "Ackermann"
     JOINTS = (2, 2)
 
     def drive(self) -> CarDrive:
-        """Its sizes, by their names or the older ones."""
+        """The sizes from the parameters, by their names or the older ones."""
         said = self.parameters
         traction = said.traction_track_width or said.of_traction(said.front_wheel_track, said.rear_wheel_track)
         steering = said.steering_track_width or said.of_traction(said.rear_wheel_track, said.front_wheel_track)

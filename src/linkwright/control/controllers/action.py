@@ -1,4 +1,4 @@
-"""Actions of controllers: asked for on the event loop, worked on in the thread of the updates."""
+"""Action servers of controllers: goals come on the event loop, and are worked on in the thread of the updates."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.graph.actions.server import ActionServer
 
 
 class _Server(ActionServer):
-    """Tells of goals that are to be given up after they know it themselves: they may end at once."""
+    """An action server that reports cancel requests after its own bookkeeping: a goal may end at once."""
 
     on_cancel_requested: Callable[[ServerGoalHandle], object]
 
@@ -23,7 +23,7 @@ class _Server(ActionServer):
 
 
 class Goal:
-    """A goal that was accepted, in the thread of the updates.
+    """An accepted goal, as the thread of the updates uses it.
 
     It ends once, by `succeed`, `abort` or `cancel`: what is said of it afterwards changes nothing.
 
@@ -43,19 +43,19 @@ class Goal:
         return self._handle is handle
 
     def feedback(self, message: Any) -> None:
-        """Tell how it goes on."""
+        """Publish feedback."""
         self._node.call_on_loop(partial(self._handle.publish_feedback, message))
 
     def succeed(self, result: Any) -> None:
-        """It has been reached."""
+        """End with the status succeeded."""
         self._end(self._handle.succeed, result)
 
     def abort(self, result: Any) -> None:
-        """It cannot be reached."""
+        """End with the status aborted."""
         self._end(self._handle.abort, result)
 
     def cancel(self, result: Any) -> None:
-        """It is given up, whether its client asked for that or not."""
+        """End with the status canceled, whether its client asked for that or not."""
         self._end(self._canceled, result)
 
     def _canceled(self, result: Any) -> None:
@@ -74,7 +74,7 @@ class Goal:
 
 
 class ControllerAction:
-    """An action of a controller.
+    """An action server of a controller.
 
     Args:
         node: the controller's node.
@@ -112,7 +112,7 @@ class ControllerAction:
         self._server.on_cancel_requested = self._asked_to_cancel
 
     def close(self) -> None:
-        """Take it out of the graph."""
+        """Remove it from the graph."""
         self._server.destroy()
 
     def _asked(self, request: Any) -> GoalResponse:

@@ -1,4 +1,4 @@
-"""``bicycle_steering_controller/BicycleSteeringController``: one wheel that drives, one that is steered."""
+"""``bicycle_steering_controller/BicycleSteeringController``: one driven wheel, one steered."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.kinematics.drives import CarDrive
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(SteeringParameters):
-    """Of the controller."""
+    """Parameters of the controller: those of all steered vehicles, and its sizes."""
 
     traction_wheel_radius: float = parameter(0.0, description="of the wheel that drives, in m", only=JAZZY)
     front_wheel_radius: float = parameter(0.0, description="of the wheel in front, in m", only=HUMBLE)
@@ -19,14 +19,14 @@ class Parameters(SteeringParameters):
 
 
 class BicycleSteeringController(SteeringController[Parameters]):
-    """A bicycle."""
+    """A bicycle: a driven wheel behind, a steered one in front."""
 
     PARAMETERS = Parameters
     KIND = "Bicycle"
     JOINTS = (1, 1)
 
     def drive(self) -> CarDrive:
-        """Its sizes, by their names or the older ones."""
+        """The sizes from the parameters, by their names or the older ones."""
         said = self.parameters
         radius = said.traction_wheel_radius or said.of_traction(said.front_wheel_radius, said.rear_wheel_radius)
         return CarDrive(said.wheelbase, 0.0, 0.0, radius)

@@ -1,4 +1,4 @@
-"""What controllers derive from.
+"""The base class of controllers, and what a manager gives them.
 
 How to write one: a class, declared as an entry point of the group ``linkwright.controllers`` under its type name:
 
@@ -47,7 +47,7 @@ InterfaceNames = Sequence[str] | Interfaces
 
 
 class ControllerError(LinkwrightError):
-    """Why a controller refuses to be configured or activated; its text is logged.
+    """Raised by a controller that refuses to be configured or activated; its text is logged.
 
     Args:
         message: what is wrong, and how it is mended.
@@ -59,7 +59,7 @@ class ControllerError(LinkwrightError):
 
 @dataclass(frozen=True, slots=True)
 class ControllerPlace:
-    """Where a controller runs.
+    """The node, parameters and description that a manager gives to a controller.
 
     Attributes:
         name: the controller's name, that of its node.
@@ -118,7 +118,7 @@ class Controller(ABC, Generic[P]):
 
     @property
     def parameters(self) -> P:
-        """Its parameters now: read those that may change while it runs anew."""
+        """Its parameters now: those that may change while it runs are to be read anew."""
         return self._parameters.values
 
     @cached_property
@@ -131,48 +131,48 @@ class Controller(ABC, Generic[P]):
     # --- what it needs and gives, asked after `on_configure` ----------------------------------------------------------
 
     def command_interfaces(self) -> InterfaceNames:
-        """The names of the command interfaces that it is to have while it is active."""
+        """The names of the command interfaces that it claims while it is active."""
         return ()
 
     def state_interfaces(self) -> InterfaceNames:
-        """The names of the state interfaces that it is to have while it is active."""
+        """The names of the state interfaces that it reads while it is active."""
         return ()
 
     def reference_interfaces(self) -> Sequence[str]:
-        """What another controller may command in place of its topics, named without this one's name."""
+        """The names, without its own, of the references that another controller may command in place of its topics."""
         return ()
 
     def exported_states(self) -> Sequence[str]:
-        """What it lets others read, named without its own name."""
+        """The names, without its own, of the states that other controllers may read."""
         return ()
 
     # --- its life -----------------------------------------------------------------------------------------------------
 
     def on_configure(self) -> None:
-        """Read the parameters, make topics.
+        """Read the parameters, make the topics.
 
         Raises:
             ControllerError: it cannot work so; it stays unconfigured.
         """
 
     def on_activate(self) -> None:
-        """Begin: `commands` and `states` are there now.
+        """Start; `commands` and `states` are available now.
 
         Raises:
             ControllerError: it cannot; it stays inactive.
         """
 
     def on_deactivate(self) -> None:
-        """Stop: say what hardware is to do now, such as stand still. `commands` and `states` go afterwards."""
+        """Stop: set safe commands, such as zero velocity. `commands` and `states` go afterwards."""
 
     def on_cleanup(self) -> None:
-        """Forget what `on_configure` made; topics and services go by themselves."""
+        """Drop what `on_configure` made; topics and services are removed without it."""
 
     def on_error(self) -> None:
-        """One of the others, or an update, raised what is no ControllerError."""
+        """Handle an error other than ControllerError in one of the others, or in an update."""
 
     def on_set_chained_mode(self, chained: bool) -> None:
-        """Another controller is to command the references, or does not any more.
+        """Note whether another controller commands the references from now on.
 
         Raises:
             ControllerError: it refuses.
@@ -181,7 +181,7 @@ class Controller(ABC, Generic[P]):
     # --- its work -----------------------------------------------------------------------------------------------------
 
     def update_references(self, time_ns: int, period_s: float) -> None:
-        """Take what came by topics into `references`; called before `update` unless it is chained."""
+        """Copy commands from topics into `references`; called before `update` unless another controller sets them."""
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Read `states`, write `commands`.
@@ -195,7 +195,7 @@ class Controller(ABC, Generic[P]):
         """
 
     def step(self, time_ns: int, period_s: float) -> None:
-        """What the manager calls: `update_references` where that is due, and `update`."""
+        """Run an update for the manager: `update_references` where that is due, and `update`."""
         self.time_ns = time_ns
         if not self.chained and self.references:
             self.update_references(time_ns, period_s)

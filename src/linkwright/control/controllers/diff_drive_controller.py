@@ -1,4 +1,4 @@
-"""``diff_drive_controller/DiffDriveController``: two sides of wheels that turn the robot by their difference.
+"""``diff_drive_controller/DiffDriveController``: differential drive by two sides of wheels.
 
 Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics, texts). Other than there odometry in open
 loop is that of the velocity within its limits, wheels may stand at any angle when it begins, and a command that is no
@@ -27,21 +27,21 @@ _NONE = (0.0,) * 6
 
 @dataclass(frozen=True, kw_only=True)
 class LinearLimits:
-    """Of velocities along axes."""
+    """Limits of linear velocities."""
 
     x: SpeedLimits = NO_LIMITS
 
 
 @dataclass(frozen=True, kw_only=True)
 class AngularLimits:
-    """Of velocities around axes."""
+    """Limits of angular velocities."""
 
     z: SpeedLimits = NO_LIMITS
 
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Of the controller."""
+    """Parameters of the controller."""
 
     left_wheel_names: tuple[str, ...] = parameter((), description="joints of the wheels on the left side")
     right_wheel_names: tuple[str, ...] = parameter((), description="joints of the wheels on the right side")
@@ -70,7 +70,7 @@ class Parameters:
 
 
 class DiffDriveController(Controller[Parameters]):
-    """Turns a velocity of the robot into those of its wheels, and their turns into odometry."""
+    """A differential drive: wheel velocities from the commanded velocity, and odometry from the wheels."""
 
     PARAMETERS = Parameters
 
@@ -92,7 +92,7 @@ class DiffDriveController(Controller[Parameters]):
         return ("linear/velocity", "angular/velocity")
 
     def on_configure(self) -> None:
-        """Check the parameters, make topics.
+        """Check the parameters, make the topics.
 
         Raises:
             ControllerError: wheels or their sizes are missing, or limits are none.
@@ -145,7 +145,7 @@ class DiffDriveController(Controller[Parameters]):
                 raise ControllerError(wrong)
 
     def on_activate(self) -> None:
-        """Stand, and listen."""
+        """Start at rest, and take commands."""
         for limiter in self._limiters:
             limiter.restart()
         for reference in self.references:
@@ -161,13 +161,13 @@ class DiffDriveController(Controller[Parameters]):
             command.value = 0.0
 
     def update_references(self, time_ns: int, period_s: float) -> None:
-        """Take the command, or stop where there is none."""
+        """Copy the command into the references; zero where it is missing or too old."""
         velocity = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         forward, turning = self.references
         forward.value, turning.value = velocity[0], velocity[2]
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Turn the wheels, and tell where the robot is.
+        """Command the wheels, and publish the odometry.
 
         Raises:
             ControllerError: it moves, and a wheel tells no number.
@@ -192,7 +192,7 @@ class DiffDriveController(Controller[Parameters]):
             self._limited.publish(get_message("geometry_msgs/msg/TwistStamped")(header, twist))
 
     def _measure(self, period_s: float, *, moves: bool) -> None:
-        """Go on by what the wheels of both sides do on average; before it moves they need not tell yet."""
+        """Update the odometry by the mean of each side's wheels; unknown states are tolerated until it moves."""
         values = [state.value for state in self.states]
         count = len(values) // 2
         left, right = sum(values[:count]) / count, sum(values[count:]) / count

@@ -1,4 +1,4 @@
-"""What controllers of drives tell of where the robot is."""
+"""Odometry topics of drive controllers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _AXES = 6
 
 
 def variances(name: str, values: tuple[float, ...]) -> Variances:
-    """A parameter as variances of x, y, z, roll, pitch and yaw.
+    """Expand a parameter to variances of x, y, z, roll, pitch and yaw.
 
     Raises:
         ControllerError: there are not six.
@@ -29,7 +29,7 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
 
 
 def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
-    """What stands before the names of frames: empty, or a name that ends with a slash and begins with none.
+    """The prefix of frames' names: empty, or a name with a slash at its end and none at its beginning.
 
     Args:
         node: the controller's.
@@ -46,7 +46,7 @@ def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> 
 
 
 class DriveOdometry:
-    """Odometry of a drive: an odometer and its topics.
+    """The odometry of a drive: an odometer and its topics.
 
     Args:
         node: the controller's.
@@ -89,7 +89,7 @@ class DriveOdometry:
         self._told: int | None = None
 
     def tell(self, time_ns: int) -> None:
-        """Publish, where that is due at a time in nanoseconds and anybody listens."""
+        """Publish, where that is due at a time in nanoseconds and anybody subscribes."""
         if not self._is_due(time_ns):
             return
         wanted = self._topics.is_wanted
@@ -111,7 +111,7 @@ class DriveOdometry:
         return True
 
     def serve(self, node: ControllerNode, name: str = "~/set_odometry") -> None:
-        """Let others say where the robot is, by ``control_msgs/srv/SetOdometry``."""
+        """Offer ``control_msgs/srv/SetOdometry``, by which others set the pose."""
 
         def asked(request: Any, response: Any) -> Any:
             self.odometer.reset(request.x, request.y, request.yaw)

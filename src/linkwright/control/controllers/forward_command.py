@@ -1,4 +1,4 @@
-"""Controllers that pass on what they are told: ``forward_command_controller`` and the groups made of it.
+"""Controllers that forward commands to interfaces: ``forward_command_controller``, and the groups derived from it.
 
 Source: forward_command_controller, position_controllers, velocity_controllers and effort_controllers of
 ros2_controllers (parameters, topics, texts; velocities and efforts are 0 after the end).
@@ -20,7 +20,7 @@ P = TypeVar("P")
 
 @dataclass(frozen=True, kw_only=True)
 class ForwardParameters:
-    """Of ``ForwardCommandController``."""
+    """Parameters of ``ForwardCommandController``."""
 
     joints: tuple[str, ...] = parameter((), description="joints whose interface is commanded")
     interface_name: str = parameter("", description="the interface of the joints")
@@ -28,7 +28,7 @@ class ForwardParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class MultiInterfaceParameters:
-    """Of ``MultiInterfaceForwardCommandController``."""
+    """Parameters of ``MultiInterfaceForwardCommandController``."""
 
     joint: str = parameter("", description="the joint whose interfaces are commanded")
     interface_names: tuple[str, ...] = parameter((), description="its interfaces")
@@ -36,39 +36,39 @@ class MultiInterfaceParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class GroupParameters:
-    """Of the groups."""
+    """Parameters of the groups ``JointGroup...Controller``."""
 
     joints: tuple[str, ...] = parameter((), description="joints whose interface is commanded")
 
 
 class _Forwarding(Controller[P], Generic[P]):
-    """Writes the last message of ``~/commands`` to its interfaces."""
+    """Forwards the last message of ``~/commands`` to its interfaces."""
 
     @abstractmethod
     def _names(self) -> Sequence[str]:
-        """The interfaces that are commanded."""
+        """The names of the commanded interfaces."""
 
     def command_interfaces(self) -> InterfaceNames:
-        """Those that are commanded."""
+        """The names of the commanded interfaces."""
         return self._names()
 
     def on_configure(self) -> None:
-        """Listen for commands."""
+        """Subscribe to the commands."""
         self._names()
         self._wanted: Sequence[float] | None = None
         commander = self.node.commander(self._rest)
         self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
 
     def on_activate(self) -> None:
-        """Forget commands that came before."""
+        """Drop commands that came before."""
         self._wanted = None
 
     def on_deactivate(self) -> None:
-        """Forget the last command."""
+        """Drop the last command."""
         self._wanted = None
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Pass the last command on."""
+        """Forward the last command."""
         wanted = self._wanted
         if wanted is None:
             return
@@ -76,7 +76,7 @@ class _Forwarding(Controller[P], Generic[P]):
             command.value = value
 
     def _rest(self) -> bool:
-        """Command no velocities any more; positions and efforts are held. Whether anything was to move."""
+        """Command zero velocities; positions and efforts are held. Whether anything was to move."""
         if self._wanted is None:
             return False
         is_velocity = [name.endswith(f"/{VELOCITY}") for name in self._names()]

@@ -1,4 +1,4 @@
-"""Grippers that are opened and closed by an action.
+"""Gripper controllers, which are opened and closed by an action.
 
 ``position_controllers/GripperActionController`` sends the position on, ``effort_controllers/GripperActionController``
 makes an effort of it by PID, and ``parallel_gripper_action_controller/GripperActionController`` sends the greatest
@@ -28,7 +28,7 @@ _SECOND = 1_000_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class GripperParameters:
-    """Of all of them."""
+    """Parameters of all grippers."""
 
     action_monitor_rate: float = parameter(20.0, description="how often feedback comes, in Hz", check=at_least(0.1))
     joint: str = parameter("", read_only=True, check=not_empty)
@@ -41,14 +41,14 @@ class GripperParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class EffortGripperParameters(GripperParameters):
-    """Of the one that commands efforts."""
+    """Parameters of the gripper that commands efforts."""
 
     gains: Mapping[str, PidParameters] = for_each("joint", PidParameters)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ParallelGripperParameters(GripperParameters):
-    """Of the one with interfaces for the greatest effort and velocity."""
+    """Parameters of the gripper with interfaces for the greatest effort and velocity."""
 
     max_effort: float = parameter(10.0, description="N, where a goal says nothing", check=at_least(0.0))
     max_velocity: float = parameter(0.1, description="m/s, where a goal says nothing", check=at_least(0.0))
@@ -61,7 +61,7 @@ P = TypeVar("P", bound=GripperParameters)
 
 
 class Gripper(Controller[P]):
-    """What grippers share: goals, and when they end."""
+    """The base of grippers: goals, and when they end."""
 
     ACTION: ClassVar[str] = "control_msgs/action/GripperCommand"
 
@@ -74,7 +74,7 @@ class Gripper(Controller[P]):
         return [f"{self.parameters.joint}/{kind}" for kind in (POSITION, VELOCITY)]
 
     def on_configure(self) -> None:
-        """Make the action."""
+        """Make the action server."""
         self._active = False
         self._goal: Goal | None = None
         kind = get_action(self.ACTION)
@@ -84,7 +84,7 @@ class Gripper(Controller[P]):
         )
 
     def on_activate(self) -> None:
-        """Stay where the gripper is."""
+        """Hold the gripper where it is."""
         self._position_state, self._velocity_state = self.states[0], self.states[1]
         if not isfinite(self._position_state.value):
             raise ControllerError(phrase("the positions of the joints are not known yet"))
@@ -94,16 +94,16 @@ class Gripper(Controller[P]):
         self._active = True
 
     def on_deactivate(self) -> None:
-        """Give the goal up."""
+        """Abort the goal."""
         self._active = False
         self._give_up()
 
     def on_cleanup(self) -> None:
-        """Take the action out of the graph."""
+        """Remove the action server."""
         self._action.close()
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command, and see whether the goal is reached."""
+        """Command the gripper, and find out whether the goal is reached."""
         position, velocity = self._position_state.value, self._velocity_state.value
         effort = self._command(self._wanted - position, velocity, period_s)
         goal = self._goal
@@ -165,16 +165,16 @@ class Gripper(Controller[P]):
     # --- what differs -------------------------------------------------------------------------------------------------
 
     def _objection(self, request: Any) -> str | None:
-        """Why a goal is refused."""
+        """The reason for refusing a goal; None for a valid one."""
         return None if isfinite(request.command.position) else "Received action goal with a position that is no number"
 
     def _take(self, request: Any) -> None:
-        """Take what a goal says."""
+        """Take over the values of a goal."""
         self._wanted = request.command.position
         self._max_effort = request.command.max_effort
 
     def _command(self, error: float, velocity: float, period_s: float) -> float:
-        """Command, and give the effort that is told: here the greatest one."""
+        """Command the gripper; returns the effort to be reported, here the greatest."""
         self.commands[0].value = self._wanted
         return self._max_effort
 
@@ -200,12 +200,12 @@ class EffortGripper(Gripper[EffortGripperParameters]):
         return [f"{self.parameters.joint}/{EFFORT}"]
 
     def on_activate(self) -> None:
-        """Stay where the gripper is."""
+        """Hold the gripper where it is."""
         self._pid = Pid(self.parameters.gains[self.parameters.joint].pid)
         super().on_activate()
 
     def on_deactivate(self) -> None:
-        """Push no more."""
+        """Command zero effort."""
         super().on_deactivate()
         self.commands[0].value = 0.0
 

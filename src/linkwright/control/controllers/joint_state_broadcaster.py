@@ -1,4 +1,4 @@
-"""``joint_state_broadcaster/JointStateBroadcaster``: what hardware tells of joints, as topics.
+"""``joint_state_broadcaster/JointStateBroadcaster``: states of joints on topics.
 
 Source: ros2_controllers (parameters, defaults, topics, NaN for what a joint does not tell). Joints come in the order in
 which the hardware has them.
@@ -20,7 +20,7 @@ _NANOSECONDS = 1_000_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class InterfaceMap:
-    """Which interfaces fill the fields of joint states."""
+    """Names of the interfaces that fill the fields of joint states."""
 
     position: str = POSITION
     velocity: str = VELOCITY
@@ -29,7 +29,7 @@ class InterfaceMap:
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Of the broadcaster."""
+    """Parameters of the broadcaster."""
 
     use_local_topics: bool = parameter(False, description="topics in the namespace of the controller's own name")
     joints: tuple[str, ...] = parameter((), description="only these joints; used together with interfaces")
@@ -46,7 +46,7 @@ class JointStateBroadcaster(Controller[Parameters]):
     PARAMETERS = Parameters
 
     def state_interfaces(self) -> InterfaceNames:
-        """All, or those that are named."""
+        """All, or those that the parameters name."""
         joints, interfaces = self.parameters.joints, self.parameters.interfaces
         if not joints or not interfaces:
             return Interfaces.ALL
@@ -59,7 +59,7 @@ class JointStateBroadcaster(Controller[Parameters]):
         self._dynamic = self.node.publisher("control_msgs/msg/DynamicJointState", f"{begin}dynamic_joint_states")
 
     def on_activate(self) -> None:
-        """Find what there is to tell."""
+        """Work out which interfaces fill which fields."""
         named = self.parameters.map_interface_to_joint_state
         fields = {named.position: 0, named.velocity: 1, named.effort: 2}
         self._of: dict[str, dict[str, StateInterface]] = {}
@@ -78,7 +78,7 @@ class JointStateBroadcaster(Controller[Parameters]):
         ]
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Publish, as far as anybody listens."""
+        """Publish to topics that have subscriptions."""
         if self._output.is_wanted:
             self._output.publish(self._joint_states(self._header(time_ns)))
         if self._dynamic.is_wanted:

@@ -45,12 +45,12 @@ class JointTrajectoryController(Controller[Parameters]):
     PARAMETERS = Parameters
 
     def command_interfaces(self) -> InterfaceNames:
-        """All kinds of the first joint, then of the next."""
+        """The command interfaces of the first joint, then of the next."""
         said = self.parameters
         return [f"{joint}/{kind}" for joint in said.command_joints or said.joints for kind in said.command_interfaces]
 
     def state_interfaces(self) -> InterfaceNames:
-        """All kinds of the first joint, then of the next."""
+        """The state interfaces of the first joint, then of the next."""
         return [f"{joint}/{kind}" for joint in self.parameters.joints for kind in self.parameters.state_interfaces]
 
     # --- its life -----------------------------------------------------------------------------------------------------
@@ -111,7 +111,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._active = True
 
     def on_deactivate(self) -> None:
-        """Stay at the last positions, without velocity, acceleration or effort."""
+        """Hold the last positions, with zero velocity, acceleration and effort."""
         self._active = False
         self._give_up("Current goal cancelled during deactivate transition.")
         for kind in (VELOCITY, ACCELERATION, EFFORT):
@@ -119,7 +119,7 @@ class JointTrajectoryController(Controller[Parameters]):
                 command.value = 0.0
 
     def on_cleanup(self) -> None:
-        """Take the action out of the graph."""
+        """Remove the action server."""
         self._action.close()
 
     def _check(self, said: Parameters) -> None:
@@ -198,7 +198,7 @@ class JointTrajectoryController(Controller[Parameters]):
             self._goal = None
 
     def _held(self) -> list[float]:
-        """Where joints stay of which a trajectory says nothing: at their commands, as far as there are any."""
+        """The state to hold for joints that a trajectory leaves out: the last commands, as far as there are any."""
         return self._finite_or(self._command.get(POSITION), self._current.positions)
 
     def _follow(self, trajectory: Trajectory) -> None:
@@ -206,7 +206,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._following_ns = -1
 
     def _hold(self, state: MotionState | None = None) -> None:
-        """Stay where the joints are, or in another state."""
+        """Hold the joints where they are, or at another state."""
         held = MotionState(self._read().positions) if state is None else state
         self._follow(Trajectory([TrajectoryPoint(0, held)]))
         self._is_held = True
@@ -221,7 +221,7 @@ class JointTrajectoryController(Controller[Parameters]):
         )
 
     def _as_commanded(self, state: MotionState) -> MotionState:
-        """A state with the last commands, as far as there are any: hardware that sags is not let down."""
+        """A state with the last commands in place of measurements, so that sagging hardware is not let down."""
         return MotionState(
             self._finite_or(self._command.get(POSITION), state.positions),
             self._finite_or(self._command.get(VELOCITY) if state.velocities else None, state.velocities),
@@ -234,7 +234,7 @@ class JointTrajectoryController(Controller[Parameters]):
         return given if given and all(map(isfinite, given)) else list(values)
 
     def _compare(self, desired: MotionState) -> MotionState:
-        """What is wanted less what is there; zeros where velocities or accelerations are not compared."""
+        """The error of a state; zeros for velocities or accelerations that are not compared."""
         current = self._current
         positions = [
             shortest_turn(is_at, wanted) if turns else wanted - is_at
@@ -254,7 +254,7 @@ class JointTrajectoryController(Controller[Parameters]):
     # --- its work -----------------------------------------------------------------------------------------------------
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command what is due at the next update, and see how far the joints are from what is due now."""
+        """Command the point that is due at the next update, and check the errors of now against the tolerances."""
         if time_ns < self._following_ns - self._period_ns:
             self._give_up("Time has begun anew.")
             self._hold()
@@ -354,7 +354,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._last_command = wanted
 
     def _retune(self) -> None:
-        """Take gains that were changed; what was integrated stays."""
+        """Take over changed gains; the integral stays."""
         said = self.parameters
         if said is not self._tuned_by:
             integrals = [each.integral for each in self._pids]
@@ -433,6 +433,6 @@ class JointTrajectoryController(Controller[Parameters]):
 
 
 def _as_far_as_known(state: MotionState) -> MotionState:
-    """A state without the velocities or accelerations that hardware does not know."""
+    """A state without the velocities or accelerations that hardware does not measure."""
     known = [values if all(map(isfinite, values)) else [] for values in (state.velocities, state.accelerations)]
     return MotionState(state.positions, *known)

@@ -1,4 +1,4 @@
-"""Trajectories as messages: what is wrong with them, and what they say of the joints of a controller.
+"""Checking trajectory messages, and converting them for the joints of a controller.
 
 Source: joint_trajectory_controller of ros2_controllers (what is refused, in which words; what missing joints do;
 tolerances of goals).
@@ -26,7 +26,7 @@ def nanoseconds(time: Any) -> int:
 
 
 def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
-    """Why a trajectory is refused, as ros2_controllers says it; None for one that is not.
+    """The reason for refusing a trajectory, in the words of ros2_controllers; None for a valid one.
 
     Args:
         message: trajectory_msgs/msg/JointTrajectory.
@@ -84,7 +84,7 @@ def _objection_to_points(points: Sequence[Any], count: int, integrated: bool) ->
 
 
 def trajectory_of(message: Any, parameters: Parameters, held: Sequence[float]) -> Trajectory:
-    """The trajectory of all joints of a controller.
+    """Convert a message to a trajectory of all joints of a controller.
 
     Args:
         message: trajectory_msgs/msg/JointTrajectory, to which there is no objection.
@@ -115,7 +115,7 @@ def trajectory_of(message: Any, parameters: Parameters, held: Sequence[float]) -
 
 
 def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, tell: Callable[[str], object]) -> Tolerances:
-    """The tolerances of a goal: what it says of joints replaces that of the controller.
+    """The tolerances of a goal: those of the controller, replaced where the goal names joints.
 
     Args:
         goal: control_msgs/action/FollowJointTrajectory_Goal.

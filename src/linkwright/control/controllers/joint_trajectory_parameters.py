@@ -19,7 +19,7 @@ _ONE_STATE = one_of(POSITION, VELOCITY, ACCELERATION)
 
 
 def _command_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """Which commands go together: effort, velocity, or position [velocity [acceleration]]."""
+    """Validate the combination of command interfaces: effort, velocity, or position [velocity [acceleration]]."""
     wrong = not_empty(name, value) or _ONE_COMMAND(name, value)
     if wrong is not None:
         return wrong
@@ -35,7 +35,7 @@ def _command_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
 
 
 def _state_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """Which states go together: position [velocity [acceleration]]."""
+    """Validate the combination of state interfaces: position [velocity [acceleration]]."""
     wrong = not_empty(name, value) or _ONE_STATE(name, value)
     if wrong is not None:
         return wrong
@@ -50,7 +50,7 @@ def _state_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Gains(PidParameters):
-    """Of a joint's PID controller."""
+    """Gains of a joint's PID controller."""
 
     ff_velocity_scale: float = parameter(0.0, description="how much of the wanted velocity is added to the command")
     angle_wraparound: bool = parameter(False, description="whether the joint turns without an end", only=HUMBLE)
@@ -59,7 +59,7 @@ class Gains(PidParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class JointConstraints:
-    """How far a joint may be from where it is to be, in rad or m; 0 for any distance."""
+    """Tolerances of a joint, in rad or m; 0 for none."""
 
     trajectory: float = parameter(0.0, description="on the way, in rad or m; 0 for any")
     goal: float = parameter(0.0, description="at the end, in rad or m; 0 for any")
@@ -67,7 +67,7 @@ class JointConstraints:
 
 @dataclass(frozen=True, kw_only=True)
 class Constraints:
-    """Of all joints."""
+    """Tolerances of all joints."""
 
     stopped_velocity_tolerance: float = parameter(0.01, description="the velocity at the end, in rad/s or m/s")
     goal_time: float = parameter(0.0, description="seconds after the end; 0 for any time", check=at_least(0.0))
@@ -75,7 +75,7 @@ class Constraints:
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Of the controller."""
+    """Parameters of the controller."""
 
     joints: tuple[str, ...] = parameter((), read_only=True, check=not_empty)
     command_joints: tuple[str, ...] = parameter(
@@ -112,12 +112,12 @@ class Parameters:
 
     @property
     def has_pid(self) -> bool:
-        """Whether commands are made of errors."""
+        """Whether commands are computed from errors by PID controllers."""
         return self.command_interfaces == (EFFORT,) or (self.command_interfaces == (VELOCITY,) and not self.open_loop)
 
     @property
     def tolerances(self) -> Tolerances:
-        """Those of trajectories that bring none."""
+        """The tolerances for trajectories that bring none."""
         of_joints = [self.joint_constraints[joint] for joint in self.joints]
         stopped = self.constraints.stopped_velocity_tolerance
         return Tolerances(

@@ -24,7 +24,7 @@ _DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 
 @dataclass(frozen=True, kw_only=True)
 class BaseFrameOffset:
-    """Of the frame of the robot from the middle of its wheels, in m and rad."""
+    """The pose of the robot's frame in the middle of its wheels, in m and rad."""
 
     x: float = 0.0
     y: float = 0.0
@@ -36,7 +36,7 @@ _NO_OFFSET = BaseFrameOffset()
 
 @dataclass(frozen=True, kw_only=True)
 class Kinematics:
-    """Sizes."""
+    """Sizes of the drive."""
 
     base_frame_offset: BaseFrameOffset = _NO_OFFSET
     wheels_radius: float = parameter(0.0, description="in m")
@@ -50,7 +50,7 @@ _NO_SIZES = Kinematics()
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Of the controller."""
+    """Parameters of the controller."""
 
     reference_timeout: float = parameter(0.0, description="how long a command holds, in seconds; 0 for one update")
     front_left_wheel_command_joint_name: str = ""
@@ -75,7 +75,7 @@ _CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
 
 
 class MecanumDriveController(Controller[Parameters]):
-    """Turns a velocity of the robot, sideways too, into those of its wheels, and their turns into odometry."""
+    """A mecanum drive: wheel velocities from the commanded velocity, sideways too, and odometry from the wheels."""
 
     PARAMETERS = Parameters
 
@@ -84,7 +84,7 @@ class MecanumDriveController(Controller[Parameters]):
         return [f"{name}/{VELOCITY}" for name in self._joints("command")]
 
     def state_interfaces(self) -> InterfaceNames:
-        """The same of what is measured."""
+        """The velocities of the wheels: front left, front right, rear right, rear left."""
         pairs = zip(self._joints("state"), self._joints("command"), strict=True)
         return [f"{measured or commanded}/{VELOCITY}" for measured, commanded in pairs]
 
@@ -96,7 +96,7 @@ class MecanumDriveController(Controller[Parameters]):
         return ("linear/x/velocity", "linear/y/velocity", "angular/z/velocity")
 
     def on_configure(self) -> None:
-        """Check the parameters, make topics.
+        """Check the parameters, make the topics.
 
         Raises:
             ControllerError: wheels or their sizes are missing.
@@ -133,7 +133,7 @@ class MecanumDriveController(Controller[Parameters]):
         self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
 
     def on_activate(self) -> None:
-        """Stand, and listen."""
+        """Start at rest, and take commands."""
         for reference in self.references:
             reference.value = nan
         self._odometry.odometer.stand()
@@ -146,13 +146,13 @@ class MecanumDriveController(Controller[Parameters]):
             command.value = 0.0
 
     def update_references(self, time_ns: int, period_s: float) -> None:
-        """Take the command, if there is one."""
+        """Copy the command into the references, if there is one."""
         velocity = self._input.velocity(time_ns) or (nan, nan, nan)
         for reference, value in zip(self.references, velocity, strict=True):
             reference.value = value
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Turn the wheels, and tell where the robot is."""
+        """Command the wheels, and publish the odometry."""
         front_left, front_right, rear_right, rear_left = measured = [state.value for state in self.states]
         if all(map(isfinite, measured)):
             motion = self._drive.motion(front_left, front_right, rear_left, rear_right)
@@ -175,7 +175,7 @@ class MecanumDriveController(Controller[Parameters]):
             command.value = value
 
     def _of_base(self, forward: float, sideways: float, turning: float) -> tuple[float, float, float]:
-        """The velocity of the frame of the robot, of that of the middle of its wheels."""
+        """The velocity of the robot's frame, from that of the middle of its wheels."""
         offset = self._said.kinematics.base_frame_offset
         along, across = _turned(forward - offset.y * turning, sideways + offset.x * turning, -offset.theta)
         return along, across, turning
@@ -195,5 +195,5 @@ class MecanumDriveController(Controller[Parameters]):
 
 
 def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
-    """A vector, turned by an angle in rad."""
+    """A vector rotated by an angle in rad."""
     return x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle)

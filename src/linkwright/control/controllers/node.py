@@ -1,4 +1,4 @@
-"""The node of a controller, as the controller uses it, in the thread of its updates."""
+"""The node of a controller, for use in the thread of its updates."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.simulation.plugins.node import PluginNode
 
 
 class ControllerNode(PluginNode):
-    """What a controller has of ROS: `publisher`, `subscribe` and `service` of `PluginNode`, and more.
+    """Publishers, subscriptions and services of a controller (`PluginNode`), and calls between its two threads.
 
     Callbacks come in the thread of the updates, between two of them; what is published goes out after the update.
 
@@ -23,22 +23,22 @@ class ControllerNode(PluginNode):
         super().__init__(node, exchange, owned=True, qos={}, usual=None)
 
     def post(self, command: Callable[[], object]) -> None:
-        """Have something done in the thread of the updates, before the next one; from any thread."""
+        """Queue a function for the thread of the updates, to be called before the next one; from any thread."""
         self._exchange.post(command)
 
     def call_on_loop(self, call: Callable[[], object]) -> None:
-        """Have something done on the event loop, after what was published before it."""
+        """Queue a function for the event loop, to be called after what was published before it."""
         self._exchange.send(_Call(call), None)
 
     def clear(self) -> None:
-        """Take its topics and services out of the graph; the node stays."""
+        """Remove its topics and services from the graph; the node stays."""
         for endpoint in self._endpoints:
             endpoint.destroy()
         self._endpoints.clear()
 
 
 class _Call:
-    """What is done where messages are published."""
+    """A function in the place of a publisher."""
 
     __slots__ = ("_call",)
 
@@ -46,5 +46,5 @@ class _Call:
         self._call = call
 
     def publish(self, message: None) -> None:
-        """Call what is to be done; there is nothing to publish."""
+        """Call the function; the message is ignored."""
         self._call()

@@ -56,7 +56,7 @@ _OF_EVERY_NODE = ("use_sim_time", "params_file", "type", "qos_overrides", "start
 
 @dataclass(frozen=True)
 class NoParameters:
-    """The parameters of what has none."""
+    """For controllers without parameters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ def parameter(
     only: str = "",
     later: Any = _SAME,
 ) -> Any:
-    """A parameter of which more is to be said than its default.
+    """Declare a parameter with constraints, a description or a default that is made anew.
 
     Args:
         default: its value where none is given.
@@ -91,7 +91,7 @@ def parameter(
 
 
 def for_each(names: str, table: type[Any], *, below: str = "") -> Any:
-    """A table for each of the names that another parameter has, ``gains.JOINT.p``.
+    """Declare a group of parameters for each name in another parameter, as ``gains.JOINT.p``.
 
     Args:
         names: that parameter, which stands before it in the same table; several, separated by blanks.
@@ -110,7 +110,7 @@ class _Declaration:
 
 
 class ParameterTable(Generic[P]):
-    """The parameters of a node, declared as a dataclass says; they follow what is set later.
+    """The parameters of a node, declared as a dataclass says; they follow later changes.
 
     Args:
         node: the node.
@@ -132,11 +132,11 @@ class ParameterTable(Generic[P]):
         node.add_post_set_parameters_callback(lambda _: self.refresh())
 
     def refresh(self) -> None:
-        """Read the parameters anew; names that have come bring theirs."""
+        """Read the parameters anew; names that were added bring their own."""
         self.values = self._read()
 
     def unknown(self) -> Iterator[Phrase]:
-        """Sentences about what the node was given and is no parameter."""
+        """Sentences about parameters that were given and do not exist."""
         for name in self._node.undeclared_overrides():
             if not name.startswith(_OF_EVERY_NODE):
                 hint = did_you_mean(name, self._declared)
@@ -206,7 +206,7 @@ def _distribution() -> str:
 
 
 def _listed(names: Any) -> Iterable[str]:
-    """The names of a parameter that has one or several."""
+    """The names in a parameter that has one or several."""
     return (names,) if isinstance(names, str) else names
 
 
@@ -219,12 +219,12 @@ def _kinds(table: Hashable) -> Mapping[str, Any]:
 
 
 def not_empty(name: str, value: Any) -> Phrase | None:
-    """A text, or a list, is not empty."""
+    """A validator: a text, or a list, is not empty."""
     return None if len(value) else phrase("Parameter '{name}' cannot be empty", name=name)
 
 
 def above(limit: float) -> Check:
-    """More than a number."""
+    """A validator: more than a number."""
     return lambda name, value: (
         None
         if value > limit
@@ -235,7 +235,7 @@ def above(limit: float) -> Check:
 
 
 def at_least(limit: float) -> Check:
-    """A number or more."""
+    """A validator: a number or more."""
     return lambda name, value: (
         None
         if value >= limit
@@ -249,7 +249,7 @@ def at_least(limit: float) -> Check:
 
 
 def one_of(*words: str) -> Check:
-    """One of some words, or a list of such."""
+    """A validator: one of some words, or a list of such."""
 
     def check(name: str, value: Any) -> Phrase | None:
         for each in (value,) if isinstance(value, str) else value:

@@ -1,4 +1,4 @@
-"""``pid_controller/PidController``: commands made of the errors of degrees of freedom.
+"""``pid_controller/PidController``: commands computed by PID from the errors of degrees of freedom.
 
 Source: ros2_controllers (parameters, topics, service, interfaces of chains, feed-forward).
 """
@@ -25,7 +25,7 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 def _one_or_two(name: str, value: tuple[str, ...]) -> Phrase | None:
-    """The interface, and perhaps its derivative."""
+    """Validate: one interface, or one and its derivative."""
     if not 1 <= len(value) <= 2:
         return phrase("Parameter '{name}' is one interface, or an interface and its derivative", name=name)
     return None
@@ -33,7 +33,7 @@ def _one_or_two(name: str, value: tuple[str, ...]) -> Phrase | None:
 
 @dataclass(frozen=True, kw_only=True)
 class Gains(PidParameters):
-    """Of a degree of freedom."""
+    """Gains of a degree of freedom."""
 
     feedforward_gain: float = parameter(0.0, description="how much of the reference is added to the command")
     angle_wraparound: bool = parameter(False, description="whether it turns without an end")
@@ -42,7 +42,7 @@ class Gains(PidParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Of the controller."""
+    """Parameters of the controller."""
 
     dof_names: tuple[str, ...] = parameter((), read_only=True, check=not_empty)
     reference_and_state_dof_names: tuple[str, ...] = parameter((), read_only=True)
@@ -54,7 +54,7 @@ class Parameters:
 
     @property
     def measured(self) -> tuple[str, ...]:
-        """The degrees of freedom whose states and references count."""
+        """The degrees of freedom whose states and references are used."""
         return self.reference_and_state_dof_names or self.dof_names
 
 
@@ -64,7 +64,7 @@ class PidController(Controller[Parameters]):
     PARAMETERS = Parameters
 
     def command_interfaces(self) -> InterfaceNames:
-        """One of each degree of freedom."""
+        """One for each degree of freedom."""
         return [f"{each}/{self.parameters.command_interface}" for each in self.parameters.dof_names]
 
     def state_interfaces(self) -> InterfaceNames:
@@ -113,13 +113,13 @@ class PidController(Controller[Parameters]):
                 pid.reset()
 
     def on_deactivate(self) -> None:
-        """Command 0, where that is no position."""
+        """Command 0 where that is not a position."""
         if self.parameters.command_interface != POSITION:
             for command in self.commands:
                 command.value = 0.0
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command as far as references and states are known."""
+        """Command where references and states are known."""
         if self.states:
             self._measured = [each.value for each in self.states]
         self._export()
@@ -174,7 +174,7 @@ class PidController(Controller[Parameters]):
             self._measured = values
 
     def _in_order(self, message: Any) -> list[float]:
-        """Values, and rates where there are any, in the order of the degrees of freedom; nothing for a mistake."""
+        """Values and rates in the order of the degrees of freedom; empty for a bad message."""
         known = list(self.parameters.measured)
         names, values, rates = list(message.dof_names) or known, list(message.values), list(message.values_dot)
         wrong = len(names) != len(known) or len(values) != len(known) or (rates and len(rates) != len(known))

@@ -28,7 +28,7 @@ class PidParameters:
 
     @property
     def pid(self) -> PidGains:
-        """What the PID controller is made with."""
+        """The gains in the form of `Pid`."""
         low, high = self.i_clamp_min, self.i_clamp_max
         if self.i_clamp is not None:
             low, high = -abs(self.i_clamp), abs(self.i_clamp)

@@ -1,4 +1,4 @@
-"""Which controllers there are: the entry points ``linkwright.controllers``, by their type names.
+"""Finding controllers by their type names: the entry points ``linkwright.controllers``.
 
 ``diff_drive_controller/DiffDriveController`` names a subclass of `Controller`.
 """

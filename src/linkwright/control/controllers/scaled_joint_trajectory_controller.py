@@ -1,4 +1,4 @@
-"""``ur_controllers/ScaledJointTrajectoryController``: a trajectory controller that goes as slowly as the robot does.
+"""``ur_controllers/ScaledJointTrajectoryController``: a trajectory controller that follows the robot's speed slider.
 
 Source: ur_controllers of the driver for Universal Robots (the parameter; time on a trajectory goes on by the factor).
 """
@@ -22,7 +22,7 @@ _SECOND = 1_000_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class ScaledParameters(Parameters):
-    """Of the controller."""
+    """Parameters of the controller."""
 
     speed_scaling_interface_name: str = parameter(
         "speed_scaling/speed_scaling_factor",
@@ -32,7 +32,7 @@ class ScaledParameters(Parameters):
 
 
 class ScaledJointTrajectoryController(JointTrajectoryController):
-    """Follows trajectories on a time that goes on by a factor which the hardware states, as its speed slider has it."""
+    """Follows trajectories on a time that is scaled by a factor which the hardware states (its speed slider)."""
 
     PARAMETERS = ScaledParameters
 
@@ -57,7 +57,7 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
         super().on_activate()
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command what is due on the trajectory's own time, which begins with it."""
+        """Command what is due on the scaled time, which starts with the trajectory."""
         if self._factor is not None and isfinite(self._factor.value):
             self._behind_ns += round((1.0 - max(self._factor.value, 0.0)) * period_s * _SECOND)
         super().update(time_ns - self._behind_ns, period_s)

@@ -1,4 +1,4 @@
-"""What sensors of the hardware tell, as topics: IMUs, force-torque sensors, range sensors and poses.
+"""Broadcasters of hardware's sensors: IMUs, force-torque sensors, range sensors and poses.
 
 Source: ros2_controllers, its ``imu_sensor_broadcaster``, ``force_torque_sensor_broadcaster``,
 ``range_sensor_broadcaster`` and ``pose_broadcaster`` (parameters, names of interfaces, topics).
@@ -22,7 +22,7 @@ _UNKNOWN = (0.0,) * 9
 
 
 def _nine(name: str, value: tuple[float, ...]) -> Phrase | None:
-    """A covariance of three numbers, row by row."""
+    """Validate a covariance: 9 numbers, row by row."""
     if len(value) != 9:
         return phrase("Parameter '{name}' has {count} numbers and must have 9", name=name, count=len(value))
     return None
@@ -30,7 +30,7 @@ def _nine(name: str, value: tuple[float, ...]) -> Phrase | None:
 
 @dataclass(frozen=True, kw_only=True)
 class ImuParameters:
-    """Of the IMU broadcaster."""
+    """Parameters of the IMU broadcaster."""
 
     sensor_name: str = parameter("", check=not_empty)
     frame_id: str = parameter("", check=not_empty)
@@ -41,7 +41,7 @@ class ImuParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class Vector:
-    """The names of three interfaces."""
+    """Names of three interfaces."""
 
     x: str = ""
     y: str = ""
@@ -50,14 +50,14 @@ class Vector:
 
 @dataclass(frozen=True, kw_only=True)
 class Turn(Vector):
-    """The names of four interfaces."""
+    """Names of the four interfaces of a quaternion."""
 
     w: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
 class WrenchNames:
-    """The names of the interfaces of a force-torque sensor."""
+    """Names of the interfaces of a force-torque sensor."""
 
     force: Vector = Vector()
     torque: Vector = Vector()
@@ -65,7 +65,7 @@ class WrenchNames:
 
 @dataclass(frozen=True, kw_only=True)
 class PoseNames:
-    """The names of the interfaces of a pose."""
+    """Names of the interfaces of a pose."""
 
     position: Vector = Vector()
     orientation: Turn = Turn()
@@ -73,7 +73,7 @@ class PoseNames:
 
 @dataclass(frozen=True, kw_only=True)
 class Zeros:
-    """Three numbers that are added."""
+    """Offsets of three numbers."""
 
     x: float = 0.0
     y: float = 0.0
@@ -82,7 +82,7 @@ class Zeros:
 
 @dataclass(frozen=True, kw_only=True)
 class Ones:
-    """Three factors."""
+    """Factors of three numbers."""
 
     x: float = 1.0
     y: float = 1.0
@@ -91,7 +91,7 @@ class Ones:
 
 @dataclass(frozen=True, kw_only=True)
 class Offset:
-    """What is added to a wrench, in N and Nm."""
+    """Offset of a wrench, in N and N m."""
 
     force: Zeros = Zeros()
     torque: Zeros = Zeros()
@@ -99,7 +99,7 @@ class Offset:
 
 @dataclass(frozen=True, kw_only=True)
 class Multiplier:
-    """What a wrench is multiplied with."""
+    """Factor of a wrench."""
 
     force: Ones = Ones()
     torque: Ones = Ones()
@@ -107,7 +107,7 @@ class Multiplier:
 
 @dataclass(frozen=True, kw_only=True)
 class WrenchParameters:
-    """Of the force-torque broadcaster; what is measured is moved by `offset`, then multiplied with `multiplier`."""
+    """Parameters of the force-torque broadcaster; `offset` is added, then `multiplier` applied."""
 
     frame_id: str = parameter("", check=not_empty)
     sensor_name: str = ""
@@ -118,7 +118,7 @@ class WrenchParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class RangeParameters:
-    """Of the range broadcaster."""
+    """Parameters of the range broadcaster."""
 
     sensor_name: str = parameter("", check=not_empty)
     frame_id: str = parameter("", check=not_empty)
@@ -131,7 +131,7 @@ class RangeParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class TransformParameters:
-    """Of the transform that is published with a pose."""
+    """Parameters of the transform that is published with a pose."""
 
     enable: bool = True
     child_frame_id: str = parameter("", description="the frame at the pose; the name of the pose where it is empty")
@@ -140,7 +140,7 @@ class TransformParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class PoseParameters:
-    """Of the pose broadcaster."""
+    """Parameters of the pose broadcaster."""
 
     frame_id: str = parameter("", check=not_empty)
     pose_name: str = ""
@@ -152,7 +152,7 @@ P = TypeVar("P")
 
 
 class SensorBroadcaster(Controller[P]):
-    """Publishes a message of its states at each update, while anybody listens."""
+    """Publishes a message of its states at each update, while anybody subscribes."""
 
     TYPE: ClassVar[str]
     TOPIC: ClassVar[str]
@@ -163,7 +163,7 @@ class SensorBroadcaster(Controller[P]):
 
     @abstractmethod
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """A message of the values of the interfaces, which stand in the order that was asked for."""
+        """A message of the interfaces' values, in the order of `state_interfaces`."""
 
     def on_configure(self) -> None:
         """Make the topic."""
@@ -182,7 +182,7 @@ class SensorBroadcaster(Controller[P]):
 
 
 def _six(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
-    """What is said of forces and torques, axis by axis."""
+    """The values of forces and torques, axis by axis."""
     return [getattr(vector, axis) for vector in (wrench.force, wrench.torque) for axis in "xyz"]
 
 
@@ -223,7 +223,7 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
     TYPE, TOPIC = "geometry_msgs/msg/WrenchStamped", "~/wrench"
 
     def on_configure(self) -> None:
-        """Find out which interfaces there are; axes without one are 0."""
+        """Work out which interfaces exist; axes without one are 0."""
         said = self.parameters
         named = _six(said.interface_names)
         if not said.sensor_name and not any(named):
@@ -285,7 +285,7 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
     TYPE, TOPIC = "geometry_msgs/msg/PoseStamped", "~/pose"
 
     def on_configure(self) -> None:
-        """Find out which interfaces there are."""
+        """Work out which interfaces exist."""
         said = self.parameters
         place, turn = said.interface_names.position, said.interface_names.orientation
         named = [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]

@@ -1,4 +1,4 @@
-"""How fast a drive may go, speed up, brake and change that, as parameters.
+"""Limits of velocity, acceleration, deceleration and jerk, as parameters of drive controllers.
 
 Source: diff_drive_controller of Humble (``has_..._limits``, ``min_acceleration``) and of Jazzy (NaN for none,
 ``max_deceleration``, ``..._reverse``), and control_toolbox's RateLimiter. A limit for which ``has_..._limits`` says
@@ -18,7 +18,7 @@ from linkwright.kinematics.limits import UNBOUNDED, Bounds, SpeedLimiter
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedLimits:
-    """Of one axis, in m/s or rad/s, their change a second, and the change of that."""
+    """Parameters of the limits of one axis, in m/s or rad/s, and of the first and second derivative."""
 
     has_velocity_limits: bool | None = parameter(None, only=HUMBLE)
     has_acceleration_limits: bool | None = parameter(None, only=HUMBLE)
@@ -34,7 +34,7 @@ class SpeedLimits:
     min_jerk: float = nan
 
     def limiter(self, axis: str) -> SpeedLimiter:
-        """What keeps to the limits.
+        """The limiter with these limits.
 
         Args:
             axis: the name of the axis, for errors: ``linear.x``.
@@ -74,7 +74,7 @@ NO_LIMITS = SpeedLimits()
 
 
 def _given(*values: float) -> float:
-    """The first value that is given."""
+    """The first value that was given."""
     return next(each for each in values if not isnan(each))
 
 

@@ -1,4 +1,4 @@
-"""What the controllers of steered vehicles have in common: one axle that drives, another one that steers.
+"""The base of controllers of steered vehicles: one driven axle, and another one that steers.
 
 Source: steering_controllers_library of ros2_controllers, for Humble and Jazzy (parameters with their older names,
 defaults, topics, the order of joints: right, left). Other than there odometry and wheels go by the tangent of the
@@ -31,7 +31,7 @@ _NEAR, _FAR = pi / 6.0, 1.5608
 
 @dataclass(frozen=True, kw_only=True)
 class SteeringParameters:
-    """Of all of them."""
+    """Parameters of all steered vehicles."""
 
     reference_timeout: float = parameter(1.0, description="how long a command holds, in seconds; 0 for one update")
     traction_joints_names: tuple[str, ...] = parameter((), description="joints that drive: right, left", only=JAZZY)
@@ -64,32 +64,32 @@ class SteeringParameters:
     wheelbase: float = parameter(0.0, description="between the axles, in m")
 
     def of_traction(self, front: float, rear: float) -> float:
-        """What is given of the axle that drives, by the older names."""
+        """The parameter of the driven axle, of those for front and rear that older files have."""
         return rear if self.front_steering else front
 
     @property
     def traction(self) -> tuple[str, ...]:
-        """The joints that drive."""
+        """The driven joints."""
         return self.traction_joints_names or (
             self.rear_wheels_names if self.front_steering else self.front_wheels_names
         )
 
     @property
     def steering(self) -> tuple[str, ...]:
-        """The joints that steer."""
+        """The steered joints."""
         return self.steering_joints_names or (
             self.front_wheels_names if self.front_steering else self.rear_wheels_names
         )
 
     @property
     def traction_states(self) -> tuple[str, ...]:
-        """What is measured of those that drive."""
+        """The names of the driven joints' states."""
         older = self.rear_wheels_state_names if self.front_steering else self.front_wheels_state_names
         return self.traction_joints_state_names or older or self.traction
 
     @property
     def steering_states(self) -> tuple[str, ...]:
-        """What is measured of those that steer."""
+        """The names of the steered joints' states."""
         older = self.front_wheels_state_names if self.front_steering else self.rear_wheels_state_names
         return self.steering_joints_state_names or older or self.steering
 
@@ -98,7 +98,7 @@ P = TypeVar("P", bound=SteeringParameters)
 
 
 class SteeringController(Controller[P], Generic[P]):
-    """Turns a velocity of the vehicle into speeds and angles of its wheels, and those into odometry.
+    """A steered vehicle: wheel velocities and angles from the commanded velocity, and odometry from the wheels.
 
     Attributes:
         KIND: its name in errors.
@@ -110,15 +110,15 @@ class SteeringController(Controller[P], Generic[P]):
 
     @abstractmethod
     def drive(self) -> CarDrive:
-        """The sizes of the vehicle; what is not positive is refused."""
+        """The sizes of the vehicle, checked to be positive."""
 
     def command_interfaces(self) -> InterfaceNames:
-        """Velocities of the joints that drive, then angles of those that steer."""
+        """Velocities of the driven joints, then positions of the steered ones."""
         said = self.parameters
         return [f"{each}/{VELOCITY}" for each in said.traction] + [f"{each}/{POSITION}" for each in said.steering]
 
     def state_interfaces(self) -> InterfaceNames:
-        """The same of what is measured; positions of the joints that drive where they are asked for."""
+        """The same of what is measured; positions of the driven joints where the parameters ask for them."""
         said = self.parameters
         kind = POSITION if said.position_feedback else VELOCITY
         return [f"{each}/{kind}" for each in said.traction_states] + [
@@ -130,7 +130,7 @@ class SteeringController(Controller[P], Generic[P]):
         return ("linear/velocity", "angular/velocity")
 
     def on_configure(self) -> None:
-        """Check the parameters, make topics.
+        """Check the parameters, make the topics.
 
         Raises:
             ControllerError: joints or sizes are missing.
@@ -180,7 +180,7 @@ class SteeringController(Controller[P], Generic[P]):
                 )
 
     def on_activate(self) -> None:
-        """Stand, and listen."""
+        """Start at rest, and take commands."""
         for reference in self.references:
             reference.value = nan
         self._odometry.odometer.stand()
@@ -195,13 +195,13 @@ class SteeringController(Controller[P], Generic[P]):
             command.value = 0.0
 
     def update_references(self, time_ns: int, period_s: float) -> None:
-        """Take the command, if there is one."""
+        """Copy the command into the references, if there is one."""
         velocity = self._input.velocity(time_ns) or (nan, nan, nan)
         forward, turning = self.references
         forward.value, turning.value = velocity[0], velocity[2]
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Turn and steer the wheels, and tell where the vehicle is."""
+        """Command wheels and steering, and publish the odometry."""
         forward, turning = (reference.value for reference in self.references)
         told = isfinite(forward) and isfinite(turning)
         if self._said.open_loop:
@@ -220,7 +220,7 @@ class SteeringController(Controller[P], Generic[P]):
             reference.value = nan
 
     def _measure(self, period_s: float) -> None:
-        """Go on by what wheels and steering do; what is no number counts for nothing."""
+        """Update the odometry by wheels and steering; values that are not finite are ignored."""
         driving, steering = self.JOINTS
         values = [state.value for state in self.states]
         if not all(map(isfinite, values)) or period_s <= 0.0:
@@ -234,7 +234,7 @@ class SteeringController(Controller[P], Generic[P]):
         self._odometry.odometer.measure((forward, 0.0, turning), period_s)
 
     def _move(self, forward: float, turning: float) -> None:
-        """Tell the wheels: their speeds go with the angle that the steering has, not the one that it is to have."""
+        """Command the wheels, whose velocities follow the measured steering angle, not the commanded one."""
         said, (driving, steering) = self._said, self.JOINTS
         angle = self._drive.steering_angle(forward, turning)
         steered = angle if said.open_loop else self._steered

@@ -1,4 +1,4 @@
-"""``tricycle_controller/TricycleController``: one wheel in front that drives and is steered.
+"""``tricycle_controller/TricycleController``: one wheel in front that is driven and steered.
 
 Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics; the wheel is slow while it is far from its
 angle). Other than there odometry in open loop is that of the wheel within its limits.
@@ -29,7 +29,7 @@ _CREEPING = 0.01
 
 @dataclass(frozen=True, kw_only=True)
 class TractionLimits:
-    """Of the wheel's turning, in rad/s, its change a second, and the change of that; the same in both directions."""
+    """Parameters of the limits of the wheel's velocity, in rad/s, and its derivatives; the same in both directions."""
 
     max_velocity: float = nan
     min_velocity: float = nan
@@ -43,7 +43,7 @@ class TractionLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class SteeringLimits:
-    """Of the wheel's angle in rad, its change a second, and the change of that; the latter the same both ways."""
+    """Parameters of the limits of the wheel's angle, in rad, and its derivatives; the latter are the same both ways."""
 
     max_position: float = nan
     min_position: float = nan
@@ -58,7 +58,7 @@ _ANY_TRACTION, _ANY_STEERING = TractionLimits(), SteeringLimits()
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Of the controller."""
+    """Parameters of the controller."""
 
     traction_joint_name: str = parameter("", description="the joint that the wheel turns on")
     steering_joint_name: str = parameter("", description="the joint that the wheel is steered by")
@@ -80,7 +80,7 @@ class Parameters:
 
 
 class TricycleController(Controller[Parameters]):
-    """Turns a velocity of the robot into speed and angle of its wheel, and those into odometry."""
+    """A tricycle drive: velocity and angle of its wheel from the commanded velocity, and odometry from the wheel."""
 
     PARAMETERS = Parameters
 
@@ -90,11 +90,11 @@ class TricycleController(Controller[Parameters]):
         return [f"{said.traction_joint_name}/{VELOCITY}", f"{said.steering_joint_name}/{POSITION}"]
 
     def state_interfaces(self) -> InterfaceNames:
-        """What is commanded: the velocity of the wheel, and its angle."""
+        """The velocity of the wheel, and its angle."""
         return self.command_interfaces()
 
     def on_configure(self) -> None:
-        """Check the parameters, make topics.
+        """Check the parameters, make the topics.
 
         Raises:
             ControllerError: joints or sizes are missing, or limits are none.
@@ -132,7 +132,7 @@ class TricycleController(Controller[Parameters]):
         self._output = node.publisher("ackermann_msgs/msg/AckermannDrive", "~/cmd_ackermann") if asked else None
 
     def on_activate(self) -> None:
-        """Stand, and listen."""
+        """Start at rest, and take commands."""
         self._traction.restart()
         angle = self.states[1].value
         self._steering.restart(0.0 if isnan(angle) else angle)
@@ -140,13 +140,13 @@ class TricycleController(Controller[Parameters]):
         self._input.open()
 
     def on_deactivate(self) -> None:
-        """Stop the wheel, straight ahead."""
+        """Stop the wheel, and steer straight ahead."""
         self._input.close()
         for command in self.commands:
             command.value = 0.0
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Turn and steer the wheel, and tell where the robot is.
+        """Command the wheel, and publish the odometry.
 
         Raises:
             ControllerError: the wheel tells no number.
@@ -176,7 +176,7 @@ class TricycleController(Controller[Parameters]):
 
 
 def _share(error: float) -> float:
-    """How much of its speed a wheel has that is so far from its angle, in rad."""
+    """The part of its speed with which the wheel is driven at a steering error in rad."""
     if error < _NEAR:
         return 1.0
     return _CREEPING if error > _FAR else cos(error)
@@ -207,7 +207,7 @@ def _steering_limiter(said: SteeringLimits) -> SteeringLimiter:
 
 
 def _magnitudes(part: str, kind: str, least: float, greatest: float) -> Bounds:
-    """Bounds of a magnitude, of which either may not be given."""
+    """Bounds of a magnitude, either of which may be missing."""
     if least < 0.0 or greatest < 0.0:
         raise ControllerError(
             phrase(

@@ -1,4 +1,4 @@
-"""``tricycle_steering_controller/TricycleSteeringController``: two wheels that drive, one that is steered."""
+"""``tricycle_steering_controller/TricycleSteeringController``: two driven wheels, one steered."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.kinematics.drives import CarDrive
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(SteeringParameters):
-    """Of the controller."""
+    """Parameters of the controller: those of all steered vehicles, and its sizes."""
 
     traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m", only=JAZZY)
     traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m", only=JAZZY)
@@ -21,14 +21,14 @@ class Parameters(SteeringParameters):
 
 
 class TricycleSteeringController(SteeringController[Parameters]):
-    """A tricycle whose single wheel is steered and drives not."""
+    """A tricycle whose single wheel is steered and not driven."""
 
     PARAMETERS = Parameters
     KIND = "Tricycle"
     JOINTS = (2, 1)
 
     def drive(self) -> CarDrive:
-        """Its sizes, by their names or the older ones."""
+        """The sizes from the parameters, by their names or the older ones."""
         said = self.parameters
         radius = said.traction_wheels_radius or said.of_traction(said.front_wheels_radius, said.rear_wheels_radius)
         return CarDrive(said.wheelbase, said.traction_track_width or said.wheel_track, 0.0, radius)

@@ -1,4 +1,4 @@
-"""The velocity that a drive is told by a topic."""
+"""Velocity commands of drive controllers, from a topic."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class VelocityInput:
-    """Commands of a topic, ``geometry_msgs/msg/TwistStamped``, as long as they are fresh.
+    """Commands of a topic, ``geometry_msgs/msg/TwistStamped``, which expire after a time.
 
     A command counts from the time in its header; from the update that takes it where it has none, or one that is still
     to come, so that it grows old in any case. One that is not finite makes the drive stand.
@@ -53,23 +53,23 @@ class VelocityInput:
         self._is_open = True
 
     def close(self) -> None:
-        """Take no more commands, and forget those that came."""
+        """Drop the last command, and take no more."""
         self.forget()
         self._is_open = False
 
     def forget(self) -> None:
-        """Be as if no command had come."""
+        """Drop the last command."""
         self._come: tuple[Velocity, int] | None = None
         self._command: tuple[Velocity, int] | None = None
 
     def _lose(self) -> bool:
-        """Forget the command of who is lost; whether it still held, and moved anything."""
+        """Drop the command of a publisher that is lost; whether it was still valid, and not zero."""
         velocity, _ = self._come or self._command or ((0.0,), 0)
         self.forget()
         return any(velocity)
 
     def velocity(self, time_ns: int) -> Velocity | None:
-        """The command that holds at a time in nanoseconds; None if there is none, or the last one is too old."""
+        """The command that is valid at a time in nanoseconds; None if there is none, or the last one is too old."""
         if self._come is not None:
             self._receive(*self._come, time_ns)
             self._come = None

@@ -1,1 +1,1 @@
-"""Estimators: where a robot is and how it moves, worked out of what sensors measure. Arithmetic without ROS."""
+"""Estimators of pose and motion from measurements of sensors. Arithmetic without ROS."""

@@ -1,4 +1,4 @@
-"""How a body is turned in the world, of what its gyroscope, accelerometer and magnetometer measure.
+"""Orientation of a body from its gyroscope, accelerometer and magnetometer.
 
 Orientations are unit quaternions x y z w that take vectors of the body to the world. Sources: S. Madgwick, "An
 efficient orientation filter for inertial and inertial/magnetic sensor arrays", 2010; R. Valenti, I. Dryanovski and
@@ -32,7 +32,7 @@ _NONE: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 class World(Enum):
-    """Which way the axes x, y and z of the world point: east, north, west, south, up, down."""
+    """The directions of the world's axes x, y and z: east, north, west, south, up, down."""
 
     ENU = "enu"
     NWU = "nwu"
@@ -77,7 +77,7 @@ def attitude(acceleration: Vector3, magnetic: Vector3 | None, world: World) -> Q
 
 @dataclass(slots=True)
 class MadgwickFilter:
-    """Goes with the gyroscope, and by steps of one length down the slope of what the others contradict.
+    """Integrates the gyroscope, and corrects by gradient descent towards accelerometer and magnetometer (Madgwick).
 
     Attributes:
         gain: how far down a second, rad/s.
@@ -94,7 +94,7 @@ class MadgwickFilter:
     drift: Vector3 = (0.0, 0.0, 0.0)
 
     def update(self, rates: Vector3, acceleration: Vector3, magnetic: Vector3 | None, seconds: float) -> None:
-        """Go on by some time.
+        """Update the orientation by a measurement.
 
         Args:
             rates: angular velocity, rad/s.
@@ -113,7 +113,7 @@ class MadgwickFilter:
         self.orientation = normalized(*_sum4(self.orientation, change, seconds))
 
     def _slope(self, acceleration: Vector3, magnetic: Vector3 | None) -> Quaternion | None:
-        """The direction in which the error grows; None where there is none, or nothing to compare with."""
+        """The direction in which the error grows; None where it is zero, or there is nothing to compare with."""
         if hypot(*acceleration) < _FREE_FALL:
             return None
         slope = self._slope_of((0.0, 0.0, self.world.up), _unit(acceleration))
@@ -139,7 +139,7 @@ class MadgwickFilter:
 
 @dataclass(slots=True)
 class ComplementaryFilter:
-    """Goes with the gyroscope, and turns a part of the way to what the others say. The world is north, west, up.
+    """Integrates the gyroscope, and corrects by a part of the error. The world is north, west, up.
 
     Attributes:
         gain_acc: which part of the way, for the accelerometer.
@@ -161,7 +161,7 @@ class ComplementaryFilter:
     _last_rates: Vector3 = (0.0, 0.0, 0.0)
 
     def update(self, rates: Vector3, acceleration: Vector3, magnetic: Vector3 | None, seconds: float) -> None:
-        """Go on by some time; see `MadgwickFilter.update`."""
+        """Update the orientation by a measurement; see `MadgwickFilter.update`."""
         if self.do_bias_estimation and self._rests(rates, acceleration):
             self.bias = _sum(self.bias, _sum(rates, self.bias, -1.0), self.bias_alpha)
         self._last_rates = rates
@@ -191,20 +191,20 @@ class ComplementaryFilter:
 
 
 def _trust(length: float) -> float:
-    """How much an acceleration of a length counts: 1 near that of gravity, 0 where it differs by a fifth."""
+    """The weight of an acceleration by its length: 1 near that of gravity, 0 where it differs by a fifth."""
     error = abs(length - GRAVITY) / GRAVITY
     return min(1.0, max(0.0, 2.0 - error / 0.1))
 
 
 def _rotation(turn: Vector3) -> Quaternion:
-    """The rotation about an axis by its length, rad."""
+    """The rotation by a rotation vector, rad."""
     angle = hypot(*turn)
     scale = sin(angle / 2.0) / angle if angle > 0.0 else 0.5
     return turn[0] * scale, turn[1] * scale, turn[2] * scale, cos(angle / 2.0)
 
 
 def _part(rotation: Quaternion, share: float) -> Quaternion:
-    """A part of a rotation about the same axis."""
+    """A fraction of a rotation about the same axis."""
     x, y, z, w = rotation if rotation[3] >= 0.0 else _scaled4(rotation, -1.0)
     sine = hypot(x, y, z)
     if sine == 0.0:

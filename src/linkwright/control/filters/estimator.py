@@ -11,7 +11,7 @@ from linkwright.control.filters.kalman import KalmanFilter, Measurement, Snapsho
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """When an estimator goes on without measurements, and back for late ones.
+    """When an estimator predicts without measurements, and how far it goes back for late ones.
 
     Attributes:
         sensor_timeout_ns: after which time without measurements the state is predicted.
@@ -42,12 +42,12 @@ class Estimator:
         self._states: deque[Snapshot] = deque()
 
     def add(self, measurement: Measurement) -> None:
-        """Take in a measurement; it counts in the next `advance` whose time it does not exceed."""
+        """Add a measurement; it is used in the first `advance` to its time or a later one."""
         self._count += 1  # of two with one stamp the first is used first
         heapq.heappush(self._queue, (measurement.time_ns, self._count, measurement))
 
     def clear(self) -> None:
-        """Forget the measurements that wait and those that were."""
+        """Drop all measurements."""
         self._queue.clear()
         self._past.clear()
         self._states.clear()
@@ -82,7 +82,7 @@ class Estimator:
                     self._states.append(kalman.snapshot())
 
     def _go_back(self, time_ns: int) -> int:
-        """Restore the last state before a time and queue the measurements since then anew; how many those are."""
+        """Restore the last state before a time and queue the measurements since then again; returns their number."""
         oldest = None
         while self._states and self._states[-1].time_ns >= time_ns:
             oldest = self._states.pop()

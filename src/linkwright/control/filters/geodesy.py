@@ -1,4 +1,4 @@
-"""Places on the earth as metres: UTM, and a plane that touches the ellipsoid. Degrees are those of WGS 84.
+"""Geodetic coordinates (degrees, WGS 84) as metres: UTM, and planes tangent to the ellipsoid.
 
 Sources: L. Krüger 1912 for the transverse Mercator projection, with the coefficients of C. Karney, "Transverse Mercator
 with an accuracy of a few nanometers", 2011, to the fourth order, which leaves far less than a millimetre within a zone;
@@ -44,12 +44,12 @@ class Zone(NamedTuple):
 
     @property
     def meridian(self) -> float:
-        """The longitude of its middle, rad."""
+        """The longitude of its central meridian, rad."""
         return radians(6.0 * self.number - 183.0)
 
 
 def zone_of(latitude: float, longitude: float) -> Zone:
-    """The zone of a place in degrees, with the wider ones of Norway and Svalbard."""
+    """The zone of a position in degrees, with the wider ones of Norway and Svalbard."""
     longitude = (longitude + 180.0) % 360.0 - 180.0
     number = floor((longitude + 180.0) / 6.0) + 1
     if 56.0 <= latitude < 64.0 and 3.0 <= longitude < 12.0:
@@ -60,7 +60,7 @@ def zone_of(latitude: float, longitude: float) -> Zone:
 
 
 def utm_of(latitude: float, longitude: float, zone: Zone) -> tuple[float, float]:
-    """Easting and northing in metres of a place in degrees."""
+    """Easting and northing in metres of a position in degrees."""
     tau = tan(radians(latitude))
     sigma = sinh(_ECCENTRICITY * atanh(_ECCENTRICITY * tau / hypot(1.0, tau)))
     conformal = tau * hypot(1.0, sigma) - sigma * hypot(1.0, tau)
@@ -76,7 +76,7 @@ def utm_of(latitude: float, longitude: float, zone: Zone) -> tuple[float, float]
 
 
 def degrees_of_utm(easting: float, northing: float, zone: Zone) -> tuple[float, float]:
-    """Latitude and longitude in degrees of a place in metres; the way back of `utm_of`."""
+    """Latitude and longitude in degrees of a position in metres; the inverse of `utm_of`."""
     north = (northing - (0.0 if zone.northern else _FALSE_NORTHING)) / (_SCALE * _RECTIFYING)
     east = (easting - _FALSE_EASTING) / (_SCALE * _RECTIFYING)
     xi, eta = north, east
@@ -95,13 +95,13 @@ def degrees_of_utm(easting: float, northing: float, zone: Zone) -> tuple[float, 
 
 
 def convergence(latitude: float, longitude: float, zone: Zone) -> float:
-    """By which angle in rad, clockwise, the north of the grid differs from that of a place in degrees."""
+    """The meridian convergence at a position in degrees: the angle in rad, clockwise, from true to grid north."""
     return atan(tan(radians(longitude) - zone.meridian) * sin(radians(latitude)))
 
 
 @dataclass(frozen=True, slots=True)
 class TangentPlane:
-    """A plane that touches the ellipsoid, whose x, y and z point to the east, north and up.
+    """A plane tangent to the ellipsoid, whose x, y and z point to the east, north and up.
 
     Args:
         latitude: of its origin, degrees.
@@ -114,7 +114,7 @@ class TangentPlane:
     altitude: float
 
     def point_of(self, latitude: float, longitude: float, altitude: float) -> Vector3:
-        """A place in degrees and metres above the ellipsoid, as a point in metres."""
+        """A point in metres, for a position in degrees and metres above the ellipsoid."""
         x, y, z = _geocentric(latitude, longitude, altitude)
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         east, north, up = self._axes()

@@ -1,4 +1,4 @@
-"""Kalman filters over the motion of a body: the extended one, and the unscented one.
+"""Kalman filters of the motion of a body: extended and unscented.
 
 Both keep a state (see `motion_model`) with its covariance, predict them over time and correct them by measurements of
 some of the 15 quantities. Sources: T. Moore and D. Stouch 2014 for the extended filter and its default noise; S. Julier
@@ -39,7 +39,7 @@ _ANGLES = (State.ROLL, State.PITCH, State.YAW)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measurement:
-    """What a sensor says of some of the quantities of the state.
+    """A measurement of some of the state's quantities.
 
     Attributes:
         source: which sensor.
@@ -62,7 +62,7 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """How a body follows commanded velocities: for vx vy vz and the rates of roll, pitch and yaw.
+    """The response of a body to commanded velocities: for vx vy vz and the rates of roll, pitch and yaw.
 
     Attributes:
         used: which of the six count.
@@ -81,7 +81,7 @@ class Control:
     deceleration_gains: tuple[float, ...]
 
     def acceleration(self, index: int, velocity: float, commanded: float) -> float:
-        """The acceleration of one of the six by which its velocity goes to the commanded one."""
+        """The acceleration of one of the six towards its commanded velocity."""
         error = commanded - velocity
         goal = commanded if abs(error) <= abs(commanded) + 0.01 else 0.0
         if abs(goal) < abs(velocity):
@@ -104,7 +104,7 @@ class Snapshot:
 
 @dataclass(slots=True, eq=False)
 class Settings:
-    """What a filter is told once.
+    """Settings of a filter.
 
     Attributes:
         noise: covariance that a second adds, shape (15, 15).
@@ -122,7 +122,7 @@ class Settings:
 
 
 class KalmanFilter(ABC):
-    """A state and its covariance, which go from measurement to measurement.
+    """A state and its covariance, predicted from measurement to measurement.
 
     Args:
         settings: see there.
@@ -142,23 +142,23 @@ class KalmanFilter(ABC):
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew: the next measurement is the first."""
+        """Reset: the next measurement is the first."""
         self.state = self.settings.initial_state.copy()
         self.covariance = self.settings.initial_covariance.copy()
         self.initialized = False
         self.command: tuple[Vector, int] = (np.zeros(6), 0)
 
     def snapshot(self) -> Snapshot:
-        """What `restore` takes."""
+        """The state, for `restore`."""
         return Snapshot(self.state.copy(), self.covariance.copy(), self.time_ns, self.initialized, self.command)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Go back to an earlier moment."""
+        """Restore an earlier state."""
         self.state, self.covariance = snapshot.state.copy(), snapshot.covariance.copy()
         self.time_ns, self.initialized, self.command = snapshot.time_ns, snapshot.initialized, snapshot.command
 
     def process(self, measurement: Measurement) -> bool:
-        """Go on to the time of a measurement, unless that has passed, and correct the state by it.
+        """Predict up to the time of a measurement, unless that has passed, and correct the state by it.
 
         The first measurement is taken as it is. Returns whether it was used.
         """
@@ -170,14 +170,14 @@ class KalmanFilter(ABC):
         return self.correct(measurement)
 
     def predict(self, time_ns: int) -> None:
-        """Go on to a time without a measurement."""
+        """Predict up to a time without a measurement."""
         seconds = (time_ns - self.time_ns) / 1e9
         self._follow_commands(time_ns, seconds)
         self._predict(seconds)
         self.time_ns = time_ns
 
     def correct(self, measurement: Measurement) -> bool:
-        """Correct the state by a measurement of now; whether it was near enough to what is expected to be used."""
+        """Correct the state by a measurement of now; whether it passed the Mahalanobis test."""
         used = _used(measurement)
         if not used:
             return False
@@ -235,7 +235,7 @@ class KalmanFilter(ABC):
 
 
 class ExtendedKalmanFilter(KalmanFilter):
-    """A filter that takes the motion for linear near the state."""
+    """A filter that linearises the motion at the state."""
 
     def _predict(self, seconds: float) -> None:
         jacobian, noise = derivatives(self.state, seconds), self._noise_of(seconds)
@@ -244,7 +244,7 @@ class ExtendedKalmanFilter(KalmanFilter):
 
 
 class UnscentedKalmanFilter(KalmanFilter):
-    """A filter that sends points around the state through the motion, and takes their mean and spread.
+    """A filter that propagates sigma points, and takes their mean and covariance.
 
     Args:
         settings: see there.
@@ -282,7 +282,7 @@ class UnscentedKalmanFilter(KalmanFilter):
 
 
 def _square_root(covariance: Matrix) -> Matrix:
-    """A matrix whose product with its transpose is the covariance; the nearest there is, where rounding spoilt it."""
+    """A matrix whose product with its transpose is the covariance; of the nearest valid one, if rounding spoilt it."""
     try:
         root: Matrix = np.asarray(np.linalg.cholesky(covariance), dtype=np.float64)
     except np.linalg.LinAlgError:
@@ -292,7 +292,7 @@ def _square_root(covariance: Matrix) -> Matrix:
 
 
 def _used(measurement: Measurement) -> list[int]:
-    """Which quantities a measurement has: those that count and are numbers."""
+    """Which quantities a measurement has: those that are used and finite."""
     values, covariance = measurement.values, measurement.covariance
     return [
         index

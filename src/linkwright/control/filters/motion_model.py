@@ -1,4 +1,4 @@
-"""How a body in space moves between two measurements: a state of 15 numbers, its prediction and the derivatives of it.
+"""The motion model of a body in space: a state of 15 numbers, its prediction and the Jacobian of it.
 
 The state is position (m) and roll, pitch, yaw (rad) in the world, linear (m/s) and angular velocity (rad/s) and linear
 acceleration (m/s2) in the body. Between measurements acceleration and angular velocity stay as they are. Source: T.
@@ -18,7 +18,7 @@ Matrix = NDArray[np.float64]
 
 
 class State(IntEnum):
-    """Where each quantity stands in the state."""
+    """The indices of quantities in the state."""
 
     X = 0
     Y = 1
@@ -79,7 +79,7 @@ def predicted(state: Vector, seconds: float) -> Vector:
 
 
 def derivatives(state: Vector, seconds: float) -> Matrix:
-    """The derivatives of `predicted` by the state, shape (15, 15)."""
+    """The Jacobian of `predicted` with respect to the state, shape (15, 15)."""
     roll, pitch, yaw = state[ANGLES].tolist()
     turn, angle_rates = rotation(roll, pitch, yaw), _angle_rates(state)
     jacobian = np.eye(SIZE)
@@ -108,13 +108,13 @@ def derivatives(state: Vector, seconds: float) -> Matrix:
 
 
 def _shift(state: Vector, seconds: float) -> Vector:
-    """How far the body moves, in its own axes."""
+    """The displacement of the body, in its own axes."""
     shift: Vector = state[VELOCITY] * seconds + state[ACCELERATION] * (0.5 * seconds * seconds)
     return shift
 
 
 def _angle_rates(state: Vector) -> Matrix:
-    """The matrix that takes angular velocity of the body to the rates of roll, pitch and yaw, shape (3, 3)."""
+    """The matrix that takes the body's angular velocity to the rates of roll, pitch and yaw, shape (3, 3)."""
     roll, pitch = float(state[State.ROLL]), float(state[State.PITCH])
     sr, cr, sp, cp = sin(roll), cos(roll), sin(pitch), cos(pitch)
     return np.array([[1.0, sr * sp / cp, cr * sp / cp], [0.0, cr, -sr], [0.0, sr / cp, cr / cp]])

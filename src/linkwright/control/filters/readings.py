@@ -1,4 +1,4 @@
-"""What poses, twists and accelerations that sensors give mean for the state of a body, wherever the sensor is mounted.
+"""Poses, twists and accelerations of sensors as measurements of a body's state, wherever the sensor is mounted.
 
 Source of the rules: robot_localization. Two are exact here that are approximate there: the orientation of an IMU that
 is mounted turned, and the attitude by which gravity is taken away where the IMU has none.
@@ -58,7 +58,7 @@ class Reading(NamedTuple):
 
 @dataclass(slots=True)
 class PoseReader:
-    """Reads poses of one sensor.
+    """Converts the poses of one sensor.
 
     Args:
         used: which of the 15 values of the state it gives; all but the first six are left out.
@@ -79,7 +79,7 @@ class PoseReader:
         self._first = self._last = None
 
     def read(self, pose: Transform, covariance: Matrix, sensor: Transform, time_ns: int) -> Reading | None:
-        """What a pose tells.
+        """Convert a pose.
 
         Args:
             pose: of the body in the sensor's world.
@@ -97,7 +97,7 @@ class PoseReader:
     def read_orientation(
         self, orientation: Quaternion, covariance: Matrix, mounting: Transform, time_ns: int
     ) -> Reading | None:
-        """What the orientation of an IMU tells.
+        """Convert the orientation of an IMU.
 
         Args:
             orientation: of the IMU in the world.
@@ -149,7 +149,7 @@ class PoseReader:
 def read_twist(
     linear: Vector, angular: Vector, covariance: Matrix, mounting: Transform, rates: Vector, used: Used, *, two_d: bool
 ) -> Reading:
-    """What a twist tells.
+    """Convert a twist.
 
     Args:
         linear: m/s, in the sensor's frame.
@@ -177,7 +177,7 @@ def read_twist(
 def read_acceleration(
     acceleration: Vector, covariance: Matrix, mounting: Transform, used: Used, *, two_d: bool
 ) -> Reading:
-    """What an accelerometer tells.
+    """Convert an acceleration.
 
     Args:
         acceleration: m/s2, in the sensor's frame, without gravity.
@@ -195,7 +195,7 @@ def read_acceleration(
 
 
 def without_gravity(acceleration: Vector, orientation: Quaternion, gravity: float = GRAVITY) -> Vector:
-    """What an accelerometer measures, less what it measures at rest.
+    """Subtract gravity from a measured acceleration.
 
     Args:
         acceleration: m/s2, in the sensor's frame.
@@ -220,7 +220,7 @@ def _finished(reading: Reading, used: Used, two_d: bool) -> Reading:
 
 
 def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
-    """A pose with 0 and no turn for what is no number, and which of the 15 values it still gives."""
+    """A pose with zeros and no rotation for what is not finite, and which of the 15 values it still gives."""
     x, y, z = (each if isfinite(each) else 0.0 for each in pose[:3])
     known = _finite(used, POSITION, np.array(pose[:3]))
     if all(isfinite(each) for each in pose[3:]):
@@ -229,7 +229,7 @@ def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
 
 
 def _finite(used: Used, part: slice, values: Vector) -> Used:
-    """Which values are used, without those that are no numbers."""
+    """Which values are used, without those that are not finite."""
     flags = list(used)
     flags[part] = [bool(each) for each in np.array(used[part]) & np.isfinite(values)]
     return tuple(flags)
@@ -241,7 +241,7 @@ def _numbers(values: Vector) -> Vector:
 
 
 def _turned(used: Used, known: Used, turn: Matrix, part: slice) -> Used:
-    """Which components are known of a vector in our axes when some are known of those used in the sensor's."""
+    """Which components are known in our axes when some are known in the sensor's."""
     lost = tuple(each and not here for each, here in zip(used, known, strict=True))
     return tuple(
         bool(here and not gone)
@@ -250,7 +250,7 @@ def _turned(used: Used, known: Used, turn: Matrix, part: slice) -> Used:
 
 
 def _touched(flags: Used, turn: Matrix, part: slice) -> NDArray[np.bool_]:
-    """Which components in our axes have a share of one of the flagged ones in the sensor's."""
+    """Which components in our axes depend on one of the flagged ones in the sensor's."""
     columns = turn[:, np.array(flags[part], dtype=bool)]
     touched: NDArray[np.bool_] = np.sum(columns * columns, axis=1) >= _LEAST * _LEAST
     return touched

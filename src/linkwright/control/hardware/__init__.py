@@ -1,1 +1,1 @@
-"""Hardware as controllers see it: interfaces, and what a description says of them."""
+"""Hardware as controllers see it: interfaces, and what ``<ros2_control>`` of a description declares."""

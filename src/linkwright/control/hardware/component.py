@@ -1,4 +1,4 @@
-"""What hardware derives from, and which there is.
+"""The base class of hardware, and finding hardware by its type name.
 
 Hardware is found through the entry points ``linkwright.hardware`` by its type name, ``mock_components/GenericSystem``.
 """
@@ -20,7 +20,7 @@ GROUP = "linkwright.hardware"
 
 
 class HardwareError(LinkwrightError):
-    """Why hardware refuses something, or does not work any more; its text is logged.
+    """Raised by hardware that refuses something, or does not work any more; its text is logged.
 
     Args:
         message: what is wrong.
@@ -63,30 +63,30 @@ class Hardware:
         return StateInterface(component.name, interface.name, value)
 
     def on_configure(self) -> None:
-        """Connect to it.
+        """Connect to the hardware.
 
         Raises:
             HardwareError: it cannot be reached.
         """
 
     def on_activate(self) -> None:
-        """Power it.
+        """Power the hardware.
 
         Raises:
             HardwareError: it refuses.
         """
 
     def on_deactivate(self) -> None:
-        """Take the power away."""
+        """Remove power."""
 
     def on_cleanup(self) -> None:
-        """Disconnect from it."""
+        """Disconnect from the hardware."""
 
     def on_error(self) -> None:
-        """Reading or writing failed."""
+        """Handle an error in reading or writing."""
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Commands of other interfaces are to come.
+        """Check a switch to other command interfaces.
 
         Args:
             start: names of command interfaces that controllers are to have, also those of other hardware.
@@ -97,17 +97,17 @@ class Hardware:
         """
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Commands of other interfaces come from now on; see `prepare_switch`."""
+        """Switch to other command interfaces; see `prepare_switch`."""
 
     def read(self, time_ns: int, period_s: float) -> None:
-        """Bring `states` up to date.
+        """Update `states` from the hardware.
 
         Raises:
             HardwareError: it does not answer; its controllers are stopped.
         """
 
     def write(self, time_ns: int, period_s: float) -> None:
-        """Send `commands`; NaN is none.
+        """Send `commands`; NaN stands for none.
 
         Raises:
             HardwareError: it does not take them; its controllers are stopped.
@@ -115,7 +115,7 @@ class Hardware:
 
 
 def hardware_class(plugin: str) -> type[Hardware] | None:
-    """The class of a hardware; None where there is none of that type.
+    """The class of hardware of a type; None where there is none.
 
     Raises:
         LinkwrightError: CTL121 the package that brings it cannot be imported.

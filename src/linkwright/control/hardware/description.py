@@ -1,4 +1,4 @@
-"""What ``<ros2_control>`` of a description says, as data.
+"""``<ros2_control>`` of a description, as data.
 
 Source: hardware_interface's component parser (elements, types, defaults). A joint mimics another as ``<mimic>`` of the
 joint says (Jazzy), or its parameters ``mimic``, ``multiplier`` and ``offset`` (Humble); ``mimic="false"`` forbids it.
@@ -50,7 +50,7 @@ class MimicDescription:
 
 @dataclass(frozen=True, slots=True)
 class ComponentDescription:
-    """A joint, sensor or GPIO of a hardware.
+    """A joint, sensor or GPIO of hardware.
 
     Attributes:
         name: its name.
@@ -96,12 +96,12 @@ class HardwareDescription:
         return (*self.joints, *self.sensors, *self.gpios)
 
     def is_set(self, name: str) -> bool:
-        """Whether a parameter of the hardware is true."""
+        """Whether a parameter of the hardware is ``true``."""
         return self.parameters.get(name, "").strip() in _TRUE
 
 
 def hardware_of(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
-    """The hardware of a robot, and what is wrong with what is written of it.
+    """Read the hardware of a robot, with findings on its elements.
 
     What cannot be used is left out: a hardware without a name or with a type that is none, a joint that the robot does
     not have, a value that is no number.

@@ -1,4 +1,4 @@
-"""What hardware and controllers exchange: numbers with names.
+"""Interfaces of ros2_control: named numbers that hardware and controllers exchange.
 
 Source: hardware_interface of ros2_control (names, units by REP 103, NaN for what is not known yet).
 """
@@ -39,19 +39,19 @@ class Interface:
 
 
 class StateInterface(Interface):
-    """What hardware tells; controllers read it, any number of them."""
+    """A state of hardware; any number of controllers may read it."""
 
     __slots__ = ()
 
 
 class CommandInterface(Interface):
-    """What hardware, or a chained controller, is told. One active controller at a time has it."""
+    """A command to hardware, or to a chained controller. One active controller at a time claims it."""
 
     __slots__ = ()
 
 
 class Interfaces(Enum):
-    """What a controller may ask for in place of names."""
+    """Constants that stand for all, or for no, interfaces."""
 
     ALL = "all"
     """Every interface that there is."""

@@ -1,4 +1,4 @@
-"""Limits of joints that commands are kept within, whichever controller gives them.
+"""Limits of joints, applied to all commands.
 
 Source: joint_limits of ros2_control (``enforce_command_limits`` of the controller manager; which limits hold where).
 Limits are those of ``<limit>`` and ``<safety_controller>`` of the joint, narrowed by ``min`` and ``max`` of its command
@@ -74,7 +74,7 @@ def limits_of(joint: Joint, described: ComponentDescription) -> JointLimits:
 
 
 class JointLimiter:
-    """Keeps the commands of a joint within its limits.
+    """Limits the commands of a joint.
 
     Args:
         name: of the joint.
@@ -105,7 +105,7 @@ class JointLimiter:
         self._before: dict[str, float] = {}
 
     def enforce(self, period_s: float, claimed: Collection[str]) -> list[tuple[str, float, float]]:
-        """Limit what is commanded.
+        """Limit commands in place.
 
         Args:
             period_s: the time since the last call, in seconds.
@@ -131,7 +131,7 @@ class JointLimiter:
         return None if state is None or not isfinite(state.value) else state.value
 
     def _speeds(self, position: float | None) -> tuple[float, float]:
-        """How fast it may go either way where it is: slower and slower behind soft limits."""
+        """The greatest velocities either way at a position: they fall towards soft limits."""
         greatest, safety = self._limits.velocity, self._limits.safety
         if safety is None or position is None or not safety.k_position:
             return -greatest, greatest
@@ -186,7 +186,7 @@ class JointLimiter:
 
 
 class CommandLimits:
-    """Keeps the commands of all joints within their limits, and tells of each interface once that was not.
+    """Limits the commands of all joints, and reports each interface once that had to be limited.
 
     Args:
         limiters: of the joints.
@@ -199,7 +199,7 @@ class CommandLimits:
         self._told: set[tuple[str, str]] = set()
 
     def enforce(self, period_s: float, claimed: Collection[str]) -> None:
-        """Limit what is commanded; see `JointLimiter.enforce`."""
+        """Limit commands in place; see `JointLimiter.enforce`."""
         for limiter in self._limiters:
             for kind, wanted, given in limiter.enforce(period_s, claimed):
                 if (limiter.name, kind) not in self._told:
@@ -217,7 +217,7 @@ class CommandLimits:
 
 
 def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
-    """What is said of an interface, the least and the greatest."""
+    """The limits of an interface from the description, least and greatest."""
     if interface is None:
         return _UNLIMITED
     return (
@@ -227,7 +227,7 @@ def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
 
 
 def _greatest(interface: InterfaceDescription | None) -> float:
-    """What is said of an interface, the greatest either way."""
+    """The limit of an interface's magnitude from the description."""
     lower, upper = _range(interface)
     return min(abs(lower), abs(upper))
 

@@ -27,7 +27,7 @@ _MODES = (POSITION, VELOCITY, ACCELERATION)
 
 
 class _Joint:
-    """A joint: its own state of motion, of which the interfaces show what the description asks for."""
+    """A joint with its own state of motion; interfaces show the part that the description declares."""
 
     def __init__(self, described: ComponentDescription, states: dict[str, StateInterface]) -> None:
         self.described = described
@@ -42,7 +42,7 @@ class _Joint:
 
 
 class GenericSystem(Hardware):
-    """Hardware that does at once what it is told."""
+    """Hardware whose states follow its commands at once."""
 
     def __init__(self, description: HardwareDescription, logger: Logger) -> None:
         super().__init__(description, logger)
@@ -95,7 +95,7 @@ class GenericSystem(Hardware):
                         self.commands.append(command)
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """With dynamics, exactly one of position, velocity and acceleration of a joint."""
+        """Refuse, with dynamics, all but exactly one of position, velocity and acceleration of a joint."""
         if not self._dynamic:
             return
         for name in self._joints:
@@ -112,14 +112,14 @@ class GenericSystem(Hardware):
                 )
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """With dynamics, the joints are moved by those interfaces from now on."""
+        """Move the joints, with dynamics, by those interfaces from now on."""
         for name, joint in self._joints.items():
             for mode in _MODES:
                 if self._dynamic and f"{name}/{mode}" in start:
                     joint.mode = mode
 
     def read(self, time_ns: int, period_s: float) -> None:
-        """Let the states follow."""
+        """Copy commands to states."""
         if self._disabled:
             return
         self._read(period_s)
@@ -155,7 +155,7 @@ class GenericSystem(Hardware):
                 joint.values[EFFORT] = effort
 
     def _move(self, joint: _Joint, period_s: float) -> None:
-        """One step, which integrates what was before it, as ros2_control does."""
+        """Integrate one step, with the values before it, as ros2_control does."""
         values = joint.values
         wanted = _given(joint.commands.get(joint.mode))
         velocity = values[VELOCITY]
@@ -176,5 +176,5 @@ class GenericSystem(Hardware):
 
 
 def _given(command: Interface | None) -> float | None:
-    """A command that has come."""
+    """A command, if one was given."""
     return None if command is None or isnan(command.value) else command.value

@@ -1,4 +1,4 @@
-"""The hardware of a robot together: its interfaces, who has claimed them, and its life.
+"""The hardware of a robot: its interfaces, which controller claims them, and its lifecycle.
 
 Source: the resource manager of ros2_control (rules and texts).
 """
@@ -27,7 +27,7 @@ _DOWN = ("cleanup", "deactivate")
 
 
 def hardware_by_entry_points(description: HardwareDescription, logger: Logger) -> Hardware | None:
-    """Hardware of the type that the description names, of those that are installed."""
+    """Make the hardware of a description by its type name, if one is installed."""
     found = hardware_class(description.plugin)
     return None if found is None else found(description, logger)
 
@@ -57,7 +57,7 @@ class Resources:
     # --- loading ------------------------------------------------------------------------------------------------------
 
     def load(self, descriptions: Sequence[HardwareDescription], make: Maker) -> None:
-        """Make the hardware; what nothing here drives is stood in for by a mock, which is told."""
+        """Load the hardware; unknown types are replaced by a mock, with a warning."""
         for each in descriptions:
             self._logger.info(f"Loading hardware '{each.name}' ")
             try:
@@ -104,7 +104,7 @@ class Resources:
         return [*self._commands, *(each.name for given in self._references.values() for each in given)]
 
     def is_available(self, name: str) -> bool:
-        """Whether an interface can be used: its hardware is configured, or its controller active."""
+        """Whether an interface is available: its hardware is configured, or its controller active."""
         owner = self._owners.get(name)
         return name in self._available if owner is None else owner.state in (INACTIVE, ACTIVE)
 
@@ -147,11 +147,11 @@ class Resources:
         return found
 
     def offer(self, controller: str, references: list[CommandInterface], exported: list[StateInterface]) -> None:
-        """A controller has been configured that others may command and read."""
+        """Add the references and states of a chainable controller."""
         self._references[controller], self._exported[controller] = references, exported
 
     def withdraw(self, controller: str) -> None:
-        """A controller's references are not there any more."""
+        """Remove a controller's references."""
         self.set_available(controller, available=False)
         self._references.pop(controller, None)
         self._exported.pop(controller, None)
@@ -161,14 +161,14 @@ class Resources:
         return [each.name for each in self._references.get(controller, ())]
 
     def set_available(self, controller: str, *, available: bool) -> None:
-        """Whether a controller's references and states can be used."""
+        """Set whether a controller's references and states are available."""
         names = {each.name for each in (*self._references.get(controller, ()), *self._exported.get(controller, ()))}
         self._available = self._available | names if available else self._available - names
 
     # --- its life -----------------------------------------------------------------------------------------------------
 
     def set_state(self, name: str, target: LifecycleState) -> bool:
-        """Lead a hardware to a state; whether it came there."""
+        """Take hardware to a lifecycle state; whether it got there."""
         hardware = self.components[name]
         if hardware.state == FINALIZED:
             return target == FINALIZED
@@ -199,7 +199,7 @@ class Resources:
     # --- its work -----------------------------------------------------------------------------------------------------
 
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> str:
-        """Ask the hardware whether command interfaces may be switched; why not, or nothing."""
+        """Ask the hardware whether command interfaces may be switched; the reason against it, or nothing."""
         for hardware in self.components.values():
             try:
                 hardware.prepare_switch(start, stop)
@@ -218,7 +218,7 @@ class Resources:
                 self._logger.error(f"Component '{hardware.description.name}' could not perform switch: {_told(error)}")  # noqa: TRY400
 
     def read(self, time_ns: int, period_s: float) -> list[Hardware]:
-        """Read all hardware that is configured; what failed, which has been told and is unconfigured now."""
+        """Read all configured hardware; returns the names of what failed, which was logged and unconfigured."""
         failed = []
         for hardware in self.components.values():
             if hardware.state is INACTIVE or hardware.state is ACTIVE:
@@ -232,7 +232,7 @@ class Resources:
         return failed
 
     def write(self, time_ns: int, period_s: float) -> list[Hardware]:
-        """Write to all hardware that is active; what failed, see `read`."""
+        """Write to all active hardware; for what is returned see `read`."""
         failed = []
         for hardware in self.components.values():
             if hardware.state is ACTIVE:

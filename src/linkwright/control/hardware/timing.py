@@ -1,4 +1,4 @@
-"""How long what is done in each cycle takes, and how often it is done: in microseconds, and in Hz.
+"""Statistics of cycles: durations in microseconds, and rates in Hz.
 
 Source: the statistics of ros2_control's controller manager (which, and their names).
 """
@@ -11,7 +11,7 @@ from time import perf_counter_ns
 
 
 class _Measured:
-    """Statistics of a number, since they were begun."""
+    """Statistics of a number since they were reset."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -19,7 +19,7 @@ class _Measured:
         self._least, self._most, self._last = inf, -inf, nan
 
     def add(self, value: float) -> None:
-        """Count a value."""
+        """Add a value."""
         self._count += 1
         before = value - self._mean
         self._mean += before / self._count
@@ -27,7 +27,7 @@ class _Measured:
         self._least, self._most, self._last = min(self._least, value), max(self._most, value), value
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """Its statistics with their names; NaN as long as there are none."""
+        """The statistics with their names; NaN as long as there are none."""
         known = self._count > 0
         yield "average", self._mean if known else nan
         yield "min", self._least if known else nan
@@ -38,14 +38,14 @@ class _Measured:
 
 
 class Timing:
-    """How long something takes that is done in each cycle, and how often it is done."""
+    """Durations and rate of something that is done in each cycle."""
 
     def __init__(self) -> None:
         self._execution, self._periodicity = _Measured(), _Measured()
         self._before_ns = 0
 
     def measure(self, work: Callable[[int, float], object], time_ns: int, period_s: float) -> None:
-        """Do it.
+        """Call a function, and measure it.
 
         Args:
             work: takes the two others.
@@ -62,7 +62,7 @@ class Timing:
             self._execution.add((perf_counter_ns() - began) / 1e3)
 
     def items(self) -> Iterator[tuple[str, float]]:
-        """Its statistics with their names."""
+        """The statistics with their names."""
         for kind, measured in (("execution_time", self._execution), ("periodicity", self._periodicity)):
             for name, value in measured.items():
                 yield f"{kind}/{name}", value

@@ -1,4 +1,4 @@
-"""The exchange of controllers that are updated on the event loop: nothing has to wait there."""
+"""The exchange of controllers that are updated on the event loop, where nothing has to wait."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from linkwright.simulation.exchange import Command, Exchange, Outlet
 
 
 class DirectExchange(Exchange):
-    """Publishes at once, and does at once what is posted."""
+    """Publishes and calls at once."""
 
     def send(self, publisher: Outlet, message: Any) -> None:
         """Publish a message."""
         publisher.publish(message)
 
     def post(self, command: Command) -> None:
-        """Do something."""
+        """Call a function."""
         command()

@@ -56,17 +56,17 @@ class Loaded:
         return bool(self.controller.references or self.controller.exported)
 
     def wanted_commands(self, known: list[str]) -> list[str]:
-        """The names of the command interfaces that it asks for, of those that there are if it is all."""
+        """The names of the command interfaces that it claims; all available ones where it asks for all."""
         wanted = self.controller.command_interfaces()
         return [*known] if isinstance(wanted, Interfaces) else [*wanted]
 
     def wanted_states(self, known: list[str]) -> list[str]:
-        """The names of the state interfaces that it asks for, of those that there are if it is all."""
+        """The names of the state interfaces that it reads; all available ones where it asks for all."""
         wanted = self.controller.state_interfaces()
         return [*known] if isinstance(wanted, Interfaces) else [*wanted]
 
     def take_back_wrong_commands(self) -> str:
-        """Make commands that are no numbers any more the last position, or a velocity or effort of 0.
+        """Replace commands that are not finite by the last position, or by a velocity or effort of 0.
 
         Returns:
             The name of one of them, or nothing.
@@ -90,7 +90,7 @@ class Loaded:
         return wrong
 
     def halt(self) -> None:
-        """Command what it has left to stand still: velocities, accelerations and efforts of 0."""
+        """Command 0 on the velocities, accelerations and efforts that it claimed."""
         for command in self.controller.commands:
             if command.kind != POSITION and isfinite(command.value):
                 command.value = 0.0

@@ -1,4 +1,4 @@
-"""Loads, configures, switches and updates controllers.
+"""The controller manager: loads, configures, switches and updates controllers.
 
 Source: the controller manager of ros2_control (order of what is done, rules, texts).
 """
@@ -32,7 +32,7 @@ _NANOSECONDS = 1_000_000_000
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What a manager had, for another one that takes its place.
+    """The state of a manager, for another one that takes its place.
 
     Attributes:
         parameters: of its node, by name.
@@ -85,7 +85,7 @@ class ControllerManager:
     # --- loading ------------------------------------------------------------------------------------------------------
 
     def load(self, name: str) -> bool:
-        """Load a controller, whose type is the parameter ``NAME.type``; whether it was."""
+        """Load a controller, whose type is the parameter ``NAME.type``; whether that succeeded."""
         logger = self._logger
         if name in self.controllers:
             logger.error(f"A controller named '{name}' was already loaded inside the controller manager")
@@ -132,7 +132,7 @@ class ControllerManager:
         return None
 
     def unload(self, name: str) -> bool:
-        """Forget a controller that is not active; whether it was."""
+        """Unload a controller that is not active; whether that succeeded."""
         loaded = self.controllers.get(name)
         if loaded is None or loaded.is_active:
             why = "it is still active" if loaded is not None else "no controller with this name exists"
@@ -146,7 +146,7 @@ class ControllerManager:
         return True
 
     def reload(self, *, force: bool) -> bool:
-        """Unload all controllers; whether that was done, which active ones prevent unless it is forced."""
+        """Unload all controllers; whether that succeeded: active ones prevent it unless it is forced."""
         active = [each.name for each in self._active]
         if active and not force:
             self._logger.error(
@@ -163,13 +163,13 @@ class ControllerManager:
         return True
 
     def kept(self) -> Kept:
-        """What another manager needs to take its place."""
+        """The state that `resume` takes."""
         parameters = {name: each.value for name, each in self.node.get_parameters_by_prefix("").items()}
         states = tuple((each.name, each.controller.state.label) for each in self.controllers.values())
         return Kept(parameters, states)
 
     def resume(self, kept: Kept) -> None:
-        """Load, configure and activate what another manager had, as far as that can be."""
+        """Load, configure and activate the controllers of another manager, as far as possible."""
         new = [
             Parameter(name, value=value) for name, value in kept.parameters.items() if not self.node.has_parameter(name)
         ]
@@ -183,7 +183,7 @@ class ControllerManager:
             self.switch(active, (), BEST_EFFORT)
 
     def close(self) -> None:
-        """Deactivate what is active, and end."""
+        """Deactivate all controllers, and end."""
         for loaded in reversed(tuple(self._active)):
             self._deactivate(loaded)
         for name in tuple(self.controllers):
@@ -221,7 +221,7 @@ class ControllerManager:
         return True
 
     def cleanup(self, name: str) -> bool:
-        """Lead an inactive controller back to the beginning; whether it is unconfigured then."""
+        """Take an inactive controller back to unconfigured; whether that succeeded."""
         loaded = self.controllers.get(name)
         if loaded is None or not loaded.is_inactive:
             why = "it is not inactive" if loaded is not None else "no controller with this name exists"
@@ -250,7 +250,7 @@ class ControllerManager:
         return done
 
     def _sort(self) -> None:
-        """Order the controllers: who commands another's references, or exports what another reads, comes before it.
+        """Sort the controllers: a user of another's references or exported states comes before that one.
 
         Who does both, as a drive over PID controllers that tell how fast wheels are, comes before it.
         """
@@ -335,7 +335,7 @@ class ControllerManager:
             loaded.controller.chained = chained
 
     def _activate(self, loaded: Loaded) -> str:
-        """Activate a controller; why it is not active then, or nothing."""
+        """Activate a controller; the reason if that failed, or nothing."""
         controller, resources, name = loaded.controller, self.resources, loaded.name
         wanted = loaded.wanted_commands([each for each in resources.command_names if resources.is_available(each)])
         told = next(
@@ -387,7 +387,7 @@ class ControllerManager:
         loaded.controller.commands, loaded.controller.states = [], []
 
     def _call(self, loaded: Loaded, what: str, callback: Callable[[], object]) -> bool:
-        """Call a callback of a controller; whether it succeeded. Why it did not is logged."""
+        """Call a callback of a controller; whether it succeeded. An error is logged."""
         logger = loaded.controller.node.logger
         try:
             callback()
@@ -407,7 +407,7 @@ class ControllerManager:
             loaded.controller.node.logger.error(_traced("Caught exception in callback for on_error", error))  # noqa: TRY400
 
     def set_hardware_state(self, name: str, target: LifecycleState) -> bool:
-        """Lead hardware to a state; whether it came there. What uses it is deactivated before it goes down."""
+        """Take hardware to a lifecycle state; whether it got there. Its controllers are deactivated first."""
         hardware = self.resources.components[name]
         if hardware.state is ACTIVE and target is not ACTIVE:
             self._stop(self._users_of([hardware]))
@@ -461,7 +461,7 @@ class ControllerManager:
         )
 
     def _fail(self, loaded: Loaded, error: Exception) -> None:
-        """A controller has failed in its update: it and who commands it are deactivated, and what it moved stands."""
+        """Deactivate a controller whose update failed, and those that command it; its joints are stopped."""
         told = _traced("Caught exception while updating", error)
         if isinstance(error, ControllerError):
             told = error.diagnostics[0].message
@@ -476,7 +476,7 @@ class ControllerManager:
             self.switch(loaded.fallbacks, (), BEST_EFFORT)
 
     def _commanding(self, loaded: Loaded) -> list[Loaded]:
-        """The active controllers that command the references of one, and so on."""
+        """The active controllers that command the references of one, directly or through others."""
         references = self.resources.references_of(loaded.name)
         owners = dict.fromkeys(self.resources.claims[each] for each in references if each in self.resources.claims)
         found = [self.controllers[each] for each in owners]
@@ -493,7 +493,7 @@ class ControllerManager:
         self.on_change()
 
     def _users_of(self, hardware: Sequence[Hardware]) -> list[Loaded]:
-        """The active controllers that read or command hardware, and who commands those."""
+        """The active controllers that use hardware, and those that command them."""
         names = {each for component in hardware for each in self.resources.names_of(component)}
         found = [
             loaded
@@ -518,11 +518,11 @@ class ControllerManager:
 
 
 def _owners(interfaces: Iterable[str]) -> set[str]:
-    """What interfaces are named after: joints, or controllers."""
+    """The prefixes of interfaces' names: joints, or controllers."""
     return {each.partition("/")[0] for each in interfaces}
 
 
 def _traced(what: str, error: Exception) -> str:
-    """An error with the place where it came up, as those who write controllers need it."""
+    """An error with its place in the code, as authors of controllers need it."""
     frames = traceback.format_exception(type(error), error, error.__traceback__)
     return f"{what}: {type(error).__name__}: {error}\n{''.join(frames).rstrip()}"

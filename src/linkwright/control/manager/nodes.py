@@ -21,7 +21,7 @@ _OF_THE_PROCESS = ("__node", "__name", "__ns")
 
 @dataclass(slots=True)
 class ProcessArguments:
-    """What the process, or the plugin, of the manager was given for all of its nodes.
+    """The arguments of the process, or plugin, that apply to all nodes of its manager.
 
     Attributes:
         parameters: by the names of nodes.
@@ -63,7 +63,7 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
 
 
 def words_of(node: Node, name: str) -> list[str]:
-    """The texts in a parameter, one or a list of them; none where it is not set."""
+    """The strings in a parameter, one or a list of them; none where it is not set."""
     value = node.get_parameter_or(name).value
     if not value:
         return []

@@ -25,7 +25,7 @@ _STATES = {state.state_id: state for state in (UNCONFIGURED, INACTIVE, ACTIVE, F
 
 
 class ManagerServices:
-    """What others ask of a manager, and hear of it.
+    """The services and topics of a manager.
 
     Args:
         manager: the manager.
@@ -58,7 +58,7 @@ class ManagerServices:
         self.publish_activity()
 
     def publish_activity(self) -> None:
-        """Publish which controllers and which hardware are in which state."""
+        """Publish the states of controllers and hardware."""
         message = get_message(f"{_PACKAGE}/msg/ControllerManagerActivity")()
         message.header.stamp = self._manager.node.get_clock().now().to_msg()
         message.controllers = [
@@ -70,7 +70,7 @@ class ManagerServices:
         self._activity.publish(message)
 
     def publish_diagnostics(self) -> None:
-        """Publish whether all is active, and how long it takes, for whom it may concern; each second."""
+        """Publish diagnostics each second: whether all is active, and how long it takes."""
         if self._statistics is not None:
             self._statistics.publish()
         if not self._diagnostics.is_wanted:

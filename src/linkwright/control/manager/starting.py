@@ -1,4 +1,4 @@
-"""What a manager's parameters and the robot's description come to: hardware that is loaded and set going.
+"""Loading hardware by a manager's parameters and the robot's description.
 
 Source: the controller manager of ros2_control, Humble's names and Jazzy's.
 """
@@ -21,7 +21,7 @@ _INITIAL = "hardware_components_initial_state"
 
 
 def load_hardware(manager: ControllerManager, text: str, library: DescriptionLibrary, make: Maker) -> bool:
-    """Load the hardware of a description and lead it to the states that the manager's parameters say.
+    """Load the hardware of a description and take it to the lifecycle states of the manager's parameters.
 
     Args:
         manager: the manager.
@@ -64,7 +64,7 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
 
 
 def _limits_of(robot: Robot, resources: Resources, logger: Logger) -> CommandLimits:
-    """What keeps the commands of the hardware within the limits of the robot's joints."""
+    """A limiter of the hardware's commands, by the limits of the robot's joints."""
     limiters = []
     for hardware in resources.components.values():
         for each in hardware.description.joints:

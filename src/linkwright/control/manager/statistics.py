@@ -1,4 +1,4 @@
-"""How long controllers and hardware take, and how regularly they run: ``~/statistics/...`` of the controller manager.
+"""Durations and rates of controllers and hardware: ``~/statistics/...`` of the controller manager.
 
 Source: controller_manager of ros2_control from Jazzy on (topics, names, units: execution times in microseconds,
 periodicity in Hz). Other than there nothing is measured while nobody listens, so that counting begins within a second
@@ -37,7 +37,7 @@ class StatisticsTopics:
         self._version = 0
 
     def publish(self) -> None:
-        """Publish them, which is to be done each second; without listeners stop measuring."""
+        """Publish the statistics, once a second; without subscriptions measuring is switched off."""
         wanted = self._full.is_wanted or self._values.is_wanted
         timings = dict(self._timings(wanted=wanted))
         if not wanted:
@@ -61,7 +61,7 @@ class StatisticsTopics:
             self._full.publish(full)
 
     def _timings(self, *, wanted: bool) -> Iterator[tuple[str, Timing]]:
-        """Have all be measured, or none; those that are, by the beginnings of their names."""
+        """Switch measuring on or off; the statistics that are on, by the prefixes of their names."""
         for name, loaded in self._manager.controllers.items():
             loaded.timing = (loaded.timing or Timing()) if wanted else None
             if loaded.timing is not None:

@@ -1,4 +1,4 @@
-"""Which controllers a request to switch really switches, and why not.
+"""Planning a switch of controllers: which are activated and deactivated, or why none is.
 
 Source: the controller manager of ros2_control (rules of chains, strictness, texts).
 """
@@ -22,12 +22,12 @@ _MORE = (
 
 
 class SwitchRefusedError(Exception):
-    """Nothing is switched; the text says why."""
+    """A request is refused; the text says why."""
 
 
 @dataclass(slots=True)
 class Switch:
-    """What is switched.
+    """The controllers to be deactivated and activated.
 
     Attributes:
         activate, deactivate: names of controllers, in order.
@@ -41,7 +41,7 @@ class Switch:
 
 
 class SwitchPlanner:
-    """Works out what a request to switch comes to.
+    """Plans a switch.
 
     Args:
         controllers: those that are loaded, by name.
@@ -62,7 +62,7 @@ class SwitchPlanner:
         self._switch = Switch()
 
     def plan(self, activate: Sequence[str], deactivate: Sequence[str]) -> Switch:
-        """What is switched.
+        """Plan a switch.
 
         Raises:
             SwitchRefusedError: something cannot be, and that is to be refused.

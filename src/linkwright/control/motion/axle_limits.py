@@ -1,4 +1,4 @@
-"""Following what a wheel is told, by no more than its motor can, which is the same in both directions.
+"""Limits of steered wheels, the same in both directions: velocity and steering angle, with their derivatives.
 
 Source: the limiters of tricycle_controller. Other than there nothing is brought to move by a least value, and the bound
 of a second difference is not doubled.
@@ -15,7 +15,7 @@ ANY: Bounds = (0.0, inf)
 
 
 class TractionLimiter:
-    """Follows a speed.
+    """Limits a speed and its derivatives.
 
     Args:
         velocity: its magnitude, in rad/s.
@@ -37,11 +37,11 @@ class TractionLimiter:
         self.restart()
 
     def restart(self) -> None:
-        """Stand still."""
+        """Restart at zero."""
         self.speed = self._before = 0.0
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """The speed so many seconds after the last one."""
+        """The limited speed, so many seconds after the last one."""
         speed = self.speed
         wanted = _bent(speed, self._before, wanted, self._jerk, seconds)
         bounds = self._acceleration if abs(wanted) >= abs(speed) else self._deceleration
@@ -51,7 +51,7 @@ class TractionLimiter:
 
 
 class SteeringLimiter:
-    """Follows an angle.
+    """Limits an angle and its derivatives.
 
     Args:
         position: the least and the greatest angle, in rad.
@@ -69,11 +69,11 @@ class SteeringLimiter:
         self.restart()
 
     def restart(self, angle: float = 0.0) -> None:
-        """Stand at an angle."""
+        """Restart at an angle."""
         self.angle = self._before = angle
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """The angle so many seconds after the last one."""
+        """The limited angle, so many seconds after the last one."""
         angle = self.angle
         wanted = _bent(angle, self._before, wanted, self._acceleration, seconds)
         reached = angle + _within(self._velocity, wanted - angle, seconds)
@@ -82,13 +82,13 @@ class SteeringLimiter:
 
 
 def _bent(now: float, before: float, wanted: float, bounds: Bounds, seconds: float) -> float:
-    """What is wanted, with a second difference within bounds."""
+    """A value whose second difference is within bounds."""
     straight = now + now - before
     return straight + _within(bounds, wanted - straight, seconds * seconds)
 
 
 def _within(bounds: Bounds, value: float, factor: float = 1.0) -> float:
-    """A value with a magnitude within bounds; 0 stays 0."""
+    """A value whose magnitude is within bounds; 0 stays 0."""
     if value == 0.0:
         return value
     return copysign(min(max(abs(value), bounds[0] * factor), bounds[1] * factor), value)

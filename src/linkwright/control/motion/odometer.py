@@ -1,4 +1,4 @@
-"""Where a robot is by how its wheels turned."""
+"""Odometry of a robot from its wheels."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _STANDING: Velocity = (0.0, 0.0, 0.0)
 
 
 class Odometer:
-    """Adds up velocities to a place, and smooths them.
+    """Integrates velocities to a pose, and smooths them.
 
     Args:
         window: the mean of so many of the last velocities is told; at least 1.
@@ -30,17 +30,17 @@ class Odometer:
         self.reset()
 
     def reset(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
-        """Stand somewhere, in m and rad."""
+        """Set the pose, in m and rad."""
         self.place = PlanarPose(x, y, yaw)
         self.stand()
 
     def stand(self) -> None:
-        """Forget velocities, and stay at the place."""
+        """Reset the velocities, and keep the pose."""
         self._last.clear()
         self.velocity = _STANDING
 
     def measure(self, velocity: Velocity, seconds: float) -> None:
-        """Go on with a velocity that was measured, for so long."""
+        """Integrate a measured velocity over a duration."""
         self._go(velocity, seconds)
         last = self._last
         last.append(velocity)
@@ -49,7 +49,7 @@ class Odometer:
         self.velocity = forward / count, sideways / count, turning / count
 
     def assume(self, velocity: Velocity, seconds: float) -> None:
-        """Go on with a velocity that was told and not measured: it is told again as it is."""
+        """Integrate a commanded velocity, which is reported without smoothing."""
         self._go(velocity, seconds)
         self.velocity = velocity
 

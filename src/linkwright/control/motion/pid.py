@@ -1,4 +1,4 @@
-"""PID control as control_toolbox of ros2_control does it.
+"""PID control, as control_toolbox of ros2_control does it.
 
 Source: control_toolbox's ``Pid`` of Humble and Jazzy. gz's own, which differs in when it bounds what, is
 `linkwright.simulation.plugins.pid`.
@@ -49,7 +49,7 @@ class PidGains:
 
 
 class Pid:
-    """A command of an error, by its size, its integral and its change.
+    """A PID controller.
 
     Attributes:
         gains: may be replaced at any time.
@@ -61,12 +61,12 @@ class Pid:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the errors before."""
+        """Reset the integral and the last error."""
         self.integral = 0.0
         self._before = 0.0
 
     def command(self, error: float, period_s: float, rate: float | None = None) -> float:
-        """The command for an error: what is wanted less what is there.
+        """The command for an error.
 
         Args:
             error: in any unit.

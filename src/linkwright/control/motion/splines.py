@@ -1,4 +1,4 @@
-"""Segments of trajectories: how joints go from one point to the next.
+"""Segments of trajectories: splines from one point to the next.
 
 Source: joint_trajectory_controller of ros2_controllers. Between positions alone a joint goes straight, with
 velocities along a cubic, and with accelerations as well along a quintic polynomial.
@@ -14,7 +14,7 @@ _Polynomial = tuple[float, float, float, float, float, float]
 
 @dataclass(slots=True)
 class MotionState:
-    """Where joints are, or are to be; each list is empty or as long as there are joints.
+    """Positions, velocities and accelerations of joints; each list is empty or as long as there are joints.
 
     Attributes:
         positions: rad or m.
@@ -27,12 +27,12 @@ class MotionState:
     accelerations: list[float] = field(default_factory=list)
 
     def copy(self) -> MotionState:
-        """Another one with the same numbers."""
+        """A copy with lists of its own."""
         return MotionState(list(self.positions), list(self.velocities), list(self.accelerations))
 
 
 class Segment:
-    """The way between two states.
+    """A spline between two states.
 
     Args:
         start: where it begins, with positions.
@@ -59,7 +59,7 @@ class Segment:
         self._polynomials = polynomials
 
     def at(self, seconds: float) -> MotionState:
-        """The state so many seconds after the beginning; all three lists are full."""
+        """The state at a time in s after the beginning; all three lists are full."""
         positions: list[float] = []
         velocities: list[float] = []
         accelerations: list[float] = []
@@ -72,7 +72,7 @@ class Segment:
 
 
 def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Polynomial:
-    """From a position to another, with the velocities there."""
+    """The cubic between two positions and velocities."""
     way, length = p1 - p0, duration
     return (
         p0,
@@ -85,7 +85,7 @@ def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Poly
 
 
 def _quintic(p0: float, p1: float, v0: float, v1: float, a0: float, a1: float, duration: float) -> _Polynomial:
-    """From a position to another, with the velocities and accelerations there."""
+    """The quintic between two positions, velocities and accelerations."""
     way, length = p1 - p0, duration
     return (
         p0,

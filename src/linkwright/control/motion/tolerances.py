@@ -1,4 +1,4 @@
-"""How far joints may be from where they are to be.
+"""Tolerances of joints on and at the end of trajectories.
 
 Source: joint_trajectory_controller of ros2_controllers, and control_msgs' ``JointTolerance``.
 """
@@ -27,7 +27,7 @@ class StateTolerance:
     acceleration: float = 0.0
 
     def holds(self, position: float, velocity: float, acceleration: float) -> bool:
-        """Whether errors are within it."""
+        """Whether errors are within the tolerance."""
         return (
             not (self.position > 0.0 and abs(position) > self.position)
             and not (self.velocity > 0.0 and abs(velocity) > self.velocity)
@@ -46,7 +46,7 @@ class StateTolerance:
                 yield name, error, limit
 
     def overridden(self, position: float, velocity: float, acceleration: float) -> StateTolerance:
-        """That of a goal: 0 leaves one as it is, -1 erases it.
+        """The tolerance with a goal's values: 0 leaves one as it is, -1 removes it.
 
         Raises:
             ValueError: another negative number.
@@ -60,7 +60,7 @@ class StateTolerance:
 
 @dataclass(frozen=True, slots=True)
 class Tolerances:
-    """Those of a trajectory.
+    """The tolerances of a trajectory.
 
     Attributes:
         path: on the way, of each joint.
@@ -73,16 +73,16 @@ class Tolerances:
     goal_time_s: float = 0.0
 
     def with_path(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """With another one for a joint on the way."""
+        """With another tolerance for a joint on the way."""
         return replace(self, path=(*self.path[:joint], tolerance, *self.path[joint + 1 :]))
 
     def with_goal(self, joint: int, tolerance: StateTolerance) -> Tolerances:
-        """With another one for a joint at the end."""
+        """With another tolerance for a joint at the end."""
         return replace(self, goal=(*self.goal[:joint], tolerance, *self.goal[joint + 1 :]))
 
 
 def resolved(default: float, given: float) -> float:
-    """The tolerance that counts where a goal gives one.
+    """Apply a goal's value to a tolerance.
 
     Raises:
         ValueError: it is negative and not -1.

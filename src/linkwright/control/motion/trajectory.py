@@ -1,4 +1,4 @@
-"""Trajectories in time: which state is due when.
+"""Trajectories sampled in time.
 
 Source: joint_trajectory_controller of ros2_controllers, its ``Trajectory``.
 """
@@ -16,7 +16,7 @@ _SECOND = 1_000_000_000
 
 @dataclass(slots=True)
 class TrajectoryPoint:
-    """A state that is due.
+    """A state at a time.
 
     Attributes:
         time_ns: nanoseconds after the beginning of the trajectory.
@@ -29,7 +29,7 @@ class TrajectoryPoint:
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """What a trajectory says of a moment.
+    """A sample of a trajectory.
 
     Attributes:
         state: the state then.
@@ -45,7 +45,7 @@ class Sample:
 
 
 class Trajectory:
-    """Points, and the ways between them.
+    """Points, and the splines between them.
 
     Args:
         points: at least one, in the order of time.
@@ -60,7 +60,7 @@ class Trajectory:
         self.begun = False
 
     def begin(self, time_ns: int, before: MotionState, wrapped: Sequence[bool] = ()) -> None:
-        """Set off from a state.
+        """Start from a state.
 
         A point without positions gets them, and velocities where these are missing too, by going on evenly from the
         point before.
@@ -94,11 +94,11 @@ class Trajectory:
 
     @property
     def end_ns(self) -> int:
-        """The point in time of the last point; only once it has begun."""
+        """The time of the last point; only after `begin`."""
         return self._starts[-1]
 
     def sample(self, time_ns: int) -> Sample | None:
-        """What is due at a point in time, in nanoseconds; None before it has begun.
+        """The state at a time, in nanoseconds; None before it has begun.
 
         Segment number n leads from ``_starts[n]`` to ``_starts[n + 1]``, and the first one from the state before.
         """
@@ -127,13 +127,13 @@ class Trajectory:
 
 
 def shortest_turn(start: float, end: float) -> float:
-    """The angle in rad from one to another, more than -pi and not more than pi."""
+    """The shortest angle in rad from one to another, more than -pi and not more than pi."""
     turn = (end - start) % tau
     return turn - tau if turn > pi else turn
 
 
 def _deduced(before: MotionState, state: MotionState, seconds: float) -> MotionState:
-    """A state with positions, which follow from its derivatives where there are none."""
+    """A state with positions, integrated from its derivatives where there are none."""
     if state.positions:
         return state
     none = [0.0] * len(before.positions)

@@ -1,1 +1,1 @@
-"""ros2_control in a simulated world: hardware that is a part of it, and the plugin that updates controllers."""
+"""ros2_control in a simulated world: hardware of simulated joints, and the plugin that runs the controllers."""

@@ -1,4 +1,4 @@
-"""Hardware that is a part of a simulated world.
+"""Hardware of simulated joints and sensors.
 
 It stands in for ``gazebo_ros2_control/GazeboSystem``, ``gz_ros2_control/GazeboSimSystem``,
 ``ign_ros2_control/IgnitionSystem``, and for whatever else a description in a simulated world names.
@@ -31,7 +31,7 @@ _KINDS = (POSITION, VELOCITY, EFFORT)
 
 
 class ControlledModel(Protocol):
-    """What hardware needs of the plugin in whose model it is."""
+    """The interface of the plugin that hardware uses."""
 
     simulation: Simulation
     place: PluginPlace
@@ -40,7 +40,7 @@ class ControlledModel(Protocol):
         """The name in the simulation of a joint of its model that moves."""
 
     def random_of(self, name: str) -> np.random.Generator:
-        """Random numbers for a sensor."""
+        """A generator of random numbers for a sensor."""
 
 
 class SimulatedSystem(Hardware):
@@ -97,7 +97,7 @@ class SimulatedSystem(Hardware):
         self._sensors = self._found_sensors(plugin)
 
     def _forget(self, component: str) -> None:
-        """A component is not there: nor are its interfaces."""
+        """Remove a component that the model lacks, and its interfaces."""
         self.states = [each for each in self.states if each.component != component]
         self.commands = [each for each in self.commands if each.component != component]
 
@@ -119,14 +119,14 @@ class SimulatedSystem(Hardware):
         return found
 
     def begin(self) -> None:
-        """The world has begun anew."""
+        """Restart with the world."""
         for joint in self._joints.values():
             mode = joint.mode
             joint.begin()
             joint.set_mode(mode)
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Move the joints by other interfaces."""
+        """Switch the interfaces that command the joints."""
         for name, joint in self._joints.items():
             if f"{name}/{joint.mode}" in stop:
                 joint.set_mode("")
@@ -142,11 +142,11 @@ class SimulatedSystem(Hardware):
             sensor.read()
 
     def write(self, time_ns: int, period_s: float) -> None:
-        """Move the joints."""
+        """Command the joints."""
         for joint in self._joints.values():
             joint.write(period_s)
 
     def push(self, period_s: float) -> None:
-        """Push the joints that PID controllers drive, after each step of the world."""
+        """Apply the forces of PID controllers, after each step of the world."""
         for joint in self._joints.values():
             joint.push(period_s)

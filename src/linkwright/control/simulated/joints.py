@@ -1,4 +1,4 @@
-"""Joints of a simulated world as hardware moves them."""
+"""Simulated joints, as hardware reads and commands them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FASTEST = 1000.0
 
 
 class SimulatedJoint:
-    """A joint that hardware reads and moves.
+    """A simulated joint of hardware.
 
     Positions are held by a constraint, as Gazebo puts joints where they are commanded; velocities by a motor with the
     effort limit of the joint; efforts push, and so do PID controllers.
@@ -71,14 +71,14 @@ class SimulatedJoint:
         self.begin()
 
     def begin(self) -> None:
-        """Be where the description says at the start, and stay there."""
+        """Set the initial position of the description, and hold it."""
         for each in self._described.states:
             if each.name == POSITION and not isnan(each.initial_value):
                 self._simulation.set_joint_position(self._name, each.initial_value)
         self.set_mode("")
 
     def set_mode(self, kind: str) -> None:
-        """Be commanded by the interface of a kind from now on; by none if it is empty."""
+        """Set the kind of the interface that commands it; empty for none."""
         before, self._mode = self._mode, kind
         if before in (VELOCITY, EFFORT) and self._motor is not None:  # else it holds 0, and to say so costs a new model
             self._motor.target = 0.0
@@ -98,7 +98,7 @@ class SimulatedJoint:
         return self._mode
 
     def read(self) -> None:
-        """Bring the states up to date."""
+        """Update the states."""
         position, velocity = self._simulation.joint_state(self._name)
         if self._position is not None:
             self._position.value = position
@@ -109,7 +109,7 @@ class SimulatedJoint:
             self._effort.value = float(joint.qfrc_actuator[0] + joint.qfrc_applied[0])
 
     def write(self, period_s: float) -> None:
-        """Do what is commanded; what is no number leaves it as it is."""
+        """Apply the commands; those that are not finite have no effect."""
         command = self._commands.get(self._mode)
         if command is None:
             if self._motor is not None and not self._holds:
@@ -130,7 +130,7 @@ class SimulatedJoint:
             self._simulation.push_joint(self._name, value)
 
     def push(self, period_s: float) -> None:
-        """Push it towards its command where a PID controller does so, after each step of the world."""
+        """Apply the force of its PID controller, after each step of the world."""
         pid = self._pids.get(self._mode)
         if pid is None:
             return

@@ -1,4 +1,4 @@
-"""Joints that a PID controller of the simulator's hardware pushes to their commands, as gazebo_ros2_control has them.
+"""PID controllers in the simulator's hardware, as gazebo_ros2_control has them.
 
 The command interface is called ``position_pid`` or ``velocity_pid`` in the description, with the gains ``pos_kp``,
 ``vel_ki``, ... among the parameters of its joint; or it has its usual name, and the gains are parameters of the
@@ -29,7 +29,7 @@ _TRUE = ("true", "True", True)
 def pids_of(
     description: HardwareDescription, values: Mapping[str, Any], logger: Logger
 ) -> tuple[HardwareDescription, dict[tuple[str, str], PidGains]]:
-    """The hardware with command interfaces by the names that controllers use, and which of them have a PID controller.
+    """The hardware with command interfaces as controllers name them, and the PID controllers of joints.
 
     Args:
         description: what is written.
@@ -59,7 +59,7 @@ def pids_of(
 def _given(
     joint: ComponentDescription, kind: str, values: Mapping[str, Any], *, is_pid: bool
 ) -> Mapping[str, Any] | None:
-    """What is said of a PID controller, by names without prefix; None where there is none."""
+    """The gains of a PID controller, by names without prefix; None where there are none."""
     start = f"pid_gains.{kind}.{joint.name}."
     found = {name.removeprefix(start): each for name, each in values.items() if name.startswith(start)}
     if found or not is_pid:

@@ -34,7 +34,7 @@ _DEFAULT_RATE = 100
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Of the plugins."""
+    """Parameters of the plugins."""
 
     parameters: tuple[str, ...] = ()
     controller_manager_name: str = "controller_manager"
@@ -96,7 +96,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)
 
     def reset(self) -> None:
-        """Begin anew; controllers stay as active as they are."""
+        """Restart; controllers stay as active as they are."""
         self._last = self.simulation.time
         for each in self._systems:
             each.begin()
@@ -104,14 +104,14 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             loaded.next_ns = 0
 
     def stop(self) -> None:
-        """End the controllers and the manager; with a changed model they begin again."""
+        """Close controllers and manager; with a changed model they are made again."""
         if hasattr(self, "_manager"):
             self.left[self._manager_node.name] = self._manager.kept()
             self._manager.close()
             self._manager_node.close()
 
     def random_of(self, name: str) -> Any:
-        """Random numbers for a sensor; the same for the same seed."""
+        """A generator of random numbers for a sensor; the same for the same seed."""
         return self._environment.random(name)
 
     def _on_description(self, message: Any) -> None:

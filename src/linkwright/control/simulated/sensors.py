@@ -1,4 +1,4 @@
-"""Sensors of a simulated world as hardware reads them: IMUs, and forces in joints.
+"""Simulated sensors, as hardware reads them: IMUs, and forces in joints.
 
 Source: gazebo_ros2_control and gz_ros2_control (which sensors, names of interfaces).
 """
@@ -21,7 +21,7 @@ _TYPES = ("imu", "force_torque")
 
 
 class SimulatedSensor:
-    """A sensor that hardware reads.
+    """A simulated sensor of hardware.
 
     Args:
         measure: gives what it measures, by the names of interfaces.
@@ -33,7 +33,7 @@ class SimulatedSensor:
         self._states = states
 
     def read(self) -> None:
-        """Bring the states up to date."""
+        """Update the states."""
         measured = self._measure()
         for each in self._states:
             each.value = measured.get(each.kind, each.value)
@@ -53,7 +53,7 @@ def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
 def simulated_sensor(
     simulation: Simulation, placed: PlacedSensor, states: Sequence[StateInterface], generator: np.random.Generator
 ) -> SimulatedSensor:
-    """A sensor with the interfaces that show what it measures."""
+    """A sensor with the interfaces that its measurement fills."""
     if placed.sensor.type == "imu":
         return SimulatedSensor(_imu(simulation, placed, generator), states)
     return SimulatedSensor(_forces(simulation, placed, generator), states)

@@ -1,4 +1,4 @@
-"""Filters by the points beside: shadows at edges, and speckles."""
+"""Filters that compare neighbouring points: shadows at edges, and speckles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 @dataclass(slots=True)
 class ScanShadowsFilter(ScanFilter):
-    """``ScanShadowsFilter``: takes away points behind an edge, which the beam half hits and half misses.
+    """``ScanShadowsFilter``: removes points behind an edge, which the beam half hits and half misses.
 
     Where the line through a point and one beside it is nearly along the ray, by less than ``min_angle`` or more than
     ``max_angle`` degrees, the ``neighbors`` of the point that are further away are shadows.
@@ -59,7 +59,7 @@ class ScanShadowsFilter(ScanFilter):
 
 @dataclass(slots=True)
 class SpeckleFilter(ScanFilter):
-    """``LaserScanSpeckleFilter``: takes away points nearer than ``max_range`` that have no others beside them.
+    """``LaserScanSpeckleFilter``: removes points nearer than ``max_range`` without others beside them.
 
     With ``filter_type`` 0 the ranges of ``filter_window`` rays must not differ, with 1 so many of the points around
     must be near.
@@ -113,7 +113,7 @@ class SpeckleFilter(ScanFilter):
 
 
 def _pairs(count: int, shift: int) -> tuple[slice, slice]:
-    """All places in a list of so many that have one so many places on, and those."""
+    """All pairs of indices below a count that differ by a number."""
     if abs(shift) >= count:
         return slice(0, 0), slice(0, 0)
     if shift >= 0:

@@ -1,4 +1,4 @@
-"""Filters by where a scan's points are: angles, sectors, boxes, polygons."""
+"""Filters by the positions of points: angles, sectors, boxes, polygons."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 @dataclass(slots=True)
 class AngularBoundsFilter(ScanFilter):
-    """``LaserScanAngularBoundsFilter``: leaves only the rays between two angles; the scan gets shorter."""
+    """``LaserScanAngularBoundsFilter``: keeps only the rays between two angles; the scan gets shorter."""
 
     lower_angle: float = 0.0
     upper_angle: float = 0.0
@@ -40,7 +40,7 @@ class AngularBoundsFilter(ScanFilter):
 
 @dataclass(slots=True)
 class AngularBoundsInPlaceFilter(ScanFilter):
-    """``LaserScanAngularBoundsFilterInPlace``: takes the rays between two angles away."""
+    """``LaserScanAngularBoundsFilterInPlace``: removes the rays between two angles."""
 
     lower_angle: float = 0.0
     upper_angle: float = 0.0
@@ -52,7 +52,7 @@ class AngularBoundsInPlaceFilter(ScanFilter):
 
 @dataclass(slots=True)
 class SectorFilter(ScanFilter):
-    """``LaserScanSectorFilter``: takes away what is between two angles and two ranges, or all else."""
+    """``LaserScanSectorFilter``: removes what is between two angles and two ranges, or all else."""
 
     angle_min: float = 0.0
     angle_max: float = 0.0
@@ -72,7 +72,7 @@ class SectorFilter(ScanFilter):
 
 @dataclass(slots=True)
 class BoxFilter(ScanFilter):
-    """``LaserScanBoxFilter``: takes away the points in a box of some frame, or, inverted, those outside of it."""
+    """``LaserScanBoxFilter``: removes the points in a box of some frame, or, inverted, those outside of it."""
 
     box_frame: str
     min_x: float
@@ -94,7 +94,7 @@ class BoxFilter(ScanFilter):
 
 @dataclass(slots=True)
 class FootprintFilter(ScanFilter):
-    """``LaserScanFootprintFilter``: takes away the points above a square around the origin of ``base_link``."""
+    """``LaserScanFootprintFilter``: removes the points above a square around the origin of ``base_link``."""
 
     inscribed_radius: float
 
@@ -107,7 +107,7 @@ class FootprintFilter(ScanFilter):
 
 @dataclass(slots=True)
 class PolygonFilter(ScanFilter):
-    """``LaserScanPolygonFilter``: takes away the points above a polygon of some frame, or, inverted, all others."""
+    """``LaserScanPolygonFilter``: removes the points above a polygon of some frame, or, inverted, all others."""
 
     polygon: str
     polygon_frame: str = "base_link"
@@ -133,7 +133,7 @@ class PolygonFilter(ScanFilter):
 
 
 def _beyond(scan: Scan, which: Flags) -> Scan:
-    """The scan with ranges put beyond what counts, and their intensities at 0."""
+    """The scan with some ranges put beyond the greatest, and their intensities at 0."""
     if len(scan.intensities) == len(which):
         scan.intensities[which] = 0.0
     return cleared(scan, which, scan.range_max + 1.0)

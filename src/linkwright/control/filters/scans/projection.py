@@ -1,4 +1,4 @@
-"""Laser scans of depth images and of clouds, and clouds of scans."""
+"""Laser scans from depth images and point clouds, and clouds from scans."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Rays:
-    """The rays of a scan that is to be made: angles in rad, ranges in metres."""
+    """The rays of a scan to be made: angles in rad, ranges in metres."""
 
     angle_min: float
     angle_max: float
@@ -37,7 +37,7 @@ class Pinhole:
 def scan_of_depths(
     depths: NDArray[np.float64], camera: Pinhole, height: int, range_min: float, range_max: float
 ) -> tuple[Floats, Rays]:
-    """What a laser at the place of a camera would measure, of the rows around the centre of a depth image.
+    """A laser scan from the rows around the centre of a depth image.
 
     Args:
         depths: shape (rows, columns), metres along the view; NaN or infinite where there is none.
@@ -79,7 +79,7 @@ def scan_of_depths(
 def scan_of_points(
     points: NDArray[np.float64], rays: Rays, min_height: float, max_height: float, nothing: float
 ) -> Floats:
-    """What a laser would measure of a cloud: the nearest point of each ray.
+    """A laser scan from a point cloud: the nearest point of each ray.
 
     Args:
         points: shape (n, 3), metres in the frame of the laser; those that are not finite are left out.
@@ -107,7 +107,7 @@ def scan_of_points(
 
 
 def points_of_scan(scan: Scan) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """The points of a scan in its frame, and which range each is of.
+    """The points of a scan in its frame, and the index of the range of each.
 
     Returns:
         Arrays of shape (n, 3), metres, and (n,). Ranges that were not measured have no point.

@@ -1,4 +1,4 @@
-"""A laser scan, and what every filter of scans is.
+"""Laser scans, and the base class of their filters.
 
 A filter is a dataclass: its fields are its parameters, those without a default must be given. Those of others are found
 through the entry points ``linkwright.laser_filters``, by the name that parameter files give as ``type``.
@@ -58,11 +58,11 @@ class Scan:
 
     @property
     def measured(self) -> Flags:
-        """Shape (n,): which ranges are within the limits."""
+        """Which ranges are within the limits; shape (n,)."""
         return (self.ranges >= self.range_min) & (self.ranges <= self.range_max)
 
     def points(self, frame: str, lookup: Lookup) -> NDArray[np.float64] | None:
-        """The ends of the rays in a frame, shape (n, 3); None where the frame's place is not known.
+        """The end points of the rays in a frame, shape (n, 3); None where the transform is not known.
 
         Those of ranges that were not measured mean nothing.
         """
@@ -80,11 +80,11 @@ class Scan:
 
 
 class ScanFilter(ABC):
-    """Makes a scan of a scan."""
+    """Filters scans."""
 
     @abstractmethod
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
-        """Change a scan, which is its own, and give it back; None where it is to be dropped."""
+        """Filter a scan, which may be changed in place; None where it is to be dropped."""
 
 
 def cleared(scan: Scan, which: Flags, value: float = float("nan")) -> Scan:

@@ -1,4 +1,4 @@
-"""Filters by the values of a scan: ranges, intensities, places in the list, and those of the scans before."""
+"""Filters by the values of a scan: ranges, intensities, indices, and those of the scans before."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 @dataclass(slots=True)
 class RangeFilter(ScanFilter):
-    """``LaserScanRangeFilter``: replaces what is too near or too far."""
+    """``LaserScanRangeFilter``: replaces ranges that are too small or too large."""
 
     lower_threshold: float = 0.0
     upper_threshold: float = 100000.0
@@ -36,7 +36,7 @@ class RangeFilter(ScanFilter):
 
 @dataclass(slots=True)
 class IntensityFilter(ScanFilter):
-    """``LaserScanIntensityFilter``: takes away what shines too little or too much."""
+    """``LaserScanIntensityFilter``: removes points whose intensity is too small or too large."""
 
     lower_threshold: float = 8000.0
     upper_threshold: float = 100000.0
@@ -58,7 +58,7 @@ class IntensityFilter(ScanFilter):
 
 @dataclass(slots=True)
 class InterpolationFilter(ScanFilter):
-    """``InterpolationFilter``: fills gaps with the mean of the ranges beside them.
+    """``InterpolationFilter``: fills gaps with the mean of the neighbouring ranges.
 
     At an end of the scan the other side counts as just below ``range_max``.
     """
@@ -77,7 +77,7 @@ class InterpolationFilter(ScanFilter):
 
 @dataclass(slots=True)
 class MaskFilter(ScanFilter):
-    """``LaserScanMaskFilter``: takes away the ranges at some places of the list, for each frame others."""
+    """``LaserScanMaskFilter``: removes the ranges at some indices, for each frame others."""
 
     masks: Mapping[str, Any]
 
@@ -109,7 +109,7 @@ class ArrayFilter(ScanFilter):
 
 
 class _Window:
-    """The last lists of numbers, and what is made of them."""
+    """The last lists of numbers, and their median or mean."""
 
     def __init__(self, count: int, *, median: bool) -> None:
         self._median = median
