@@ -1,1 +1,1 @@
-"""Where a robot is, and how it gets elsewhere: arithmetic on grids, poses and scans, without ROS."""
+"""Localization, mapping, planning and path following: arithmetic on grids, poses and scans, without ROS."""

@@ -1,1 +1,1 @@
-"""What a robot does when it is stuck: spin, back up, wait."""
+"""Recovery behaviours, and zones around the robot that limit its velocity."""

@@ -1,4 +1,4 @@
-"""What a robot does when it cannot go on, and what else it can be asked for: turn, drive straight, stand still.
+"""Behaviours of nav2's behavior_server: spin, drive straight, wait, assisted teleoperation.
 
 Source: nav2_behaviors.
 """
@@ -21,7 +21,7 @@ IsFree = Callable[[NDArray[np.float64]], bool]
 
 
 class Outcome(Enum):
-    """How far a behaviour is."""
+    """The state of a behaviour."""
 
     RUNNING = "running"
     DONE = "done"
@@ -31,7 +31,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What a behaviour does in a cycle.
+    """A cycle of a behaviour.
 
     Attributes:
         outcome: whether it goes on.
@@ -69,7 +69,7 @@ class Behavior(ABC):
 
     @abstractmethod
     def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
-        """As `step`, without the time that is allowed."""
+        """As `step`, without the time limit."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,7 +108,7 @@ class Spin(Behavior):
 
 
 class DriveStraight(Behavior):
-    """Drive straight on or back.
+    """Drive straight forward or back.
 
     Args:
         distance: how far, in metres; back where it is negative.
@@ -148,7 +148,7 @@ class Wait(Behavior):
 
 
 def slowed(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> Velocity:
-    """A velocity that somebody asks for, slower the sooner it leads into an obstacle (nav2's assisted teleoperation).
+    """An operator's velocity, slowed down the sooner it leads into an obstacle (nav2's assisted teleoperation).
 
     Args:
         pose: of the robot.
@@ -165,7 +165,7 @@ def slowed(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> V
 
 
 def _ahead(pose: Pose, velocity: Velocity, seconds: float) -> NDArray[np.float64]:
-    """Where a velocity leads, of shape (poses, 3)."""
+    """The poses to which a velocity leads, of shape (poses, 3)."""
     count = max(2, round(seconds / _LOOKS) + 1)
     ahead: NDArray[np.float64] = motions(pose, np.array([velocity]), np.linspace(0.0, seconds, count)[1:])[0]
     return ahead

@@ -1,4 +1,4 @@
-"""Zones around a robot: where points of its sensors are in one, it slows down, keeps to a limit, or stops.
+"""Zones around a robot, as nav2's collision_monitor has them: points in one slow the robot down, limit or stop it.
 
 Source: nav2_collision_monitor (``polygon.cpp``, ``collision_monitor_node.cpp``), Humble and Jazzy.
 """
@@ -22,7 +22,7 @@ Points = NDArray[np.float64]
 
 
 class Action(IntEnum):
-    """What a zone asks for; the numbers are those of nav2_msgs/msg/CollisionMonitorState."""
+    """The kinds of zones; the numbers are those of nav2_msgs/msg/CollisionMonitorState."""
 
     NOTHING = 0
     STOP = 1
@@ -33,7 +33,7 @@ class Action(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A round zone.
+    """A circular zone.
 
     Attributes:
         radius: in metres.
@@ -42,14 +42,14 @@ class Circle:
     radius: float
 
     def holds(self, points: Points) -> NDArray[np.bool_]:
-        """Which points lie in it."""
+        """Which points are inside, of shape (n,)."""
         inside: NDArray[np.bool_] = (points**2).sum(axis=1) < self.radius**2
         return inside
 
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """A zone with corners.
+    """A polygonal zone.
 
     Attributes:
         corners: in the frame of the robot.
@@ -58,7 +58,7 @@ class Outline:
     corners: Footprint
 
     def holds(self, points: Points) -> NDArray[np.bool_]:
-        """Which points lie in it."""
+        """Which points are inside, of shape (n,)."""
         return within_polygon(points, self.corners)
 
 
@@ -67,7 +67,7 @@ Shape = Circle | Outline
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What a zone does.
+    """The rule of a zone: its action and limits.
 
     Attributes:
         action: what it asks for.
@@ -88,7 +88,7 @@ class Rule:
     simulation_time_step: float = 0.1
 
     def allowed(self, shape: Shape, points: Points, velocity: Velocity) -> Velocity | None:
-        """The velocity that the zone lets a robot have that is to have another one; None where it has no say."""
+        """The velocity that the zone allows in place of another one; None where it has nothing against that."""
         if self.action is Action.APPROACH:
             seconds = self._seconds_left(shape, points, velocity)
             return None if seconds is None else _scaled(velocity, seconds / self.time_before_collision)
@@ -107,7 +107,7 @@ class Rule:
         return min(max(min(along, about), 0.0), 1.0)
 
     def _seconds_left(self, shape: Shape, points: Points, velocity: Velocity) -> float | None:
-        """Seconds until the robot would have points in its shape; None if that is longer than it looks ahead."""
+        """Seconds until points would be in its shape; None if that is beyond the look-ahead time."""
         if not len(points):
             return None
         step, x, y, yaw = self.simulation_time_step, 0.0, 0.0, 0.0
@@ -124,7 +124,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class SpeedRange:
-    """The shape that a zone has at some velocities.
+    """The shape of a zone at some velocities.
 
     Attributes:
         shape: the shape.
@@ -151,7 +151,7 @@ class SpeedRange:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What is left of a velocity.
+    """The result of all zones for a velocity.
 
     Attributes:
         velocity: that the robot may have.
@@ -165,7 +165,7 @@ class Verdict:
 
 
 def judged(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, Points]]) -> Verdict:
-    """The velocity that all zones let a robot have: the least of what they say, and nothing after a stop.
+    """Limit a velocity by all zones: the lowest that one of them asks for, and nothing after a stop.
 
     Args:
         velocity: that it is to have.

@@ -1,1 +1,1 @@
-"""Costmaps: what it costs a robot to be in a cell, from a map and from what sensors see."""
+"""Costmaps: the cost for a robot to be in a cell, from maps and sensors, in layers as nav2 has them."""

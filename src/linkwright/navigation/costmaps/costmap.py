@@ -1,4 +1,4 @@
-"""A costmap: a grid of what it costs to be somewhere, and what a robot's place or footprint in it costs.
+"""A costmap: a grid of costs, and the cost of points and footprints in it.
 
 Source: nav2_costmap_2d (the values of costs) and its ``FootprintCollisionChecker``.
 """
@@ -28,7 +28,7 @@ _STEPS_PER_CELL = 2.0
 
 
 class Costmap:
-    """Costs in a grid that lies in a frame, unturned.
+    """Costs in a grid that is axis-aligned in its frame.
 
     Args:
         grid: cells of type uint8, from `FREE` to `UNKNOWN`.
@@ -46,12 +46,12 @@ class Costmap:
         self.grid = grid
 
     def copy(self) -> Costmap:
-        """One that does not change when this does."""
+        """A copy with cells of its own."""
         grid = self.grid
         return Costmap(Grid(cells=grid.cells.copy(), resolution=grid.resolution, x=grid.x, y=grid.y))
 
     def cost_at(self, points: NDArray[np.float64], outside: int = UNKNOWN) -> NDArray[np.uint8]:
-        """What the cells cost in which points lie.
+        """The costs of the cells in which points lie.
 
         Args:
             points: x and y in the frame of the costmap, in metres, of shape (..., 2).
@@ -69,7 +69,7 @@ class Costmap:
         return costs
 
     def footprint_cost(self, poses: NDArray[np.float64] | tuple[float, float, float], footprint: Footprint) -> Any:
-        """The highest cost below the rim of a footprint, for one pose or many.
+        """The highest cost below the outline of a footprint, for one pose or many.
 
         Args:
             poses: x, y (metres) and yaw (radians) in the frame of the costmap, of shape (..., 3).

@@ -1,4 +1,4 @@
-"""The layer that takes away obstacles that are only specks.
+"""The denoise layer: removes obstacles of too few cells.
 
 Source: nav2_costmap_2d ``DenoiseLayer``.
 """
@@ -16,7 +16,7 @@ _ALL_NEIGHBOURS = 8
 
 
 class DenoiseLayer(Layer):
-    """Frees the groups of lethal cells that are too small.
+    """Frees groups of lethal cells that are too small.
 
     Args:
         minimal_group_size: so many cells a group has that stays.
@@ -30,11 +30,11 @@ class DenoiseLayer(Layer):
             self._together[[0, 0, 2, 2], [0, 2, 0, 2]] = False
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """What changed, and as far around it as a small group reaches."""
+        """The window that changed below, padded by the size of a small group."""
         return window.padded(self._least, grid)
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Free small groups; those that the edge of the window cuts are judged by what is around it."""
+        """Free small groups; those that the window cuts are judged with the cells around it."""
         if self._least <= 1:
             return
         around = window.padded(self._least, grid)

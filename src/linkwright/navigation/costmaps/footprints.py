@@ -20,18 +20,18 @@ _LEAST_CORNERS = 3
 
 
 class BadFootprintError(ValueError):
-    """A text that is no footprint; the message says why."""
+    """A text is not a footprint; the message says why."""
 
 
 def circle(radius: float) -> Footprint:
-    """The footprint of a round robot: 16 corners at a distance from its centre, in metres."""
+    """The footprint of a round robot: 16 corners, for a radius in metres."""
     angles = np.arange(_CORNERS_OF_A_CIRCLE) * (2.0 * pi / _CORNERS_OF_A_CIRCLE)
     corners: Footprint = radius * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
     return corners
 
 
 def read_footprint(text: str) -> Footprint:
-    """The footprint that a parameter tells, such as ``[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]``.
+    """Parse the footprint of a parameter, such as ``[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]``.
 
     Raises:
         BadFootprintError: it is no list of three or more points.
@@ -55,7 +55,7 @@ def padded(footprint: Footprint, padding: float) -> Footprint:
 
 
 def radii(footprint: Footprint) -> tuple[float, float]:
-    """The radii of the circles about the robot's origin within a footprint and around it, in metres."""
+    """The radii of the inscribed and the circumscribed circle about the robot's origin, in metres."""
     following = np.roll(footprint, -1, axis=0)
     along = following - footprint
     length = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
@@ -66,7 +66,7 @@ def radii(footprint: Footprint) -> tuple[float, float]:
 
 
 def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
-    """Points along the rim of a footprint, of shape (points, 2), no farther from each other than the spacing."""
+    """Points along the outline of a footprint, of shape (points, 2), at most the spacing apart."""
     parts = []
     for corner, following in zip(footprint, np.roll(footprint, -1, axis=0), strict=True):
         steps = max(1, ceil(hypot(*(following - corner)) / spacing))
@@ -75,7 +75,7 @@ def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
 
 
 def placed(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
-    """The corners of a footprint whose robot stands at a pose, in the frame of the pose."""
+    """The corners of a footprint at a pose of the robot, in the frame of the pose."""
     cosine, sine = np.cos(yaw), np.sin(yaw)
     turned: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
     return turned

@@ -1,4 +1,4 @@
-"""The layer that makes the surroundings of obstacles expensive.
+"""The inflation layer: costs that decay with the distance from obstacles.
 
 Source: nav2_costmap_2d ``InflationLayer``: up to the inscribed radius a cell costs `INSCRIBED`, from there on
 ``252 exp(-cost_scaling_factor (distance - inscribed radius))``, and nothing beyond the inflation radius.
@@ -20,7 +20,7 @@ from linkwright.navigation.grids.grid import Grid
 
 @dataclass(frozen=True, kw_only=True)
 class Inflation:
-    """How costs fall with the distance from obstacles.
+    """The decay of costs with the distance from obstacles.
 
     Attributes:
         inflation_radius: as far as that places cost something, in metres.
@@ -44,7 +44,7 @@ class Inflation:
 
 
 class InflationLayer(Layer):
-    """Costs around what is lethal below it."""
+    """Writes costs around the lethal cells of the layers below."""
 
     def __init__(self, inflation: Inflation) -> None:
         self._inflation = inflation
@@ -52,7 +52,7 @@ class InflationLayer(Layer):
 
     @property
     def inflation(self) -> Inflation:
-        """How costs fall."""
+        """The decay of costs."""
         return self._inflation
 
     @inflation.setter
@@ -60,14 +60,14 @@ class InflationLayer(Layer):
         self._inflation, self._inscribed_radius = inflation, None
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """The surroundings of what changed; all of it when the robot has another size."""
+        """The window that changed below, padded by the inflation radius; everything when the footprint changed."""
         if self._inscribed_radius != moment.inscribed_radius:
             self._inscribed_radius = moment.inscribed_radius
             return Window.of(grid)
         return window.padded(self._reach(grid), grid)
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Costs in the window, of obstacles there and around it."""
+        """Write costs in the window, of obstacles inside and around it."""
         reach = self._reach(grid)
         if not reach:
             return

@@ -1,4 +1,4 @@
-"""What layers of a costmap have in common: they say where they changed, and write what they know there."""
+"""The base classes of layers, which report where they changed, and write their costs there."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class Window:
 
     @classmethod
     def of(cls, grid: Grid) -> Window:
-        """All of a grid."""
+        """The window of a whole grid."""
         return cls(0, 0, grid.rows, grid.columns)
 
     @classmethod
     def around(cls, indices: NDArray[np.int64], grid: Grid) -> Window:
-        """What holds cells, rows and columns of shape (n, 2), as far as it is in the grid."""
+        """The window around cells, rows and columns of shape (n, 2), as far as it is in the grid."""
         if not len(indices):
             return cls()
         (top, left), (bottom, right) = indices.min(axis=0), indices.max(axis=0) + 1
@@ -41,7 +41,7 @@ class Window:
 
     @property
     def is_empty(self) -> bool:
-        """Whether it has no cells."""
+        """Whether it contains no cells."""
         return self.bottom <= self.top or self.right <= self.left
 
     @property
@@ -50,19 +50,19 @@ class Window:
         return slice(self.top, self.bottom), slice(self.left, self.right)
 
     def within(self, grid: Grid) -> Window:
-        """What of it lies in a grid."""
+        """The part that lies in a grid."""
         inside = Window(max(0, self.top), max(0, self.left), min(grid.rows, self.bottom), min(grid.columns, self.right))
         return Window() if inside.is_empty else inside
 
     def padded(self, cells: int, grid: Grid) -> Window:
-        """With so many cells more at each side, as far as they are in the grid; nothing stays nothing."""
+        """The window padded by a number of cells at each side, within the grid; an empty one stays empty."""
         if self.is_empty:
             return self
         larger = Window(self.top - cells, self.left - cells, self.bottom + cells, self.right + cells)
         return larger.within(grid)
 
     def joined(self, other: Window) -> Window:
-        """What holds both."""
+        """The smallest window around both."""
         if self.is_empty or other.is_empty:
             return other if self.is_empty else self
         return Window(
@@ -75,7 +75,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """What layers are told when a costmap is updated.
+    """Time and robot pose of an update.
 
     Attributes:
         x, y: of the robot, in metres, in the frame of the costmap.
@@ -92,7 +92,7 @@ class Moment:
 
 
 class Layer(ABC):
-    """A layer.
+    """The base class of layers.
 
     Attributes:
         enabled: whether it takes part.
@@ -103,11 +103,11 @@ class Layer(ABC):
     is_clearable: bool = False
 
     def match(self, grid: Grid, default: int) -> None:  # noqa: B027  # most keep nothing
-        """The costmap has another size or lies somewhere else now; `default` is what its cells cost without layers."""
+        """Take over a new size or origin of the costmap; `default` is what its cells cost without layers."""
 
     @abstractmethod
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """Take in what is new.
+        """Take in new data, and report where it changes costs.
 
         Args:
             window: what changed in the layers below.
@@ -123,18 +123,18 @@ class Layer(ABC):
         """Write costs into the costmap, into no other cells than those of the window."""
 
     def reset(self) -> None:  # noqa: B027  # most keep nothing
-        """Forget what was seen."""
+        """Reset to the state before any data."""
 
     def clear(self, window: Window, *, outside: bool) -> None:  # noqa: B027  # of those that can be cleared
-        """Forget what was seen in a window, or all the rest."""
+        """Clear the data in a window, or all outside of it."""
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether it has what it needs in order to be believed."""
+        """Whether its data are recent enough."""
         return True
 
 
 class SeenLayer(Layer):
-    """A layer with cells of its own: what was seen, which stays until it is seen to be gone.
+    """A layer with cells of its own, which keep their values until they are cleared.
 
     Attributes:
         seen: costs, as large as the costmap.
@@ -148,19 +148,19 @@ class SeenLayer(Layer):
         self._extra = Window()
 
     def match(self, grid: Grid, default: int) -> None:
-        """Keep what is still in the costmap after it moved."""
+        """Keep the cells that are still in the costmap after it moved."""
         cells = shifted(self.seen.cells, self.seen, grid, default)
         self.seen = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
         self._default = default
         self._extra = Window.of(grid)
 
     def reset(self) -> None:
-        """Forget everything."""
+        """Clear all cells."""
         self.seen.cells[:] = self._default
         self._extra = Window.of(self.seen)
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Nothing is known in a window, or in all the rest."""
+        """Clear the cells in a window, or all others."""
         kept = self.seen.cells[window.cells].copy()
         if outside:
             self.seen.cells[:] = UNKNOWN
@@ -170,7 +170,7 @@ class SeenLayer(Layer):
         self._extra = Window.of(self.seen)
 
     def take_extra(self) -> Window:
-        """What changed otherwise than by seeing, since it was last asked."""
+        """The window that changed other than by observations since the last call."""
         extra, self._extra = self._extra, Window()
         return extra
 
@@ -189,12 +189,12 @@ def shifted(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any
 
 
 def footprint_window(moment: Moment, grid: Grid) -> Window:
-    """The cells around the robot's footprint."""
+    """The window around the robot's footprint."""
     return Window.around(grid.cells_of(moment.footprint), grid)
 
 
 def free_footprint(cells: Costs, moment: Moment, grid: Grid, window: Window) -> None:
-    """Where the robot stands nothing else does."""
+    """Free the cells below the robot's footprint."""
     inside = footprint_window(moment, grid)
     inside = Window(
         max(inside.top, window.top),

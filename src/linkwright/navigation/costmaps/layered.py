@@ -1,4 +1,4 @@
-"""A costmap made of layers, which stays where it is or moves with the robot.
+"""A costmap of several layers, which is static or rolls with the robot.
 
 Source: nav2_costmap_2d ``LayeredCostmap``.
 """
@@ -19,7 +19,7 @@ Pose = tuple[float, float, float]
 
 
 class LayeredCostmap:
-    """Costs of several layers, the first at the bottom.
+    """A costmap computed from layers, the first at the bottom.
 
     Args:
         grid: size and place; the cells are written by the layers.
@@ -57,7 +57,7 @@ class LayeredCostmap:
 
     @property
     def footprint(self) -> Footprint:
-        """Of the robot, with its padding, in the frame of the robot."""
+        """The robot's footprint with its padding, in the frame of the robot."""
         return self._footprint
 
     @footprint.setter
@@ -66,7 +66,7 @@ class LayeredCostmap:
         self.inscribed_radius, self.circumscribed_radius = radii(self._footprint)
 
     def resize(self, grid: Grid) -> None:
-        """Have another size or place; what layers saw stays where it is in both."""
+        """Set another size or origin; layers keep their cells that are in both."""
         cells = np.full((grid.rows, grid.columns), self._default, np.uint8)
         self.costmap = Costmap(Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y))
         for layer in self.layers:
@@ -74,7 +74,7 @@ class LayeredCostmap:
         self._updated = False
 
     def update(self, pose: Pose, time_ns: int) -> bool:
-        """Bring the costs up to date with what the layers know.
+        """Update the costs from the layers.
 
         Args:
             pose: of the robot.
@@ -103,22 +103,22 @@ class LayeredCostmap:
         return True
 
     def touch(self) -> None:
-        """Write everything at the next update."""
+        """Write all cells in the next update."""
         self._updated = False
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether it was updated, and all layers have what they need."""
+        """Whether it was updated, and the data of all layers are recent enough."""
         return self._updated and all(each.is_current(time_ns) for each in self.layers if each.enabled)
 
     def clear_entirely(self) -> None:
-        """Forget all that was seen."""
+        """Clear all layers."""
         self.costmap.grid.cells[:] = self._default
         for layer in self.layers:
             layer.reset()
         self._updated = False
 
     def clear_around(self, pose: Pose, distance: float, *, except_it: bool = False) -> None:
-        """Forget what was seen in a square, or everywhere else.
+        """Clear the layers in a square, or everywhere else.
 
         Args:
             pose: of the middle.
@@ -133,7 +133,7 @@ class LayeredCostmap:
         self._updated = False
 
     def _centre(self, x: float, y: float) -> None:
-        """Move by whole cells, so that a place is in the middle."""
+        """Move the origin by whole cells, so that a place is in the middle."""
         grid = self.costmap.grid
         columns = int((x - grid.columns * grid.resolution / 2.0 - grid.x) / grid.resolution)
         rows = int((y - grid.rows * grid.resolution / 2.0 - grid.y) / grid.resolution)

@@ -1,4 +1,4 @@
-"""What sensors saw, as layers of obstacles want it: points in the frame of the costmap, for as long as they count.
+"""Observations of sensors for obstacle layers: points in the frame of the costmap, kept for some time.
 
 Source: nav2_costmap_2d ``ObservationBuffer``.
 """
@@ -16,7 +16,7 @@ _NANOSECONDS = 1e9
 
 @dataclass(frozen=True, kw_only=True)
 class Source:
-    """How a sensor is listened to; lengths in metres, times in seconds.
+    """Settings of a sensor; lengths in metres, times in seconds.
 
     Attributes:
         marking: whether its points are obstacles.
@@ -45,7 +45,7 @@ class Source:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Observation:
-    """What was seen at once.
+    """A set of points observed at once.
 
     Attributes:
         origin: of the sensor, x, y and z in the frame of the costmap, in metres.
@@ -60,7 +60,7 @@ class Observation:
     time_ns: int
 
     def obstacles(self) -> NDArray[np.float64]:
-        """The points that are near and far enough to be obstacles, of shape (n, 3)."""
+        """The points in the range for marking, of shape (n, 3)."""
         squares = ((self.points - self.origin) ** 2).sum(axis=1)
         counts = (squares < self.source.obstacle_max_range**2) & (squares >= self.source.obstacle_min_range**2)
         near: NDArray[np.float64] = self.points[counts]
@@ -68,7 +68,7 @@ class Observation:
 
 
 class ObservationBuffer:
-    """What one sensor saw lately."""
+    """The recent observations of one sensor."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -76,7 +76,7 @@ class ObservationBuffer:
         self._updated_ns: int | None = None
 
     def take(self, origin: NDArray[np.float64], points: NDArray[np.float64], time_ns: int) -> None:
-        """Something was seen; see `Observation`. Points that are no numbers, or not at a height that counts, go."""
+        """Add an observation; points that are not finite, or outside of the height limits, are dropped."""
         height = points[:, 2]
         counts = np.isfinite(points).all(axis=1)
         counts &= (height >= self.source.min_obstacle_height) & (height <= self.source.max_obstacle_height)
@@ -86,7 +86,7 @@ class ObservationBuffer:
         self._updated_ns = time_ns
 
     def observations(self, time_ns: int) -> list[Observation]:
-        """What counts at a time."""
+        """The observations that are valid at a time."""
         if self.source.observation_persistence:
             oldest = time_ns - round(self.source.observation_persistence * _NANOSECONDS)
             while self._kept and self._kept[0].time_ns < oldest:
@@ -94,7 +94,7 @@ class ObservationBuffer:
         return list(self._kept)
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether it was heard lately enough."""
+        """Whether the sensor published within the expected time."""
         if not self.source.expected_update_rate:
             return True
         return (

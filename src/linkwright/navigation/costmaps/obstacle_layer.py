@@ -1,4 +1,4 @@
-"""The layer of what sensors see: points are obstacles, and on the way to them there is nothing.
+"""The obstacle layer: cells of points are occupied, and those on the rays to them are free.
 
 Source: nav2_costmap_2d ``ObstacleLayer``.
 """
@@ -25,14 +25,14 @@ Cells = NDArray[np.int64]
 
 @dataclass(frozen=True, kw_only=True)
 class Heights:
-    """Which points are obstacles, by their height in metres."""
+    """The range of heights of obstacles, in metres."""
 
     min_obstacle_height: float = 0.0
     max_obstacle_height: float = 2.0
 
 
 class ObstacleLayer(SeenLayer):
-    """Marks and clears.
+    """Marks the cells of points, and clears those on rays.
 
     Args:
         buffers: what sensors see.
@@ -57,16 +57,16 @@ class ObstacleLayer(SeenLayer):
         self._forgotten = False
 
     def reset(self) -> None:
-        """Forget everything; it is not to be believed before it is updated."""
+        """Clear everything; it is not current before its next update."""
         super().reset()
         self._forgotten = True
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether all sensors were heard lately enough."""
+        """Whether all sensors published within the expected time."""
         return not self._forgotten and all(each.is_current(time_ns) for each in self.buffers)
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """What rays and points of the last observations touch."""
+        """The window that rays and points of the new observations touch."""
         self._forgotten = False
         window = window.joined(self.take_extra())
         seen = [(each, buffer.source) for buffer in self.buffers for each in buffer.observations(moment.time_ns)]
@@ -81,7 +81,7 @@ class ObstacleLayer(SeenLayer):
         return window
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Put what was seen on what is below."""
+        """Merge its cells into the costmap."""
         if self._footprint_clearing:
             free_footprint(self.seen.cells, moment, self.seen, window)
         ours, below = self.seen.cells[window.cells], grid.cells[window.cells]
@@ -93,7 +93,7 @@ class ObstacleLayer(SeenLayer):
         below[known] = ours[known]
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
-        """Free the cells on the way to the points; what it touched."""
+        """Free the cells on the rays to the points; the window that they touch."""
         start, ends, _ = ray_ends(observation, grid)
         cells, _ = cells_on_lines(start, ends)
         cells = cells[grid.has(cells) & _far_enough(cells, start, observation, grid)]
@@ -101,7 +101,7 @@ class ObstacleLayer(SeenLayer):
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
-        """Make the cells of points obstacles; what it touched."""
+        """Occupy the cells of points; the window that they touch."""
         cells = grid.cells_of(self.obstacles(observation)[:, :2])
         cells = cells[grid.has(cells)]
         self.seen.cells[cells[:, 0], cells[:, 1]] = LETHAL
@@ -118,7 +118,7 @@ class ObstacleLayer(SeenLayer):
 
 
 def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArray[np.float64]]:
-    """Where rays begin and end that clear.
+    """The ends of the rays that clear.
 
     Returns:
         The cell of the sensor, of shape (2,); those in which rays end that come no farther than they may, each once, of
@@ -141,7 +141,7 @@ def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArra
 
 
 def _far_enough(cells: Cells, start: Cells, observation: Observation, grid: Grid) -> NDArray[np.bool_]:
-    """Which cells of rays are not nearer to the sensor than it clears."""
+    """Which cells of rays are beyond the least distance for clearing."""
     least = observation.source.raytrace_min_range / grid.resolution
     offsets = cells - start
     far: NDArray[np.bool_] = (offsets**2).sum(axis=1) >= least**2

@@ -1,4 +1,4 @@
-"""The layer of sensors that measure one distance over a wide angle, such as sonars: how likely there is something.
+"""The range layer, for sensors with a wide cone such as sonars: probabilities of occupied cells.
 
 Source: nav2_costmap_2d ``RangeSensorLayer``. Different on purpose: only cells within the field of view change.
 """
@@ -31,7 +31,7 @@ _NANOSECONDS = 1e9
 
 @dataclass(frozen=True, kw_only=True)
 class RangeSettings:
-    """What readings mean; names and defaults are nav2's.
+    """Settings of the sensor model; names and defaults are nav2's.
 
     Attributes:
         phi: from about this distance on readings say little, in metres.
@@ -51,7 +51,7 @@ class RangeSettings:
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a sensor measured.
+    """A reading of a sensor.
 
     Attributes:
         x, y: of the sensor in the frame of the costmap, in metres.
@@ -72,7 +72,7 @@ class Reading:
 
 
 class RangeLayer(SeenLayer):
-    """Likelihoods, which readings change: in `seen`, 0 is free for sure and 254 occupied for sure."""
+    """Probabilities that readings update: in `seen`, 0 is surely free and 254 surely occupied."""
 
     def __init__(self, settings: RangeSettings) -> None:
         super().__init__()
@@ -81,39 +81,39 @@ class RangeLayer(SeenLayer):
         self._heard_ns: int | None = None
 
     def take(self, reading: Reading) -> None:
-        """Something was measured."""
+        """Add a reading."""
         self._readings.append(reading)
         self._heard_ns = reading.time_ns
 
     def match(self, grid: Grid, default: int) -> None:
-        """Keep what is still in the costmap after it moved."""
+        """Keep the cells that are still in the costmap after it moved."""
         super().match(grid, _EVEN)
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Nothing is known in a window, or in all the rest."""
+        """Clear the cells in a window, or all others."""
         super().clear(window, outside=outside)
         self.seen.cells[self.seen.cells == UNKNOWN] = _EVEN
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether a sensor was heard lately enough."""
+        """Whether a sensor published within the expected time."""
         most = self.settings.no_readings_timeout
         return not most or (self._heard_ns is not None and (time_ns - self._heard_ns) / _NANOSECONDS <= most)
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """What new readings are about."""
+        """The window that new readings touch."""
         window = window.joined(self.take_extra())
         while self._readings:
             window = window.joined(self._learn(self._readings.popleft(), grid))
         return window
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Obstacles and free cells, where that is likely enough."""
+        """Write occupied and free cells where the probability is beyond a threshold."""
         likely, below = self.seen.cells[window.cells], grid.cells[window.cells]
         below[(likely < self.settings.clear_threshold * _CERTAIN) & (below == UNKNOWN)] = FREE
         below[likely > self.settings.mark_threshold * _CERTAIN] = LETHAL
 
     def _learn(self, reading: Reading, grid: Grid) -> Window:
-        """Change likelihoods by Bayes' rule."""
+        """Update probabilities by Bayes' rule."""
         reach = ceil(_BEYOND * reading.distance / grid.resolution) + 1
         row, column = grid.cells_of(np.array((reading.x, reading.y))).tolist()
         window = Window(row - reach, column - reach, row + reach + 1, column + reach + 1).within(grid)
@@ -142,7 +142,7 @@ class RangeLayer(SeenLayer):
     def _likelihood(
         self, distance: NDArray[np.float64], aside: NDArray[np.float64], reading: Reading, resolution: float
     ) -> NDArray[np.float64]:
-        """How likely a cell is occupied, by a reading alone.
+        """The probability that a cell is occupied, given a reading alone.
 
         Args:
             distance: of cells from the sensor, in metres.

@@ -1,4 +1,4 @@
-"""The layer of a map that somebody made before.
+"""The static layer: a map of an occupancy grid.
 
 Source: nav2_costmap_2d ``StaticLayer``.
 """
@@ -25,7 +25,7 @@ _ROUNDING = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class Interpretation:
-    """How the numbers of an occupancy grid become costs.
+    """The conversion of an occupancy grid's values to costs.
 
     Attributes:
         track_unknown_space: whether cells without knowledge stay so; else they are free.
@@ -50,7 +50,7 @@ class Interpretation:
 
 
 class StaticLayer(Layer):
-    """A map below everything else.
+    """Writes the costs of a map.
 
     Args:
         interpretation: of its numbers.
@@ -79,13 +79,13 @@ class StaticLayer(Layer):
         self._news = True
 
     def take(self, occupancy: Grid) -> None:
-        """There is a new map; cells of type int8, in per cent or -1."""
+        """Set a new map; cells of type int8, in per cent or -1."""
         costs = self.interpretation.table()[occupancy.cells.astype(np.uint8)]
         self.map = Grid(cells=costs, resolution=occupancy.resolution, x=occupancy.x, y=occupancy.y, yaw=occupancy.yaw)
         self._news = True
 
     def take_part(self, top: int, left: int, occupancy: Costs) -> bool:
-        """A part of the map changed; False, and nothing happens, if it is not within the map."""
+        """Update a part of the map; False, without effect, if it is not within the map."""
         rows, columns = occupancy.shape
         known = self.map
         if known is None or min(top, left) < 0 or top + rows > known.rows or left + columns > known.columns:
@@ -95,19 +95,19 @@ class StaticLayer(Layer):
         return True
 
     def match(self, grid: Grid, default: int) -> None:
-        """Everything is to be written again."""
+        """Write everything in the next update."""
         self._news = True
 
     def reset(self) -> None:
-        """Everything is to be written again."""
+        """Write everything in the next update."""
         self._news = True
 
     def is_current(self, time_ns: int) -> bool:
-        """Whether there is a map, and where it is is known."""
+        """Whether there is a map, and its transform is known."""
         return self.map is not None and (self._placed is not None or self._news)
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """All of it when the map is new or lies somewhere else."""
+        """The window of what changed: all of it after a new map or transform."""
         if self.map is None:
             return window
         pose = self._pose()
@@ -121,7 +121,7 @@ class StaticLayer(Layer):
         return Window.of(grid)
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Copy the map, or what of it is in the window."""
+        """Write the map's cells in the window."""
         if self.map is None or self._placed is None:
             return
         part = grid.cells[window.cells]
@@ -131,7 +131,7 @@ class StaticLayer(Layer):
             free_footprint(grid.cells, moment, grid, window)
 
     def _lying_straight(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
-        """Which cells of a window the map has, and its costs; None where cells of both do not lie on each other."""
+        """Which cells of a window the map has, and its costs; None where the two grids' cells are not aligned."""
         known = self.map
         assert known is not None
         if self._placed != _SAME_PLACE or known.yaw or known.resolution != grid.resolution:
@@ -150,7 +150,7 @@ class StaticLayer(Layer):
         return there, known.cells[seen.cells]
 
     def _lying_anyhow(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
-        """As `_lying_straight`, for cells that lie anyhow: what the map has at their middles."""
+        """As `_lying_straight`, for grids that are not aligned: the map's values at the centres of the cells."""
         assert self.map is not None
         assert self._placed is not None
         rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]

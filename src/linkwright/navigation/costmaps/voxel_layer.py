@@ -1,4 +1,4 @@
-"""The layer of obstacles that keeps levels of height apart: what is below a ray is not cleared by it.
+"""The voxel layer: an obstacle layer with levels of height, so that a ray clears only the levels that it crosses.
 
 Source: nav2_costmap_2d ``VoxelLayer``.
 """
@@ -29,7 +29,7 @@ Levels = NDArray[np.uint16]
 
 @dataclass(frozen=True, kw_only=True)
 class Voxels:
-    """How a column of cells is divided.
+    """The levels of height in a column of cells.
 
     Attributes:
         origin_z: where the lowest level begins, in metres.
@@ -47,7 +47,7 @@ class Voxels:
 
 
 class VoxelLayer(ObstacleLayer):
-    """Marks and clears by levels; see `ObstacleLayer`."""
+    """Marks and clears voxels; see `ObstacleLayer`."""
 
     def __init__(
         self,
@@ -65,19 +65,19 @@ class VoxelLayer(ObstacleLayer):
         self._unknown: Levels = np.zeros((0, 0), np.uint16)
 
     def match(self, grid: Grid, default: int) -> None:
-        """Keep what is still in the costmap after it moved."""
+        """Keep the cells that are still in the costmap after it moved."""
         self._occupied = shifted(self._occupied, self.seen, grid, 0)
         self._unknown = shifted(self._unknown, self.seen, grid, _ALL)
         super().match(grid, default)
 
     def reset(self) -> None:
-        """Forget everything."""
+        """Clear everything."""
         super().reset()
         self._occupied[:] = 0
         self._unknown[:] = _ALL
 
     def clear(self, window: Window, *, outside: bool) -> None:
-        """Nothing is known in a window, or in all the rest."""
+        """Clear the cells in a window, or all others."""
         gone = np.zeros(self._unknown.shape, np.bool_)
         gone[window.cells] = True
         gone ^= outside
@@ -85,7 +85,7 @@ class VoxelLayer(ObstacleLayer):
         super().clear(window, outside=outside)
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
-        """Free the levels on the way to the points; what it touched."""
+        """Free the voxels on the rays to the points; the window that they touch."""
         start, ends, heights = ray_ends(observation, grid)
         cells, ray = cells_on_lines(start, ends)
         steps = np.bincount(ray, minlength=len(ends))
@@ -102,7 +102,7 @@ class VoxelLayer(ObstacleLayer):
         return Window.around(cells, grid)
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
-        """Occupy the levels of points; what it touched."""
+        """Occupy the voxels of points; the window that they touch."""
         points = self.obstacles(observation)
         cells = grid.cells_of(points[:, :2])
         levels, counts = self._levels(points[:, 2])
@@ -114,13 +114,13 @@ class VoxelLayer(ObstacleLayer):
         return Window.around(cells, grid)
 
     def _levels(self, heights: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """The levels of heights, and which of them there are."""
+        """The level of each height, and which heights are within them."""
         levels = np.floor((heights - self._voxels.origin_z) / self._voxels.z_resolution).astype(np.int64)
         there = (levels >= 0) & (levels < self._voxels.z_voxels)
         return np.where(there, levels, 0), there
 
     def _judge(self, cells: Cells) -> None:
-        """Costs of columns, of what is known of their levels."""
+        """The costs of columns, from the counts of their marked and unknown voxels."""
         rows, columns = cells[:, 0], cells[:, 1]
         occupied, unknown = _BITS[self._occupied[rows, columns]], _BITS[self._unknown[rows, columns]]
         known = np.where(unknown > self._unknown_threshold, UNKNOWN, FREE)

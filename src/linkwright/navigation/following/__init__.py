@@ -1,1 +1,1 @@
-"""Velocities that keep a robot on its path."""
+"""Controllers that follow paths, and the checkers of goal and progress."""

@@ -1,4 +1,4 @@
-"""Whether a robot has reached its goal, and whether it gets on.
+"""Checkers of the goal and of progress, as nav2's controller_server has them.
 
 Source: nav2_controller's goal checkers and progress checkers, with their parameters.
 """
@@ -13,7 +13,7 @@ from linkwright.navigation.following.follower import Pose, Velocity, wrapped
 
 
 class GoalChecker(ABC):
-    """Says when a goal is reached."""
+    """Decides whether a goal is reached."""
 
     xy_tolerance: float = 0.25
     """In metres."""
@@ -23,7 +23,7 @@ class GoalChecker(ABC):
         """Whether the goal is reached; all in one frame."""
 
     def begin(self) -> None:  # noqa: B027 - not all keep something
-        """There is another goal."""
+        """Reset for another goal."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +44,7 @@ class SimpleGoalChecker(GoalChecker):
         self._is_there = False
 
     def begin(self) -> None:
-        """There is another goal."""
+        """Reset for another goal."""
         self._is_there = False
 
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
@@ -65,7 +65,7 @@ class StoppedGoalParameters(SimpleGoalParameters):
 
 
 class StoppedGoalChecker(SimpleGoalChecker):
-    """As `SimpleGoalChecker`, and the robot stands still."""
+    """As `SimpleGoalChecker`, and the robot must stand still."""
 
     def __init__(self, parameters: StoppedGoalParameters | None = None) -> None:
         self._still = parameters or StoppedGoalParameters()
@@ -90,13 +90,13 @@ class ProgressParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class PoseProgressParameters(ProgressParameters):
-    """Parameters of nav2's PoseProgressChecker: turning is getting on, too; radians."""
+    """Parameters of nav2's PoseProgressChecker: rotation counts as progress, too; radians."""
 
     required_movement_angle: float = 0.5
 
 
 class ProgressChecker:
-    """Says when a robot does not get on: it must come so far, or turn so much, within a time."""
+    """Detects that a robot makes no progress: it must move so far, or turn so much, within a time."""
 
     def __init__(self, parameters: ProgressParameters | None = None) -> None:
         self._told = parameters or ProgressParameters()
@@ -104,11 +104,11 @@ class ProgressChecker:
         self._since_ns = 0
 
     def begin(self) -> None:
-        """There is another goal."""
+        """Reset for another goal."""
         self._from = None
 
     def gets_on(self, pose: Pose, time_ns: int) -> bool:
-        """Whether the robot has moved lately."""
+        """Whether the robot made progress within the time."""
         if self._from is None or self._has_moved(self._from, pose):
             self._from, self._since_ns = pose, time_ns
             return True

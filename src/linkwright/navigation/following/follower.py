@@ -1,4 +1,4 @@
-"""What all that follow a path have in common: what they are told in each cycle, and what they answer."""
+"""The base class of path followers, their input in each cycle, and geometry that they share."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Pose = tuple[float, float, float]
 
 
 class Velocity(NamedTuple):
-    """How a robot is to move, in its own frame.
+    """A planar velocity of the robot, in its own frame.
 
     Attributes:
         x: forward, in m/s.
@@ -36,7 +36,7 @@ STILL: Final = Velocity()
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Situation:
-    """What is known at the beginning of a cycle; all in the frame of the costmap.
+    """The input of a cycle; all in the frame of the costmap.
 
     Attributes:
         pose: of the robot.
@@ -58,14 +58,14 @@ class Situation:
 
 
 class FollowingError(Exception):
-    """There is no velocity that can be driven; the message says why."""
+    """No valid velocity exists; the message says why."""
 
 
 class Follower(ABC):
     """Finds velocities that drive a robot along a path."""
 
     def begin(self) -> None:  # noqa: B027 - most keep nothing from the path before
-        """Another path is to be followed."""
+        """Reset for another path."""
 
     @abstractmethod
     def velocity(self, situation: Situation) -> Velocity:
@@ -77,7 +77,7 @@ class Follower(ABC):
 
     @abstractmethod
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
-        """Drive no faster; 0 lifts the limit.
+        """Limit the speed; 0 removes the limit.
 
         Args:
             speed: in m/s, or in per cent of the highest.
@@ -86,7 +86,7 @@ class Follower(ABC):
 
 
 def limited(highest: float, speed: float, *, is_percentage: bool) -> float:
-    """The highest speed under a limit; see `Follower.limit_speed`."""
+    """The greatest speed under a limit; see `Follower.limit_speed`."""
     if not speed > 0.0:
         return highest
     return highest * min(speed, 100.0) / 100.0 if is_percentage else min(highest, speed)
@@ -98,7 +98,7 @@ def wrapped(angle: float) -> float:
 
 
 def in_frame_of(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points, of shape (..., 2), as the robot at a pose sees them: x forward, y to the left."""
+    """Points, of shape (..., 2), in the frame of a robot at a pose: x forward, y to the left."""
     x, y, yaw = pose
     cosine, sine = np.cos(yaw), np.sin(yaw)
     dx, dy = points[..., 0] - x, points[..., 1] - y
@@ -107,14 +107,14 @@ def in_frame_of(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def lengths_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far each pose of a path is from its beginning, along it, in metres; of shape (poses,)."""
+    """The distance along a path of each pose from its beginning, in metres; of shape (poses,)."""
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
     lengths: NDArray[np.float64] = np.concatenate(([0.0], np.cumsum(steps)))
     return lengths
 
 
 def motions(pose: Pose, velocities: NDArray[np.float64], times: NDArray[Any]) -> NDArray[np.float64]:
-    """Where a robot is that keeps a velocity: exactly, on circles.
+    """The poses of a robot with a constant velocity: exactly, on circles.
 
     Args:
         pose: at the beginning.

@@ -1,4 +1,4 @@
-"""Regulated pure pursuit: drive along the arc that leads to a point of the path ahead, slower where that is wise.
+"""Regulated pure pursuit: follow an arc to a point of the path ahead, slower in curves and near obstacles.
 
 Source: Macenski et al., "Regulated Pure Pursuit for Robot Path Tracking" (2023), and the parameters of
 nav2_regulated_pure_pursuit_controller.
@@ -59,14 +59,14 @@ class PurePursuitParameters:
 
 
 class RegulatedPurePursuit(Follower):
-    """Follows paths by pure pursuit."""
+    """Follows paths by regulated pure pursuit."""
 
     def __init__(self, parameters: PurePursuitParameters | None = None) -> None:
         self.parameters = parameters or PurePursuitParameters()
         self._top = self.parameters.desired_linear_vel
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
-        """Drive no faster; see `Follower.limit_speed`."""
+        """Limit the speed; see `Follower.limit_speed`."""
         self._top = limited(self.parameters.desired_linear_vel, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
@@ -115,7 +115,7 @@ class RegulatedPurePursuit(Follower):
         )
 
     def _speed(self, curvature: float, seen: NDArray[np.float64], situation: Situation) -> float:
-        """How fast to drive, in m/s."""
+        """The speed, in m/s."""
         told = self.parameters
         speed = self._top
         if told.use_regulated_linear_velocity_scaling:
@@ -130,7 +130,7 @@ class RegulatedPurePursuit(Follower):
         return speed
 
     def _speed_near_obstacles(self, pose: Pose, costmap: Costmap, footprint: Footprint) -> float:
-        """Slower within `cost_scaling_dist` of an obstacle; its distance follows from the inflated cost."""
+        """The speed within `cost_scaling_dist` of an obstacle, whose distance follows from the inflated cost."""
         told = self.parameters
         cost = int(costmap.cost_at(np.array(pose[:2])))
         if cost in (FREE, UNKNOWN):
@@ -142,7 +142,7 @@ class RegulatedPurePursuit(Follower):
         return self._top * told.cost_scaling_gain * distance / told.cost_scaling_dist
 
     def _check(self, command: Velocity, carrot_distance: float, situation: Situation) -> None:
-        """Refuse to drive where the footprint meets an obstacle within the time that is allowed, before the carrot."""
+        """Raise where the footprint meets an obstacle within the look-ahead time, before the carrot."""
         limit = self.parameters.max_allowed_time_to_collision_up_to_carrot
         if abs(command.x) > 0.0:
             limit = min(limit, carrot_distance / abs(command.x))
@@ -151,7 +151,7 @@ class RegulatedPurePursuit(Follower):
 
 
 def carrot_on(seen: NDArray[np.float64], lookahead: float) -> NDArray[np.float64]:
-    """The point of a path at a distance from the robot, between two of its points; its end where that is closer.
+    """The point of a path at a distance from the robot, interpolated; the end of the path where that is closer.
 
     Args:
         seen: the points in the robot's frame, of shape (points, 2), in metres.
@@ -178,13 +178,13 @@ def curvature_to(point: NDArray[np.float64]) -> float:
 
 
 def speed_in_curve(speed: float, curvature: float, least_radius: float) -> float:
-    """The speed in a curve: less in proportion where its radius is below the least, in metres."""
+    """The speed in a curve, reduced in proportion where its radius is below the least, in metres."""
     radius = 1.0 / abs(curvature) if curvature else np.inf
     return speed * min(1.0, float(radius) / least_radius) if least_radius > 0.0 else speed
 
 
 def turning_speed(angle: float, now: float, period: float, highest: float, acceleration: float) -> float:
-    """How fast to turn by an angle so that the turn can end there, in rad/s.
+    """The angular velocity in rad/s for a rotation by an angle, from which it can be stopped there.
 
     Args:
         angle: what is left, in radians.
@@ -201,7 +201,7 @@ def turning_speed(angle: float, now: float, period: float, highest: float, accel
 
 
 def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
-    """Whether the footprint touches no obstacle for a time in which the robot keeps a velocity."""
+    """Whether the footprint stays free of obstacles for a time at a constant velocity."""
     _, circumscribed = radii(situation.footprint)
     fastest = hypot(command.x, command.y) + abs(command.yaw) * circumscribed
     if fastest <= 0.0:
@@ -214,7 +214,7 @@ def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
 
 
 def _distance_to_cusp(seen: NDArray[np.float64]) -> int:
-    """The index of the first point at which the path turns back, or that of its end."""
+    """The index of the first point at which the path reverses, or that of its end."""
     steps = np.diff(seen, axis=0)
     back = np.flatnonzero((steps[:-1] * steps[1:]).sum(axis=1) < 0.0)
     return int(back[0]) + 1 if len(back) else len(seen) - 1

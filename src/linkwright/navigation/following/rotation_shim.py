@@ -1,4 +1,4 @@
-"""Turns a robot on the spot towards a new path before another follower drives along it.
+"""Rotation shim: turns the robot on the spot towards a new path before another follower takes over.
 
 Source: nav2_rotation_shim_controller, with its parameters.
 """
@@ -34,7 +34,7 @@ class RotationShimParameters:
 
 
 class RotationShim(Follower):
-    """Turns first, then lets another follower drive.
+    """Rotates first, then lets another follower drive.
 
     Args:
         primary: the other one.
@@ -48,12 +48,12 @@ class RotationShim(Follower):
         self._turns = False
 
     def begin(self) -> None:
-        """Another path is to be followed."""
+        """Reset for another path."""
         self._is_new = True
         self._primary.begin()
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
-        """Drive no faster; see `Follower.limit_speed`."""
+        """Limit the speed; see `Follower.limit_speed`."""
         self._primary.limit_speed(speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:

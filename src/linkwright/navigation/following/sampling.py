@@ -1,4 +1,4 @@
-"""Follows paths by trying velocities: what each leads to is simulated, and the best is driven.
+"""Follows paths by sampling velocities: each is simulated for some time, and the best is driven.
 
 It stands for both of nav2's sampling controllers, DWB and MPPI: limits and times have the names of either; how the
 tried motions are judged is our own.
@@ -33,7 +33,7 @@ _LEAST, _MOST, _CHANGE = Velocity(0.0, 0.0, -1.0), Velocity(0.26, 0.0, 1.0), Vel
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What a robot can do; m/s, rad/s, m/s^2, rad/s^2.
+    """Limits of velocity and acceleration; m/s, rad/s, m/s^2, rad/s^2.
 
     Attributes:
         least: velocities along x, along y and about z, at the least.
@@ -50,7 +50,7 @@ class Limits:
 
 @dataclass(frozen=True, kw_only=True)
 class SamplingParameters:
-    """How velocities are tried.
+    """Settings of the sampling.
 
     Attributes:
         limits: of the robot.
@@ -80,7 +80,7 @@ _LOOK_AHEAD = 0.35
 
 
 class SamplingFollower(Follower):
-    """Follows paths by trying velocities."""
+    """Follows paths by sampling velocities."""
 
     def __init__(self, parameters: SamplingParameters | None = None) -> None:
         self.parameters = parameters or SamplingParameters()
@@ -88,11 +88,11 @@ class SamplingFollower(Follower):
         self._turns = False
 
     def begin(self) -> None:
-        """Another path is to be followed."""
+        """Reset for another path."""
         self._turns = False
 
     def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
-        """Drive no faster; see `Follower.limit_speed`."""
+        """Limit the speed; see `Follower.limit_speed`."""
         self._top = limited(self.parameters.limits.most.x, speed, is_percentage=is_percentage)
 
     def velocity(self, situation: Situation) -> Velocity:
@@ -113,7 +113,7 @@ class SamplingFollower(Follower):
         return atan2(float(seen[index, 1]), float(seen[index, 0]))
 
     def _checked_turn(self, angle: float, situation: Situation) -> Velocity:
-        """Turn on the spot and come to rest at an angle."""
+        """Rotate on the spot and come to rest at an angle."""
         limits, now = self.parameters.limits, situation.velocity
         wanted = Velocity(
             _braked(now.x, limits.deceleration.x, situation.period),
@@ -127,7 +127,7 @@ class SamplingFollower(Follower):
         return wanted
 
     def _best(self, situation: Situation) -> Velocity:
-        """The best of the velocities that lead into no obstacle; footprints are looked at from the best one on."""
+        """The best collision-free velocity; footprints are checked from the best one on."""
         told = self.parameters
         candidates = self._candidates(situation)
         ways = motions(situation.pose, candidates, np.linspace(0.0, told.seconds, told.steps + 1)[1:])
@@ -143,7 +143,7 @@ class SamplingFollower(Follower):
         raise FollowingError("every velocity that was tried leads into an obstacle")
 
     def _candidates(self, situation: Situation) -> NDArray[np.float64]:
-        """Velocities that can be had within the time that is simulated, of shape (candidates, 3)."""
+        """Velocities that can be reached within the simulated time, of shape (candidates, 3)."""
         told, limits = self.parameters, self.parameters.limits
         highest = (min(limits.most.x, self._top), limits.most.y, limits.most.yaw)
         axes = []
@@ -157,7 +157,7 @@ class SamplingFollower(Follower):
         return candidates
 
     def _reachable(self, wanted: Velocity, situation: Situation) -> Velocity:
-        """The velocity of the next cycle on the way to another one; all axes get as far of it."""
+        """The velocity of the next cycle towards another one; all axes cover the same part of the way."""
         limits, now, period = self.parameters.limits, situation.velocity, situation.period
         share = 1.0
         for before, after, faster, slower in zip(now, wanted, limits.acceleration, limits.deceleration, strict=True):
@@ -169,7 +169,7 @@ class SamplingFollower(Follower):
     def _judged(
         self, ways: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
     ) -> NDArray[np.float64]:
-        """What motions cost, in metres of the way, of shape (motions,)."""
+        """The costs of motions, in metres of the path, of shape (motions,)."""
         told = self.parameters
         path = situation.path
         lengths = lengths_along(path)
@@ -193,7 +193,7 @@ class SamplingFollower(Follower):
 
 
 def _braked(speed: float, deceleration: float, period: float) -> float:
-    """A speed after a cycle of braking."""
+    """The speed after a cycle of braking."""
     return float(np.sign(speed)) * max(0.0, abs(speed) - deceleration * period)
 
 

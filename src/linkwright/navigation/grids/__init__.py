@@ -1,1 +1,1 @@
-"""Occupancy grids: planes of square cells."""
+"""Occupancy grids: planes of square cells in a frame."""

@@ -1,4 +1,4 @@
-"""Distance fields: how far each cell is from the nearest one of some kind."""
+"""Distance fields: the distance of each cell from the nearest marked one."""
 
 from __future__ import annotations
 

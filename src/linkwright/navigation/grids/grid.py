@@ -1,4 +1,4 @@
-"""A grid of square cells that lies in a frame."""
+"""A grid of square cells in a frame."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ UNKNOWN: Final = -1
 
 @dataclass(eq=False, kw_only=True)
 class Grid:
-    """Square cells in rows, and where they lie.
+    """A grid of square cells, and its pose in a frame.
 
     Args:
         cells: their values, of shape (rows, columns): ``cells[row, column]``, rows along y. In messages, files and
@@ -36,16 +36,16 @@ class Grid:
 
     @property
     def rows(self) -> int:
-        """How many there are."""
+        """The number of rows."""
         return int(self.cells.shape[0])
 
     @property
     def columns(self) -> int:
-        """How many there are."""
+        """The number of columns."""
         return int(self.cells.shape[1])
 
     def cells_of(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The cells in which points lie, which may be outside of the grid.
+        """The cells that contain points; they may be outside of the grid.
 
         Args:
             points: of shape (..., 2), x and y in the frame of the grid, in metres.
@@ -62,7 +62,7 @@ class Grid:
         return indices
 
     def centres_of(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.float64]:
-        """The middles of cells.
+        """The centres of cells.
 
         Args:
             indices: rows and columns, of shape (..., 2).

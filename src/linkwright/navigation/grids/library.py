@@ -11,7 +11,7 @@ from linkwright.diagnostics import missing_extra
 
 @cache
 def load_scipy(part: str) -> Any:
-    """A part of SciPy, such as ``ndimage``; it has no types.
+    """Import a part of SciPy, such as ``ndimage``; it has no types.
 
     Raises:
         LinkwrightError: NAV101 it is not installed.

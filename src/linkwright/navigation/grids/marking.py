@@ -1,4 +1,4 @@
-"""Marking cells: those that points lie in, and how many rays end in each cell or pass through it."""
+"""Marking cells of points, and counting the rays that end in each cell or pass through it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Counts = NDArray[np.int64]
 
 
 def mark(grid: Grid, points: NDArray[np.float64], value: int) -> None:
-    """Give the cells in which points lie a value; points outside of the grid are passed over.
+    """Set the cells that contain points to a value; points outside of the grid are ignored.
 
     Args:
         grid: what is written on.
@@ -32,7 +32,7 @@ def ray_counts(
     ends: NDArray[np.integer[Any]],
     hits: NDArray[np.bool_] | None = None,
 ) -> tuple[Counts, Counts]:
-    """How many rays from a cell end in each cell, and how many pass through it.
+    """Count the rays from a cell that end in each cell, and those that pass through it.
 
     Args:
         shape: rows and columns of the grid; what lies outside is passed over.

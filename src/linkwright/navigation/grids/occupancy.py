@@ -13,11 +13,11 @@ from linkwright.navigation.grids.grid import Grid
 
 
 class BadGridError(ValueError):
-    """A message that is no grid; the text says why, in the words of what it is made of."""
+    """A message is no valid grid; the text says why."""
 
 
 def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
-    """The nav_msgs/OccupancyGrid of a grid.
+    """Convert a grid to a nav_msgs/OccupancyGrid.
 
     Args:
         grid: cells of per cent, or `UNKNOWN`.
@@ -38,7 +38,7 @@ def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
 
 
 def grid_of(message: Any) -> Grid:
-    """The grid of a nav_msgs/OccupancyGrid; its cells are a copy, of type int8.
+    """Convert a nav_msgs/OccupancyGrid to a grid with cells of its own, of type int8.
 
     Raises:
         BadGridError: it has no cells, or not as many as it says, or they have no size.

@@ -1,4 +1,4 @@
-"""Rays through cells: which cells many lines go through, and how far many rays get."""
+"""Ray casting in grids: the cells that lines cross, and the ranges of rays."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def cells_on_lines(starts: NDArray[np.integer[Any]], ends: NDArray[np.integer[An
 
 
 def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.float64], limit: float) -> Any:
-    """How far rays get before they meet an occupied cell.
+    """The ranges of rays up to the first occupied cell.
 
     Each goes on by the distance to the nearest occupied cell, which a distance field tells, until that is no way.
 
@@ -86,6 +86,6 @@ def _flat(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.flo
 
 
 def _index(values: NDArray[np.float32], last: int) -> NDArray[np.int32]:
-    """The rows or columns of places in cells; those beyond the rim are in it."""
+    """The row or column of a coordinate in cells; coordinates beyond the border get the nearest."""
     np.minimum(np.maximum(values, np.float32(0.0), out=values), np.float32(last), out=values)
     return values.astype(np.int32)

@@ -1,1 +1,1 @@
-"""Where a robot is on a map that is known."""
+"""Localization on a known map by a particle filter."""

@@ -16,7 +16,7 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Beams:
-    """Some beams of a scan, seen from above.
+    """Some beams of a scan, in the plane.
 
     Attributes:
         origin: x and y of the laser in the frame of the robot, in metres.
@@ -32,7 +32,7 @@ class Beams:
 
     @property
     def hits(self) -> NDArray[np.bool_]:
-        """Which beams met something, of shape (n,)."""
+        """Which beams hit something, of shape (n,)."""
         met: NDArray[np.bool_] = self.ranges < self.range_max
         return met
 
@@ -47,7 +47,7 @@ class Beams:
 def beams_of_scan(
     scan: Any, laser_in_robot: Transform, most: int, least_range: float = -1.0, range_max: float = -1.0
 ) -> Beams:
-    """Evenly spread beams of a sensor_msgs/LaserScan; what is no number is left out.
+    """Evenly spread beams of a sensor_msgs/LaserScan, without those that are not finite.
 
     Args:
         scan: the message.

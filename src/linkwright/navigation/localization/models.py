@@ -1,4 +1,4 @@
-"""How well scans fit a map from many poses: the models of nav2_amcl.
+"""Likelihoods of scans on a map from many poses: the sensor models of nav2_amcl.
 
 Source: "Probabilistic Robotics", chapter 6, with nav2_amcl's way of putting beams together: a pose is as likely as 1
 plus the sum of the cubes of its beams, which is milder than their product. ``likelihood_field_prob`` takes the product.
@@ -25,7 +25,7 @@ _FITS = 0.15
 
 @dataclass(frozen=True, slots=True)
 class BeamSkipping:
-    """Beams that fit only few particles are left out, as people are not on the map.
+    """Beam skipping: beams that fit only few particles are ignored, such as those that hit people.
 
     Attributes:
         distance: from what is on the map up to which a beam fits a particle, in metres.
@@ -52,7 +52,7 @@ class LaserSettings:
 
 
 class MapLikelihoods:
-    """A map that poses are judged by.
+    """The likelihood model of a map.
 
     Args:
         grid: an occupancy grid; cells of exactly `OCCUPIED` stop beams.
@@ -79,7 +79,7 @@ class MapLikelihoods:
     def likelihoods(
         self, model: str, particles: Poses, beams: Beams, skipping: BeamSkipping | None = None
     ) -> Likelihoods:
-        """How likely each pose is, by one of `MODELS`, of shape (particles,); more than 0 and in no unit."""
+        """The likelihood of each pose by one of `MODELS`, of shape (particles,); positive, not normalised."""
         if model == "beam":
             return self._by_rays(particles, beams)
         product = model == "likelihood_field_prob"
@@ -99,7 +99,7 @@ class MapLikelihoods:
         return likelihoods
 
     def fit(self, pose: tuple[float, float, float], beams: Beams) -> float | None:
-        """The share of beams that end near something on the map, from a pose; None where no beam met anything."""
+        """The part of the beams that end near something on the map, from a pose; None where no beam hit anything."""
         hits = beams.ends[beams.hits]
         if not len(hits):
             return None
@@ -107,14 +107,14 @@ class MapLikelihoods:
         return float((distances <= _FITS).mean())
 
     def random_poses(self, count: int, random: np.random.Generator) -> Poses:
-        """Poses in free cells, everywhere alike, of shape (count, 3); where no cell is free, anywhere on the map."""
+        """Uniformly random poses in free cells, of shape (count, 3); where no cell is free, anywhere on the map."""
         free = self._free if len(self._free) else np.argwhere(np.ones_like(self.grid.cells, np.bool_))
         cells = free[random.integers(0, len(free), count)]
         points = self.grid.centres_of(cells) + random.uniform(-0.5, 0.5, (count, 2)) * self.grid.resolution
         return np.column_stack((points, random.uniform(-np.pi, np.pi, count)))
 
     def _values(self, model: str, range_max: float) -> NDArray[np.float32]:
-        """What a beam adds that ends in each cell."""
+        """The contribution of a beam that ends in each cell."""
         key = (model, range_max)
         if self._table is None or self._table[0] != key:
             chance = self._gaussian + self._settings.z_rand / range_max
@@ -123,7 +123,7 @@ class MapLikelihoods:
         return self._table[1]
 
     def _cells(self, particles: Poses, ends: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The flat cells of the map with its rim in which beams end, of shape (particles, beams)."""
+        """The flat indices of the cells in which beams end, of the map with its border; shape (particles, beams)."""
         grid = self.grid
         c, s = np.cos(grid.yaw), np.sin(grid.yaw)
         x, y = particles[:, 0] - grid.x, particles[:, 1] - grid.y

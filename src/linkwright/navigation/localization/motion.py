@@ -1,4 +1,4 @@
-"""How particles move when odometry says that the robot did: the models of nav2_amcl.
+"""Motion models of particles from odometry: those of nav2_amcl.
 
 Source: "Probabilistic Robotics" (Thrun, Burgard, Fox), section 5.4, with the noise of nav2_amcl.
 """
@@ -21,7 +21,7 @@ _STANDS_STILL = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """How wrong odometry is: ``alpha1`` to ``alpha5`` of nav2.
+    """Noise of odometry: ``alpha1`` to ``alpha5`` of nav2.
 
     Attributes:
         turn_of_turn: error of turning for turning.
@@ -57,7 +57,7 @@ def differential(
     noise: Noise,
     random: np.random.Generator,
 ) -> None:
-    """Move particles as a robot does that turns, drives and turns."""
+    """Move particles by the differential model: rotation, translation, rotation."""
     x, y, turn = after[0] - before[0], after[1] - before[1], turned_by(after[2] - before[2])
     drive = hypot(x, y)
     first = 0.0 if drive < _STANDS_STILL else turned_by(atan2(y, x) - before[2])
@@ -84,7 +84,7 @@ def omnidirectional(
     noise: Noise,
     random: np.random.Generator,
 ) -> None:
-    """Move particles as a robot does that drives in any direction and turns."""
+    """Move particles by the omnidirectional model: translation in any direction, and rotation."""
     x, y, turn = after[0] - before[0], after[1] - before[1], turned_by(after[2] - before[2])
     drive = hypot(x, y)
     count = len(particles)

@@ -1,4 +1,4 @@
-"""An adaptive particle filter: as many particles as what they know needs (KLD sampling), as nav2_amcl has it."""
+"""An adaptive particle filter, with KLD sampling as in nav2_amcl."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _CONVERGED = 0.5
 
 @dataclass(frozen=True, slots=True)
 class FilterSettings:
-    """How many particles there are, and when new ones are made anywhere.
+    """Numbers of particles, and when random ones are added.
 
     Attributes:
         min_particles: at least.
@@ -42,7 +42,7 @@ class FilterSettings:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """Where the robot is most likely.
+    """The estimated pose.
 
     Attributes:
         pose: x and y in metres and yaw in radians, the mean of the likeliest cluster.
@@ -56,7 +56,7 @@ class Estimate:
 
 
 class ParticleFilter:
-    """Weighted poses.
+    """A particle filter of planar poses.
 
     Args:
         settings: how many there are.
@@ -75,20 +75,20 @@ class ParticleFilter:
         self._slow = self._fast = 0.0
 
     def begin(self, particles: Poses) -> None:
-        """Have these particles, all alike."""
+        """Set the particles, with equal weights."""
         self.particles = particles
         self.weights = np.full(len(particles), 1.0 / len(particles))
         self._slow = self._fast = 0.0
 
     def begin_at(self, pose: tuple[float, float, float], covariance: NDArray[np.float64]) -> None:
-        """Have particles around a pose: as many as there may be, with a covariance of shape (3, 3)."""
+        """Draw particles around a pose: the greatest number, with a covariance of shape (3, 3)."""
         count = self.settings.max_particles
         values, axes = np.linalg.eigh((covariance + covariance.T) / 2.0)
         drawn = self.random.normal(size=(count, 3)) * np.sqrt(np.maximum(values, 0.0))
         self.begin(np.array(pose) + drawn @ axes.T)
 
     def weigh(self, likelihoods: NDArray[np.float64]) -> None:
-        """Take in how likely each particle is."""
+        """Multiply the weights by the likelihood of each particle."""
         weights = self.weights * likelihoods
         total = float(weights.sum())
         if not total > 0.0:
@@ -101,7 +101,7 @@ class ParticleFilter:
         self.weights = weights / total
 
     def resample(self, anywhere: Callable[[int], Poses]) -> None:
-        """Draw particles anew by their weights, as many as they need.
+        """Draw particles anew by their weights; KLD sampling decides how many.
 
         Args:
             anywhere: makes so many particles that come from nowhere, where the scans have come to fit less.
@@ -126,7 +126,7 @@ class ParticleFilter:
         return bool(away.max() <= _CONVERGED)
 
     def estimate(self) -> Estimate:
-        """Where the robot is most likely."""
+        """The pose of the most likely cluster."""
         clusters = _clusters(self.particles)
         weights = np.bincount(clusters, self.weights)
         best = int(weights.argmax())
@@ -143,7 +143,7 @@ class ParticleFilter:
         return covariance
 
     def _needed(self, drawn: Poses) -> int:
-        """How many of the drawn particles are needed: the first number that is more than their bins ask for."""
+        """The number of particles needed of those drawn: the first that satisfies the limit for its bins."""
         _, first = np.unique(_bins(drawn)[0], return_index=True)
         new = np.zeros(len(drawn), np.int64)
         new[first] = 1
@@ -153,7 +153,7 @@ class ParticleFilter:
         return int(enough[0]) + 1 if len(enough) else len(drawn)
 
     def _limit(self, bins: int) -> int:
-        """How many particles so many bins need: Fox, "KLD-sampling", the approximation of Wilson and Hilferty."""
+        """The number of particles for a number of bins: Fox, "KLD-sampling", approximated after Wilson and Hilferty."""
         settings = self.settings
         if bins <= 1:
             return settings.max_particles
@@ -163,7 +163,7 @@ class ParticleFilter:
 
 
 def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
-    """A number for the bin of each particle, and by how much it grows from one bin along x to the next.
+    """The bin of each particle as a number, and the step from one bin along x to the next.
 
     Along y it grows by the number of bins in a turn, along yaw by 1, beginning anew after a turn. Around all there is a
     rim of empty bins.
@@ -175,7 +175,7 @@ def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
 
 
 def _clusters(particles: Poses) -> NDArray[np.int64]:
-    """The cluster of each particle: bins that touch belong together."""
+    """The cluster of each particle: adjacent bins belong together."""
     numbers, along_x = _bins(particles)
     bins, where = np.unique(numbers, return_inverse=True)
     yaw = bins % _TURNS
@@ -195,7 +195,7 @@ def _clusters(particles: Poses) -> NDArray[np.int64]:
 
 
 def _mean(particles: Poses, weights: NDArray[np.float64]) -> tuple[float, float, float, float]:
-    """Weighted mean of x, y and yaw, and how much the yaws agree, 0 to 1."""
+    """The weighted mean of x, y and yaw, and the concentration of the yaws, 0 to 1."""
     total = float(weights.sum())
     shares = weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
     x, y = shares @ particles[:, :2]

@@ -1,1 +1,1 @@
-"""Files of maps: a YAML file and a picture."""
+"""Map files: a YAML file and an image."""

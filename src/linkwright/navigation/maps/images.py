@@ -1,4 +1,4 @@
-"""The images of maps: PGM, which is read and written here, and what Pillow reads and writes (PNG, BMP, ...)."""
+"""Images of maps: PGM, read and written here, and Pillow's formats (PNG, BMP, ...)."""
 
 from __future__ import annotations
 
@@ -61,13 +61,13 @@ def read_picture(path: Path) -> Picture:
 
 
 def pgm_bytes(pixels: NDArray[np.uint8]) -> bytes:
-    """The file of grey pixels, of shape (rows, columns), as ImageMagick and nav2 write it: binary PGM."""
+    """A binary PGM of grey pixels, of shape (rows, columns), as ImageMagick and nav2 write it."""
     rows, columns = pixels.shape
     return b"P5\n%d %d\n255\n" % (columns, rows) + np.ascontiguousarray(pixels).tobytes()
 
 
 def pillow_bytes(pixels: NDArray[np.uint8], kind: str) -> bytes:
-    """The file of grey pixels (rows, columns), or of grey and opacity (rows, columns, 2), in a format of Pillow.
+    """An image file of grey pixels (rows, columns), or of grey and opacity (rows, columns, 2), in a format of Pillow.
 
     Raises:
         LinkwrightError: NAV204, Pillow is not installed.

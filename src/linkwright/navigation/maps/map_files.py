@@ -1,4 +1,4 @@
-"""Maps as files: the YAML and the image beside it, read and written as nav2_map_server does."""
+"""Loading and saving maps, YAML and image, as nav2_map_server does."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _WITHOUT_OPACITY = ("pgm", "jpg", "jpeg", "bmp")
 
 
 def _unheard(_line: str) -> None:
-    """Nobody reads the warnings."""
+    """Ignore warnings."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SavedAs:
-    """How a map is written.
+    """The settings of a saved map.
 
     Attributes:
         name: of the files, with their folder but without an ending.
@@ -45,7 +45,7 @@ class SavedAs:
 
 
 def load_map(path: str | Path) -> Grid:
-    """The grid that a map's YAML and image describe, in the frame of the map.
+    """Load the grid of a map's YAML and image, in the frame of the map.
 
     Raises:
         LinkwrightError: NAV201 or NAV202, see `read_map_yaml`; NAV203 or NAV204, see `read_picture`.
@@ -133,6 +133,6 @@ def _yaml(grid: Grid, saved: SavedAs, image: str) -> str:
 
 
 def _number(value: float) -> str:
-    """A number with three digits as nav2 writes it, and with as many more as a millimetre needs."""
+    """A number with three digits as nav2 writes it, or with more where a millimetre needs them."""
     digits = 3 if value == 0.0 else max(3, floor(log10(abs(value))) + 4)
     return f"{value:.{digits}g}"

@@ -1,4 +1,4 @@
-"""The YAML of a map: which image it is, how large its cells are, where it lies, and how its pixels are read.
+"""The YAML file of a map: image, resolution, origin, and how pixels are read.
 
 Keys, their meanings and which must be there are those of nav2_map_server. What is wrong is told with its place.
 Stricter than nav2: a resolution must be more than 0, and thresholds lie between 0 and 1.
@@ -29,7 +29,7 @@ _FALSE = frozenset({"false", "no", "off", "n"})
 
 
 class MapMode(Enum):
-    """How pixels and cells become each other."""
+    """The modes of converting between pixels and cells."""
 
     TRINARY = "trinary"
     SCALE = "scale"
@@ -38,7 +38,7 @@ class MapMode(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapYaml:
-    """What the YAML of a map says.
+    """The content of a map's YAML file.
 
     Attributes:
         image: the file of the pixels.
@@ -60,7 +60,7 @@ class MapYaml:
 
 
 def read_map_yaml(path: str | Path) -> MapYaml:
-    """Read the YAML of a map; the image is looked for beside it.
+    """Read a map's YAML; the image's path is relative to it.
 
     Raises:
         LinkwrightError: NAV201, it cannot be read; NAV202, something in it is wrong.

@@ -1,4 +1,4 @@
-"""How bright pixels become cells of an occupancy grid, and cells become pixels, as nav2_map_server has it."""
+"""Conversion between the pixels of an image and the cells of an occupancy grid, as nav2_map_server has it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _OPAQUE = 255
 
 
 def cells_of_picture(picture: Picture, said: MapYaml) -> NDArray[np.int8]:
-    """The cells that pixels stand for.
+    """Convert pixels to cells.
 
     Args:
         picture: the pixels, from the top row down.
@@ -46,7 +46,7 @@ def cells_of_picture(picture: Picture, said: MapYaml) -> NDArray[np.int8]:
 def pixels_of_cells(
     cells: NDArray[np.int8], mode: MapMode, occupied_thresh: float, free_thresh: float
 ) -> NDArray[np.uint8]:
-    """The pixels that stand for cells, from the top row down.
+    """Convert cells to pixels, from the top row down.
 
     Args:
         cells: per cent or `UNKNOWN`, from the lowest row up.

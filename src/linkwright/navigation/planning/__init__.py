@@ -1,1 +1,1 @@
-"""Paths through costmaps."""
+"""Path planning on costmaps."""

@@ -1,4 +1,4 @@
-"""Ways: down the slope of a potential, from a place to where the potential is zero.
+"""Paths by descent on a potential, from a place to where the potential is zero.
 
 Source: nav2_navfn_planner, which goes half a cell at a time along the interpolated gradient.
 """
@@ -24,7 +24,7 @@ _AROUND = [(row, column) for row in (-1, 0, 1) for column in (-1, 0, 1) if row o
 
 
 class _Slope:
-    """A potential that is asked for its gradient."""
+    """The gradient of a potential, computed on demand."""
 
     def __init__(self, least: Floats) -> None:
         self._least = least
@@ -32,20 +32,20 @@ class _Slope:
         self._gradients: dict[Cell, Place | None] = {}
 
     def at(self, row: int, column: int) -> float:
-        """The potential of a cell; infinite outside."""
+        """The potential of a cell; infinite outside of the grid."""
         if 0 <= row < self._rows and 0 <= column < self._columns:
             return float(self._least[row, column])
         return inf
 
     def joined(self, cell: Cell, other: Cell) -> bool:
-        """Whether a straight step from a cell to one beside it, or across a corner, touches no cell without a way."""
+        """Whether a straight step from a cell to an adjacent one, diagonals too, touches no unreachable cell."""
         (row, column), (to_row, to_column) = cell, other
         return self.at(to_row, to_column) < inf and (
             row == to_row or column == to_column or max(self.at(row, to_column), self.at(to_row, column)) < inf
         )
 
     def lowest_beside(self, cell: Cell) -> Cell:
-        """The neighbour of a cell to which it goes down most."""
+        """The neighbour of a cell with the steepest descent."""
         row, column = cell
         here = self.at(row, column)
         best, steepest = cell, 0.0
@@ -57,7 +57,7 @@ class _Slope:
         return best
 
     def direction(self, place: Place) -> Place | None:
-        """Where it goes down most steeply, of length 1; None where it is flat."""
+        """The direction of steepest descent, of length 1; None where the potential is flat."""
         row, column = place[0] - 0.5, place[1] - 0.5
         top, left = floor(row), floor(column)
         lower, right = row - top, column - left
@@ -91,7 +91,7 @@ class _Slope:
 
 
 def _difference(before: float, here: float, after: float) -> float:
-    """How fast a potential rises; of sides without a way it is never told that it falls there."""
+    """The derivative of a potential; it never descends towards an unreachable side."""
     if before < inf and after < inf:
         return (after - before) / 2.0
     if before < inf:
@@ -100,7 +100,7 @@ def _difference(before: float, here: float, after: float) -> float:
 
 
 def descend(least: Floats, source: Cell, begin: Place) -> Generator[None, None, NDArray[np.float64]]:
-    """The way down a potential.
+    """Descend a potential.
 
     It gives way now and then, for others to work in between.
 
@@ -133,7 +133,7 @@ def descend(least: Floats, source: Cell, begin: Place) -> Generator[None, None, 
 
 
 def _step(slope: _Slope, place: Place, cell: Cell) -> Place | None:
-    """Half a cell down from a place in a cell; None where that leads nowhere."""
+    """Half a cell downhill from a place in a cell; None where that leads nowhere."""
     direction = slope.direction(place)
     if direction is None:
         return None

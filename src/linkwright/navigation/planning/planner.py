@@ -1,4 +1,4 @@
-"""Planning: the cheapest way over a costmap from a pose to another one.
+"""Planning the cheapest path over a costmap from a pose to another one.
 
 Source: nav2_navfn_planner (what ways cost, tolerance, the texts of what goes wrong). Different on purpose: the
 tolerance does not reach through obstacles, so a goal within a wall is refused; and a robot that stands closer to an
@@ -56,7 +56,7 @@ class PlanError(Exception):
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """How to plan; names and defaults are nav2's.
+    """Settings of the planner; names and defaults are nav2's.
 
     Attributes:
         tolerance: so far from a goal that cannot be reached the way may end, in metres.
@@ -72,7 +72,7 @@ class Settings:
 
 
 def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Generator[None, None, NDArray[np.float64]]:
-    """Plan a way.
+    """Plan a path.
 
     It gives way now and then, for others to work in between; the costmap must not change meanwhile.
 
@@ -114,7 +114,7 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
 
 
 def run(steps: Generator[None, None, NDArray[np.float64]]) -> NDArray[np.float64]:
-    """What work that gives way now and then comes to, without giving way."""
+    """Run a generator to its end; the value that it returns."""
     found: list[NDArray[np.float64]] = []
 
     def work() -> Generator[None, None, None]:
@@ -137,7 +137,7 @@ def _occupied(problem: Problem, what: str, pose: Pose) -> PlanError:
 
 
 def _let_escape(price: Floats, costmap: Costmap, cell: Cell, start: Pose) -> None:
-    """Give a price to the cells around the start that are too near to an obstacle, as far as it is to one that is not.
+    """Make the cells around a start that is too near to an obstacle passable, as far as to one that is not.
 
     Raises:
         PlanError: there is none anywhere near.
@@ -156,7 +156,7 @@ def _let_escape(price: Floats, costmap: Costmap, cell: Cell, start: Pose) -> Non
 
 
 def _nearest(least: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: Settings) -> Cell:
-    """The cell nearest to a goal to which a way leads, within the tolerance and on the same side of obstacles.
+    """The reachable cell nearest to a goal, within the tolerance and on the same side of obstacles.
 
     Raises:
         PlanError: there is none.
@@ -183,7 +183,7 @@ def _nearest(least: Floats, costmap: Costmap, goal: Pose, cell: Cell, settings: 
 
 
 def _thinned(way: NDArray[np.float64], price: Floats) -> NDArray[np.float64]:
-    """A way without every second point, where a straight line past it touches no cell without a way."""
+    """A path without every second point, where the straight line past it touches no unreachable cell."""
     cells = np.floor(way).astype(np.int64)
     between = np.arange(1, len(way) - 1, 2)
     before, after = cells[between - 1], cells[between + 1]

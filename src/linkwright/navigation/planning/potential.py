@@ -1,4 +1,4 @@
-"""Potentials: what the cheapest way from one place to each other place costs, as a wave spreads over a costmap.
+"""Potentials: the cost of the cheapest path from one cell to each other one, computed as a wavefront over a costmap.
 
 It is the eikonal equation on a grid, as NavFn solves it: ways go in all directions, not only along rows, columns and
 diagonals. All cells of the front are brought up to date at once, and those whose neighbours got cheaper are looked at
@@ -35,7 +35,7 @@ _SMALLEST_GAIN: Final = 1e-3 * NEUTRAL
 
 
 def prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> Floats:
-    """What it takes to cross each cell of a costmap, of the same shape; infinite where no robot can be.
+    """The cost of crossing each cell of a costmap, of the same shape; infinite where no robot can be.
 
     Args:
         costs: of the cells.
@@ -52,7 +52,7 @@ def prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> Floats:
 def potential(
     price: Floats, source: Cell, target: Cell | None = None, *, heuristic: bool = False
 ) -> Generator[None, None, Floats]:
-    """What the cheapest way from a cell to each other one costs.
+    """Compute the cost of the cheapest path from a cell to each other one.
 
     It gives way after each step of the wave, for others to work in between.
 
@@ -116,7 +116,7 @@ def potential(
 
 
 def _crossed(a: Floats, b: Floats, price: Floats) -> Floats:
-    """What it takes to be in cells, of what it takes to be in the cheaper neighbour in each direction."""
+    """The potential of cells, from that of the cheaper neighbour along each axis and the cost of crossing."""
     low, high = np.minimum(a, b), np.maximum(a, b)
     apart = np.minimum(high - low, price)  # farther apart, the way comes from one side only
     value: Floats = low + 0.5 * (apart + np.sqrt(2.0 * price * price - apart * apart))
@@ -124,7 +124,7 @@ def _crossed(a: Floats, b: Floats, price: Floats) -> Floats:
 
 
 def _least_ahead(price: Floats, target: Cell) -> Floats:
-    """The least that the way from each cell to the target takes, of cells with a rim around them."""
+    """A lower bound of the cost from each cell to the target, for cells with a border."""
     rows, columns = price.shape
     y, x = np.arange(-1.0, rows + 1) - target[0], np.arange(-1.0, columns + 1) - target[1]
     ahead: Floats = (float(price.min()) * np.hypot(y[:, None], x[None, :])).ravel()

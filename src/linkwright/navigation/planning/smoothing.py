@@ -1,4 +1,4 @@
-"""Smoothing: points of a way move towards the middle of their neighbours, but not far from where they were.
+"""Smoothing of paths: points move towards the middle of their neighbours, but stay near their places.
 
 Source: nav2_smoother ``SimpleSmoother``: what its iteration comes to is the solution of a linear system with three
 diagonals, which is solved at once. Points that would come where no robot can be stay where they were.
@@ -22,7 +22,7 @@ _LEAST_POINTS: Final = 3
 
 @dataclass(frozen=True, kw_only=True)
 class Smoothing:
-    """How much to smooth; names and defaults are nav2's.
+    """Settings of the smoother; names and defaults are nav2's.
 
     Attributes:
         w_data: how much a point wants to stay where it was.
@@ -40,7 +40,7 @@ class Smoothing:
 
 
 def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = None) -> tuple[Points, bool]:
-    """A smoother way.
+    """Smooth a path.
 
     Args:
         points: x and y in the frame of the costmap, in metres, of shape (n, 2).
@@ -60,13 +60,13 @@ def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = Non
 
 
 def directions(points: Points, last: float) -> NDArray[np.float64]:
-    """The yaw of each point of a way, towards the following one; the last one is given. Radians, of shape (n,)."""
+    """The yaw of each point of a path, towards the next one; the last one is given. Radians, of shape (n,)."""
     ahead = np.diff(points, axis=0)
     return np.append(np.arctan2(ahead[:, 1], ahead[:, 0]), last)
 
 
 def _fixed(points: Points, smoothing: Smoothing) -> NDArray[np.bool_]:
-    """Which points stay: the ends, and where the direction is turned round."""
+    """Which points stay: the ends, and where the path reverses."""
     fixed = np.zeros(len(points), np.bool_)
     fixed[[0, -1]] = True
     if smoothing.enforce_path_inversion and len(points) >= _LEAST_POINTS:
@@ -92,7 +92,7 @@ def _once(
 
 
 def _blocked(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
-    """Which points lie where no robot can be, or half the way to the next one does."""
+    """Which points are in collision, or the midpoint to the next one is."""
     middles = (points + np.roll(points, -1, axis=0)) / 2.0
     middles[-1] = points[-1]
 
@@ -108,7 +108,7 @@ def _blocked(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
 
 
 def _solved(points: Points, stays: NDArray[np.bool_], smoothing: Smoothing) -> Points:
-    """Where points come to rest: w_data (y - x) = w_smooth (previous + next - 2 y) for those that may move."""
+    """The equilibrium of w_data (y - x) = w_smooth (previous + next - 2 y) for the points that may move."""
     beside = np.where(stays, 0.0, -smoothing.w_smooth)
     bands = np.zeros((3, len(points)))
     bands[0, 1:] = beside[:-1]

@@ -1,1 +1,1 @@
-"""Mapping: scans are matched to each other, and where a robot comes back, the loop is closed."""
+"""Mapping: scans are matched to each other, and loops are closed in a graph of poses."""

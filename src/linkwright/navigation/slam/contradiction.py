@@ -1,4 +1,4 @@
-"""Whether two scans can have been taken where they are said to have been: nobody sees through what another one saw."""
+"""Whether the poses of two scans contradict each other: a scan's rays cannot pass through what another one hit."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _FEWEST = 20
 
 
 def contradiction(first: PlanarScan, first_pose: Floats, second: PlanarScan, second_pose: Floats) -> float:
-    """The part of the points of each scan that the other one looked through, whichever is more, from 0 to 1.
+    """The part of a scan's points that the other one's rays pass through, whichever is more, from 0 to 1.
 
     Args:
         first: a scan.
@@ -32,7 +32,7 @@ def contradiction(first: PlanarScan, first_pose: Floats, second: PlanarScan, sec
 
 
 def _looked_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -> float:
-    """The part of the points of `other`, at `pose` in the frame of the viewer, that the viewer looked through."""
+    """The part of the points of `other`, at `pose` in the frame of the viewer, that the viewer's rays pass through."""
     seen = viewer.points - viewer.origin
     points = placed(pose, other.points) - viewer.origin
     if len(seen) < _FEWEST or len(points) < _FEWEST:

@@ -1,4 +1,4 @@
-"""A map and where the robot is in it, from laser scans and odometry.
+"""A map and the robot's pose in it, from laser scans and odometry, as slam_toolbox (Karto) makes them.
 
 As in Karto, which slam_toolbox uses, some of the scans become nodes of a graph of poses: each is matched against the
 last ones, linked with those of earlier passes near by, and tried against those further away, to close a loop.
@@ -39,7 +39,7 @@ _NOTHING = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outcome:
-    """What came of a scan.
+    """The result of a scan.
 
     Attributes:
         pose: of the robot in the map, of shape (3,).
@@ -59,7 +59,7 @@ class Outcome:
 
 
 class Mapper:
-    """See the module.
+    """Builds a graph of scans and the map from it.
 
     Args:
         settings: how it works.
@@ -85,18 +85,18 @@ class Mapper:
 
     @property
     def latest_ns(self) -> int:
-        """When the last scan was taken that was processed, nanoseconds; 0 before the first one."""
+        """The time of the last processed scan, nanoseconds; 0 before the first one."""
         return 0 if self._last is None else self._last[1]
 
     def replace(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[Floats]) -> None:
-        """Take another map; nothing of it is drawn yet."""
+        """Set another graph; nothing of it is drawn yet."""
         for number in range(len(self.scans)):
             self.occupancy.erase(number)
         self.graph, self.scans, self.odometry = graph, scans, odometry
         self.begin_session(None)
 
     def begin_session(self, pose: Floats | None) -> None:
-        """Go on with the map from elsewhere: the next scan is searched around a pose of shape (3,), or the first one's.
+        """Start a session in the graph: the next scan is searched around a pose of shape (3,), or the first one's.
 
         Scans before do not count as the last ones any more.
         """
@@ -109,7 +109,7 @@ class Mapper:
             self._in_map = self.graph.poses[0].copy()
 
     def wants(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
-        """Whether a scan at a pose of odometry is taken: the robot went far enough since the last one that was.
+        """Whether a scan at a pose of odometry is to be processed: the robot moved far enough since the last one.
 
         Args:
             odometry: the pose, of shape (3,).
@@ -129,13 +129,13 @@ class Mapper:
         )
 
     def expected(self, odometry: Floats) -> Floats:
-        """Where the robot is in the map by odometry since the last scan that was taken, of shape (3,)."""
+        """The robot's pose in the map by odometry since the last processed scan, of shape (3,)."""
         if self._in_map is None:
             return odometry
         return self._in_map if self._last is None else compose(self._in_map, between(self._last[0], odometry))
 
     def process(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
-        """Put a scan into the map, in steps.
+        """Add a scan to the graph, in steps.
 
         Args:
             scan: it.
@@ -168,7 +168,7 @@ class Mapper:
         return _outcome(self._in_map, information, found, links, loops)
 
     def localize(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
-        """Find out where a scan was taken, in steps; the map stays as it is. Arguments are those of `process`."""
+        """Localize a scan, in steps; the graph stays as it is. Arguments are those of `process`."""
         searched = self._last is None
         guess = self.expected(odometry)
         moved = np.zeros(3) if self._last is None else between(self._last[0], odometry)
@@ -182,7 +182,7 @@ class Mapper:
         return _outcome(self._in_map, information, found)
 
     def redraw(self) -> Steps[None]:
-        """Draw the scans that are not in the map, or are where they are not any more; a step for each."""
+        """Draw the scans that are missing from the map, or whose poses changed; a step for each."""
         tolerance = _REDRAWN * self.occupancy.resolution
         for number, scan in enumerate(self.scans):
             pose, drawn = self.graph.poses[number], self.occupancy.drawn_at(number)
@@ -199,7 +199,7 @@ class Mapper:
         return self.graph.add_node(pose)
 
     def _join(self, scan: PlanarScan, guess: Floats, odometry: Floats) -> Steps[Outcome]:
-        """The first scan of another session: it is searched among those of earlier ones."""
+        """Match the first scan of another session against those of earlier ones."""
         nodes = self._around(guess)
         found = yield from self._match(nodes, scan, guess, self.settings.loop)
         pose = guess if found is None else found.pose
@@ -233,7 +233,7 @@ class Mapper:
         return nodes[int(np.argmin(self._distances(pose)[nodes]))]
 
     def _match(self, nodes: list[int], scan: PlanarScan, guess: Floats, search: Search) -> Steps[Match | None]:
-        """Match against the scans of some nodes; None where that tells nothing."""
+        """Match against the scans of some nodes; None where that constrains nothing."""
         reference = Reference([self.scans[each] for each in nodes], self.graph.poses[nodes])
         yield
         found = yield from match(reference, scan, guess, search, expand=self.settings.use_response_expansion)
@@ -270,7 +270,7 @@ class Mapper:
         return links, loops
 
     def _chains(self, number: int, distance: float) -> list[list[int]]:
-        """Nodes in a row that are near a node and not of its last ones; the nearest chain comes first."""
+        """Chains: consecutive nodes that are near a node and not among its last ones; the nearest chain comes first."""
         away = self._distances(self.graph.poses[number])
         last = number - self.settings.scan_buffer_size
         chains: list[list[int]] = []
@@ -296,7 +296,7 @@ class Mapper:
     def _connect(
         self, number: int, chain: list[int], search: Search, least: float, *, around: Floats | None = None
     ) -> Steps[Match | None]:
-        """Match a node against a chain, and add an edge if that is beyond doubt; None if it is not."""
+        """Match a node against a chain, and add an edge if the match is beyond doubt; None if it is not."""
         scan = self.scans[number]
         guess = self.graph.poses[number] if around is None else around
         nodes = sorted(chain, key=lambda each: float(self._distances(guess)[each]))[: self.settings.scan_buffer_size]
@@ -313,7 +313,7 @@ class Mapper:
 
 
 def _worst_variance(found: Match) -> float:
-    """Of the position, metres squared."""
+    """The greater variance of the position, metres squared."""
     return float(np.linalg.inv(found.information + _NOTHING * np.eye(3)).diagonal()[:2].max())
 
 
@@ -324,7 +324,7 @@ def _outcome(pose: Floats, information: Floats, found: Match | None, links: int 
 
 
 def _odometric_information(moved: Floats) -> Floats:
-    """The inverse of the covariance that is taken for odometry over a way of shape (3,): about a tenth of it."""
+    """The information matrix of odometry over a motion of shape (3,): standard deviations of about a tenth of it."""
     turned = abs(float(wrapped(moved)[2]))
     along = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * turned
     around = 0.02 + 0.1 * turned + 0.05 * float(np.hypot(moved[0], moved[1]))

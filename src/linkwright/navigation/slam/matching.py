@@ -1,4 +1,4 @@
-"""Matching a scan against what was seen before: a search over poses, then least squares."""
+"""Scan matching: a search over poses, then least squares."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _EXPANSIONS = (0.349, 0.698, 1.047)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Match:
-    """Where a scan was found.
+    """The result of a match.
 
     Attributes:
         pose: of the robot, of shape (3,), in the frame of the reference.
@@ -54,7 +54,7 @@ class Match:
 def match(
     reference: Reference, scan: PlanarScan, guess: Floats, search: Search, *, expand: bool = False
 ) -> Steps[Match | None]:
-    """Find where a scan was taken, in steps.
+    """Match a scan, in steps.
 
     In directions that the points tell nothing about, as along a corridor, the pose is that of the guess.
 
@@ -113,7 +113,7 @@ def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Float
 
 
 def _told(hessian: Floats, points: int) -> Floats:
-    """The projection onto what the points tell about, of shape (3, 3)."""
+    """The projection onto the directions that the points constrain, of shape (3, 3)."""
     values, vectors = np.linalg.eigh(hessian)
     kept = vectors[:, values > _SINGULAR * points]
     result: Floats = kept @ kept.T
@@ -123,7 +123,7 @@ def _told(hessian: Floats, points: int) -> Floats:
 def _equations(
     reference: Reference, scan: PlanarScan, pose: Floats, farthest: float, scale: Floats
 ) -> tuple[Floats, Floats, float, float]:
-    """Normal equations at a pose: matrix (3, 3), right side (3,), part of points that count, their error in metres."""
+    """Normal equations at a pose: matrix (3, 3), right side (3,), part of the points used, their error in metres."""
     points = placed(pose, scan.points)
     distances, _, places, normals, flatness = reference.nearest(points)
     view = placed(pose, scan.origin[None])[0]

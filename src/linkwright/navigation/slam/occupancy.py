@@ -1,4 +1,4 @@
-"""The occupancy grid that scans make: how often rays passed a cell, and how often they ended in it.
+"""The occupancy grid from scans: counts of the rays that pass each cell, and of those that end in it.
 
 Source: Karto's occupancy grid, with its parameters ``min_pass_through`` and ``occupancy_threshold``.
 """
@@ -22,7 +22,7 @@ Cells = NDArray[np.int64]
 
 @dataclass(slots=True, eq=False)
 class _Trace:
-    """What one scan counts: cells (row, column), each once, and how often it was passed and hit."""
+    """The counts of one scan: cells (row, column), each once, with their passes and hits."""
 
     pose: Floats
     cells: Cells
@@ -31,7 +31,7 @@ class _Trace:
 
 
 class OccupancyMap:
-    """Counts of many scans. A scan whose pose is corrected is taken out and put in anew, and no other is touched.
+    """The counts of many scans. A scan whose pose is corrected is removed and added anew; no other is touched.
 
     Args:
         resolution: side of a cell, metres.
@@ -52,7 +52,7 @@ class OccupancyMap:
         self._traces: dict[int, _Trace] = {}
 
     def draw(self, number: int, scan: PlanarScan, pose: Floats) -> None:
-        """Put a scan in, seen from a pose of the robot of shape (3,); one of that number that is in it goes."""
+        """Add a scan at a pose of the robot of shape (3,); one of the same number is removed."""
         self.erase(number)
         trace = self._traced(scan, pose)
         if not len(trace.cells):
@@ -62,18 +62,18 @@ class OccupancyMap:
         self._count(trace, 1)
 
     def erase(self, number: int) -> None:
-        """Take a scan out, if it is in."""
+        """Remove a scan, if it is in."""
         trace = self._traces.pop(number, None)
         if trace is not None:
             self._count(trace, -1)
 
     def drawn_at(self, number: int) -> Floats | None:
-        """The pose from which a scan was put in; None where it is not."""
+        """The pose at which a scan was added; None where it is not in."""
         trace = self._traces.get(number)
         return None if trace is None else trace.pose
 
     def grid(self) -> Grid | None:
-        """The map, as small as it can be, of int8: FREE, OCCUPIED, UNKNOWN; None while nothing is known."""
+        """The map, as small as possible, of int8: FREE, OCCUPIED, UNKNOWN; None while nothing is known."""
         seen = self._passes > 0
         rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
         if not len(rows):
@@ -108,7 +108,7 @@ class OccupancyMap:
         self._corner = low
 
     def _traced(self, scan: PlanarScan, pose: Floats) -> _Trace:
-        """Walk along all rays at once."""
+        """Trace all rays at once."""
         ends = placed(pose, np.concatenate((scan.points, scan.passed)))
         origin = placed(pose, scan.origin[None])[0] / self.resolution
         away = ends / self.resolution - origin

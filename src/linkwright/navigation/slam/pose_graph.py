@@ -1,4 +1,4 @@
-"""A graph of poses in the plane, and the poses that fit all its edges best."""
+"""A graph of planar poses, and its optimisation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _KERNEL = 9.0
 
 @dataclass(slots=True)
 class PoseGraph:
-    """Poses, and what was measured between them.
+    """Poses, and measured relative poses between them.
 
     The first pose stays where it is. Solved by Gauss and Newton on sparse matrices (Grisetti et al., "A Tutorial on
     Graph-Based SLAM", 2010). Edges of loops may be wrong: once all edges have been followed, they have Cauchy's kernel.
@@ -51,7 +51,7 @@ class PoseGraph:
     def add_edge(
         self, first: int, second: int, measured: Floats, information: Floats, *, doubtful: bool = False
     ) -> None:
-        """Add what was measured between two nodes; see the attributes."""
+        """Add a measured relative pose of two nodes; see the attributes."""
         self.first.append(first)
         self.second.append(second)
         self.measured.append(measured)
@@ -59,7 +59,7 @@ class PoseGraph:
         self.doubtful.append(doubtful)
 
     def solve(self) -> Steps[float]:
-        """Move the nodes to where all edges fit best, in steps.
+        """Optimise the poses by all edges, in steps.
 
         Returns:
             The furthest that a node moved, metres.
@@ -75,7 +75,7 @@ class PoseGraph:
         return float(np.hypot(*(self.poses - before)[:, :2].T).max(initial=0.0))
 
     def errors(self) -> Floats:
-        """How far each edge is from what was measured, in squared standard deviations, of shape (m,)."""
+        """The error of each edge, in squared standard deviations, of shape (m,)."""
         if not self.first:
             return np.zeros(0)
         residuals, _, _ = self._linearized()
@@ -109,7 +109,7 @@ class PoseGraph:
         return float(np.abs(step).max())
 
     def _linearized(self) -> tuple[Floats, Floats, Floats]:
-        """For each edge what is left, (m, 3), and how it changes with the first and with the second pose, (m, 3, 3)."""
+        """The residual of each edge, (m, 3), and its Jacobians by the first and by the second pose, (m, 3, 3)."""
         start, end = self.poses[self.first], self.poses[self.second]
         measured = np.array(self.measured)
         yaw = start[:, 2] + measured[:, 2]

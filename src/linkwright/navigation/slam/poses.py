@@ -39,7 +39,7 @@ def between(b_in_a: Floats, c_in_a: Floats) -> Floats:
 
 
 def placed(pose: Floats, points: Floats) -> Floats:
-    """Points of a frame, of shape (n, 2), in the frame in which `pose` is that frame's, of shape (3,)."""
+    """Points of shape (n, 2), transformed by a pose of shape (3,)."""
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     result: Floats = points @ np.array(((cos, sin), (-sin, cos))) + pose[:2]
     return result

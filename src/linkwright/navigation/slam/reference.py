@@ -1,4 +1,4 @@
-"""What was seen before, made ready to match scans against it."""
+"""Earlier scans, prepared for matching others against them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LEAST = 0.01
 
 
 class Reference:
-    """Points of scans, where they are likely to be seen, and which way the walls run that they lie on.
+    """Points of scans, their likelihood field, and the directions of the walls on which they lie.
 
     Points that are nearer than 5 cm to each other become their mean, which is where the wall is more exactly than one
     reading says.
@@ -56,7 +56,7 @@ class Reference:
         return len(self.points)
 
     def find_lines(self) -> None:
-        """Make ready for `nearest`: which way walls run, from each point's neighbours."""
+        """Prepare `nearest`: the directions of walls, from each point's neighbours."""
         self._tree = load_scipy("spatial").cKDTree(self.points)
         count = min(_NEIGHBOURS, len(self.points))
         distances, indices = self._tree.query(self.points, k=count)
@@ -76,7 +76,7 @@ class Reference:
         self._flatness: Floats = flatness if count >= 3 else np.zeros(len(self.points))
 
     def nearest(self, points: Floats) -> tuple[Floats, NDArray[np.int64], Floats, Floats, Floats]:
-        """For points of shape (n, 2) what is nearest to each.
+        """The nearest reference point for each of some points of shape (n, 2).
 
         Returns:
             Distances (n,), indices (n,), places (n, 2), normals (n, 2) towards where they were seen from, and how
@@ -87,7 +87,7 @@ class Reference:
 
 
 class Likelihood:
-    """How likely something is seen at the cells of a grid, and the most of 2x2, 4x4, ... cells from each on.
+    """A grid of likelihoods, and the maxima over 2x2, 4x4, ... cells from each on.
 
     Args:
         points: where something is, of shape (n, 2), metres.
@@ -110,7 +110,7 @@ class Likelihood:
         self._levels: list[NDArray[np.float32]] = [finest]
 
     def level(self, number: int) -> tuple[NDArray[np.float32], int]:
-        """The grid whose cell (row + n, column + n) has the most of 2^number x 2^number cells from (row, column) on.
+        """The grid whose cell (row + n, column + n) is the maximum of 2^number x 2^number cells from (row, column).
 
         Returns:
             The grid, and n.

@@ -1,4 +1,4 @@
-"""A laser scan as the mapper takes it: points around the robot."""
+"""Laser scans for the mapper: points around the robot."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.navigation.slam.poses import Floats
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanarScan:
-    """What a laser measured at a moment, in the frame of the robot's base. The robot is taken to stand still meanwhile.
+    """A laser scan in the frame of the robot's base, which is taken to stand still during a scan.
 
     Attributes:
         points: where rays ended on something, of shape (n, 2), metres.
@@ -35,7 +35,7 @@ def planar_scan(
     laser: tuple[Floats, Floats],
     stamp_ns: int,
 ) -> PlanarScan:
-    """A scan from what a laser publishes.
+    """Convert the ranges of a laser to points.
 
     As in Karto a range that is not measured (NaN, infinite, 0, outside of the laser's own limits) tells nothing, and
     one longer than the mapper wants tells that the way until there is free.

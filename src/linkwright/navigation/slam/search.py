@@ -1,4 +1,4 @@
-"""The pose in a window at which a scan fits best what was seen before.
+"""The pose in a window at which a scan fits a reference best, by branch and bound.
 
 The search is that of Olson ("Real-Time Correlative Scan Matching", ICRA 2009) with the branch and bound of Hess et al.
 ("Real-Time Loop Closure in 2D LIDAR SLAM", ICRA 2016): blocks of positions are judged by the most that any in them can
@@ -27,7 +27,7 @@ _BLOCKS = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Search:
-    """A window of poses, and how they are judged; names and meanings are those of Karto's parameters.
+    """A window of poses, and the penalties in it; names and meanings are those of Karto's parameters.
 
     Attributes:
         dimension: side of the window, metres.
@@ -53,13 +53,13 @@ class Search:
 
     @property
     def cell(self) -> float:
-        """The side of the cells that are searched, metres: half of the smear is fine enough for what follows."""
+        """The resolution of the search, metres: half of the smear is fine enough for what follows."""
         return max(self.resolution, self.smear_deviation / 2)
 
 
 @dataclass(slots=True, eq=False)
 class _Blocks:
-    """Blocks of positions: which angle, the first row and column, and the most of the responses in each."""
+    """Blocks of positions: the angle, the first row and column, and the greatest response in each."""
 
     angle: NDArray[np.int64]
     row: NDArray[np.int64]
@@ -90,7 +90,7 @@ class _Window:
         self._columns = np.floor(x / likelihood.resolution).astype(np.int32)
 
     def top(self) -> tuple[int, _Blocks]:
-        """The level of the largest blocks, and these, not judged."""
+        """The level of the largest blocks, and these, without bounds."""
         side = 2 * self.half + 1
         level = max(0, (side // _BLOCKS).bit_length() - 1)
         offsets = np.arange(-self.half, self.half + 1, 1 << level)
@@ -100,7 +100,7 @@ class _Window:
         return level, _Blocks(angle, row, column, np.zeros(len(angle)))
 
     def judge(self, blocks: _Blocks, level: int) -> None:
-        """Set the bounds of blocks."""
+        """Compute the bounds of blocks."""
         grid, begin = self._likelihood.level(level)
         height, width = grid.shape
         flat = grid.ravel()
@@ -136,7 +136,7 @@ class _Window:
 
 
 def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Search) -> Steps[tuple[Floats, float]]:
-    """Search, in steps.
+    """Search the best pose, in steps.
 
     Args:
         likelihood: what was seen before.
@@ -179,7 +179,7 @@ def _judged(window: _Window, blocks: _Blocks, level: int) -> Steps[None]:
 
 
 def _descend(window: _Window, blocks: _Blocks, level: int) -> _Blocks:
-    """A single pose with a good response: from the best block always the best quarter."""
+    """A first good pose: from the best block always the best quarter."""
     index = int(np.argmax(blocks.bound))
     block = blocks.part(np.s_[index : index + 1])
     while level:

@@ -1,4 +1,4 @@
-"""What a mapper is told; names, units and defaults are those of slam_toolbox's parameters."""
+"""Settings of the mapper; names, units and defaults are those of slam_toolbox's parameters."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.navigation.slam.search import Search
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapperSettings:
-    """Lengths are in metres, angles in radians, times in seconds.
+    """Settings of a mapper. Lengths are in metres, angles in radians, times in seconds.
 
     Attributes:
         use_scan_matching: whether scans are matched to those before; else odometry is believed.

@@ -1,4 +1,4 @@
-"""Work that is done step by step, so that a node does other things between two of them.
+"""Generators of work in steps, so that a node does other things between two of them.
 
 A function that takes long is a generator: it yields after some milliseconds, and returns its result. Who has the time
 calls `finish`; others call ``next`` when it suits them, or ``yield from`` it in work of their own.
@@ -16,7 +16,7 @@ Steps = Generator[None, None, T]
 
 
 def finish(work: Steps[T]) -> T:
-    """Do all steps of some work.
+    """Run all steps.
 
     Returns:
         Its result.

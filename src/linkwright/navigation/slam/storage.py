@@ -1,4 +1,4 @@
-"""A graph of poses with its scans as a file, to go on with it later or to find oneself in it.
+"""Files of a graph of poses with its scans, as slam_toolbox's serialised maps.
 
 The file is a NumPy archive of plain arrays, of our own: what slam_toolbox writes is the memory of its C++ classes, as
 Boost serialises it, and cannot be read by others.
@@ -34,12 +34,12 @@ _LARGEST_FILE = 1 << 30
 
 
 def path_of(name: str) -> Path:
-    """The file of a graph, whose ending may be left out."""
+    """The file of a graph, from a name whose ending may be missing."""
     return Path(name if name.endswith(ENDING) else name + ENDING)
 
 
 def save_graph(mapper: Mapper, path: Path) -> None:
-    """Write a mapper's graph and scans.
+    """Save a mapper's graph and scans.
 
     Raises:
         OSError: the file cannot be written.
@@ -64,7 +64,7 @@ def save_graph(mapper: Mapper, path: Path) -> None:
 
 
 def load_graph(mapper: Mapper, path: Path) -> None:
-    """Replace what a mapper has by what is in a file; nothing of it is drawn yet.
+    """Load a graph into a mapper; nothing of it is drawn yet.
 
     Raises:
         LinkwrightError: NAV501, the file is not there, or is no graph that was written here; the mapper is as it was.
