@@ -1,1 +1,1 @@
-"""Worlds and models: reading SDF, finding what it includes, and where everything stands."""
+"""Worlds and models: reading SDF, resolving includes, and computing poses."""

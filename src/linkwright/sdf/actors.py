@@ -1,4 +1,4 @@
-"""``<actor>``: a figure that walks along a path.
+"""``<actor>``: an animated figure that walks along a path.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``actor.sdf``.
 """
@@ -18,7 +18,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Skin:
-    """The mesh of a figure, by its URI, and a factor on its size."""
+    """The mesh of a figure, by its URI, and a scale."""
 
     filename: str = "__default__"
     scale: float = 1.0
@@ -26,7 +26,7 @@ class Skin:
 
 @dataclass(frozen=True, slots=True)
 class Animation:
-    """A movement of the limbs, from a file; with `interpolate_x` it goes as fast as the figure walks."""
+    """A movement of the limbs, from a file; with `interpolate_x` its speed follows that of the figure."""
 
     name: str
     filename: str = "__default__"
@@ -36,7 +36,7 @@ class Animation:
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """Where the figure is at a time in seconds."""
+    """The pose of the figure at a time in seconds."""
 
     time: float = 0.0
     pose: RawPose = AT_ORIGIN
@@ -44,7 +44,7 @@ class Waypoint:
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """A path through points, walked in the animation `type`; tension 0 makes it round, 1 straight."""
+    """A path through waypoints, walked with the animation `type`; tension 0 makes it round, 1 straight."""
 
     id: int = 0
     type: str = ""
@@ -54,7 +54,7 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """When the figure walks: from `delay_start` seconds on, by itself or when told, once or again and again."""
+    """When the figure walks: after `delay_start` seconds, by itself or when started, once or in a loop."""
 
     loop: bool = True
     delay_start: float = 0.0
@@ -64,7 +64,7 @@ class Script:
 
 @dataclass(frozen=True, slots=True)
 class Actor:
-    """A figure that walks along a path; nothing stops it."""
+    """A figure that walks along a path, without contacts."""
 
     name: str
     pose: RawPose = AT_ORIGIN

@@ -1,4 +1,4 @@
-"""The bodies of a robot: which of its links are one, and where they stand in it.
+"""The rigid bodies of a robot: links joined by fixed joints, and their poses in the body.
 
 Source: libsdformat's parser of URDF, which makes one link of those that fixed joints connect.
 """
@@ -18,7 +18,7 @@ from linkwright.urdf.model import Joint, Link
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A link of a body.
+    """A link of a body, and its pose.
 
     Attributes:
         link: the link.
@@ -33,7 +33,7 @@ class Part:
 
 @dataclass(slots=True)
 class Body:
-    """Links that move as one.
+    """Links joined by fixed joints.
 
     Attributes:
         parts: the link that the body is named by, then those that hang from it.
@@ -51,7 +51,7 @@ class Body:
 
     @property
     def name(self) -> str:
-        """The name of the link that it becomes."""
+        """The name of the link of SDF that it becomes."""
         return self.parts[0].link.name
 
 
@@ -91,5 +91,5 @@ def bodies_of(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
 
 
 def _by_name(joints: list[Joint]) -> list[Joint]:
-    """Joints in the order in which they are taken from the end of a list."""
+    """Joints sorted for taking them from the end of a list."""
     return sorted(joints, key=lambda joint: joint.name, reverse=True)

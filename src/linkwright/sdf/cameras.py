@@ -1,4 +1,4 @@
-"""``<camera>``: what cameras of all kinds see.
+"""``<camera>``: cameras of all kinds.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``camera.sdf``.
 """
@@ -16,7 +16,7 @@ from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, made, v
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """Size in pixels and format of a camera's pictures, as ``R8G8B8``."""
+    """Size in pixels and format of a camera's image, as ``R8G8B8``."""
 
     width: int = 320
     height: int = 240
@@ -25,7 +25,7 @@ class Picture:
 
 @dataclass(frozen=True, slots=True)
 class Clip:
-    """The nearest and the farthest distance that a camera sees, in metres."""
+    """The near and the far clip distance, in metres."""
 
     near: float = 0.1
     far: float = 100.0

@@ -1,4 +1,4 @@
-"""Whether two things that were read say the same, wherever and however they were written."""
+"""Comparing parts of models: equal content, wherever and however it was written."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.xmltree import Element
 
 
 def alike(one: Any, other: Any) -> bool:
-    """Whether two parts of the model of a file, or tuples of them, say the same.
+    """Whether two parts of the model of a file, or tuples of them, have equal content.
 
     Comments, blanks and positions make no difference. The parameters of plugins do, which only their elements hold, and
     so do the folders of files that name meshes by paths.
@@ -45,7 +45,7 @@ def _said(element: Element) -> tuple[object, ...]:
 
 
 def _folder(part: Visual | Collision) -> Path | None:
-    """The folder from which the paths in a part with a mesh start; None where it makes no difference."""
+    """The folder to which the paths in a part with a mesh are relative; None where it makes no difference."""
     shape, element = part.geometry, part.element
     if not isinstance(shape, Mesh | Heightmap) or "://" in shape.uri or element is None or element.source is None:
         return None

@@ -1,4 +1,4 @@
-"""Worlds of so many links that reading them would take minutes, and GB: they are counted without being read."""
+"""Worlds of so many links that reading them would take minutes, and GB: counting the links without reading them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _COUNTED = frozenset({"link", "include"})
 
 
 def has_more_links(data: bytes | str, most: int) -> bool:
-    """Whether the first world of a text has more links and includes than so many; it is read up to the first too many.
+    """Whether the first world of a text has more links and includes than a number; parsing stops at the first too many.
 
     Args:
         data: the text; of one that is not well formed nothing is said here.
@@ -30,7 +30,7 @@ def has_more_links(data: bytes | str, most: int) -> bool:
 
 
 class _DoneError(Exception):
-    """There is nothing more to count."""
+    """Ends the parsing: there is nothing more to count."""
 
 
 class _Counter:
@@ -52,5 +52,5 @@ class _Counter:
             raise _DoneError
 
     def stop(self, *_declared: object) -> None:
-        """An entity may stand for anything: the reader of XML knows how to deal with it."""
+        """End the counting at an entity, which may stand for anything: the reader of XML handles it."""
         raise _DoneError

@@ -1,4 +1,4 @@
-"""What is seen and touches nothing: the figures of actors, and roads, as models that simulators draw."""
+"""Actors and roads as models for drawing, without contacts."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _PERSON: tuple[tuple[Capsule | Sphere, Vector3, Material], ...] = (
 
 
 def figure_of(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
-    """The figure of an actor: what its links look like, and its skin.
+    """The model of an actor: the shapes of its links, and its skin.
 
     Args:
         actor: what is written about it.
@@ -58,7 +58,7 @@ def figure_of(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
 
 
 def road_of(road: Road) -> Model:
-    """A road as it is seen: a strip along its points, as wide as it says, whose top is at their height."""
+    """The model of a road: a strip of its width along its points, whose top is at their height."""
     visuals: list[Visual] = []
     for start, end in zip(road.points, road.points[1:], strict=False):
         (x, y, z), (dx, dy, dz) = start, (end[0] - start[0], end[1] - start[1], end[2] - start[2])

@@ -1,4 +1,4 @@
-"""Where everything stands: the frames of models and worlds, as "pose frame semantics" of SDF 1.7 and later has them.
+"""Poses of frames in models and worlds, by the "pose frame semantics" of SDF 1.7 and later.
 
 Source: the proposal "Pose Frame Semantics" of SDFormat. Poses of older files, which name no frames, come out the same.
 A frame is named within its model or world; ``arm::tip`` is the frame ``tip`` of the model ``arm`` in it.
@@ -37,7 +37,7 @@ _NO_ANGLE = 1e-12
 
 
 class FrameError(Exception):
-    """A frame cannot be placed.
+    """A pose cannot be computed.
 
     Attributes:
         name: the frame that is not there, or one of those that stand in a circle.
@@ -51,7 +51,7 @@ class FrameError(Exception):
 
 
 class Frames:
-    """The frames of a model or world, by names.
+    """The frames of a model or world, by their names.
 
     Args:
         owner: the model or world, with its includes resolved.
@@ -76,7 +76,7 @@ class Frames:
         return isinstance(self.named.get(head), Model) and tail in self.inside(head)
 
     def inside(self, name: str) -> Frames:
-        """The frames of a model in it."""
+        """The frames of a nested model."""
         frames = self._inner.get(name)
         if frames is None:
             model = self.named.get(name)
@@ -86,7 +86,7 @@ class Frames:
         return frames
 
     def pose(self, name: str) -> Transform:
-        """Where a frame stands in the frame of the model or world.
+        """The pose of a frame in the model or world.
 
         Raises:
             FrameError: it is not there, or stands relative to itself by way of others.
@@ -104,7 +104,7 @@ class Frames:
         return found
 
     def placed(self, pose: RawPose, absent: str = "") -> Transform:
-        """Where a pose is in the frame of the model or world.
+        """The pose of a part in the model or world.
 
         Args:
             pose: as written.
@@ -116,7 +116,7 @@ class Frames:
         return compose(self.pose(pose.relative_to or absent), transform_of(pose.pose))
 
     def in_link(self, pose: RawPose, link: str) -> Transform:
-        """Where a part of a link is in the frame of the link.
+        """The pose of a part of a link in the frame of the link.
 
         One that stands relative to a frame that is not there stands in the link, as libsdformat has it; `check` tells.
 
@@ -139,7 +139,7 @@ class Frames:
         return rotate(invert(self.pose(joint.name))[3:], in_owner)
 
     def link(self, name: str) -> str:
-        """The link that a frame moves with, named from here; ``world`` for what moves with the world.
+        """The link to which a frame is attached, named from here; ``world`` for what is fixed to the world.
 
         Raises:
             FrameError: it is not there, moves with itself by way of others, or the model has no link.
@@ -166,7 +166,7 @@ class Frames:
             name = found.attached_to if isinstance(found, Frame) else found.child
 
     def _canonical_link(self) -> str:
-        """The link that the frame of the model is attached to: the one it names, or the first in it."""
+        """The canonical link: the one that the model names, or the first in it."""
         model = self.owner
         assert isinstance(model, Model)
         if model.canonical_link:
@@ -178,7 +178,7 @@ class Frames:
         raise FrameError(MODEL)
 
     def _base(self, name: str) -> str:
-        """The frame in which the pose of another is given."""
+        """The frame to which the pose of another is relative."""
         found = self.named.get(name)
         head, colon, _ = name.partition(SEPARATOR)
         if found is None and colon:
@@ -189,7 +189,7 @@ class Frames:
         return found.pose.relative_to or absent
 
     def _in_base(self, name: str) -> Transform:
-        """Where a frame stands in that in which its pose is given."""
+        """The pose of a frame in the one that it is relative to."""
         found = self.named.get(name)
         if found is None:
             head, _, tail = name.partition(SEPARATOR)
@@ -222,7 +222,7 @@ class PlacedLink:
 
 
 def placed_links(world: World) -> Iterator[PlacedLink]:
-    """All links of a world, in the order of the file, each with its place.
+    """All links of a world, in document order, each with its pose.
 
     Raises:
         FrameError: one cannot be placed.
@@ -233,7 +233,7 @@ def placed_links(world: World) -> Iterator[PlacedLink]:
 
 
 def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static: bool = False) -> Iterator[PlacedLink]:
-    """All links of a model and of those in it, each with its place.
+    """All links of a model and of those in it, each with its pose.
 
     Args:
         model: with its includes resolved.
@@ -261,7 +261,7 @@ def transform_of(pose: Pose) -> Transform:
 
 
 def pose_of(transform: Transform) -> Pose:
-    """A transform as a pose: by angles, or by the quaternion too where the angles would not say the same."""
+    """A transform as a pose: with angles, or with the quaternion too where the angles would not be exact."""
     rotation = transform[3:]
     rpy = rpy_from_quaternion(rotation)
     difference = quaternion_multiply(quaternion_from_rpy(rpy), quaternion_inverse(rotation))

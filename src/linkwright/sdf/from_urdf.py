@@ -1,4 +1,4 @@
-"""A robot as a model of SDF, as gz makes it of a URDF.
+"""Converting a robot of URDF to a model of SDF, as gz does.
 
 Source: libsdformat's parser of URDF and its page "URDF extensions in SDFormat".
 """
@@ -41,7 +41,7 @@ _BRIGHTER = 1.25
 
 @dataclass(frozen=True, slots=True)
 class Conversion:
-    """What a robot becomes.
+    """The result of a conversion.
 
     Attributes:
         model: the robot as a model of SDF.
@@ -53,7 +53,7 @@ class Conversion:
 
 
 def model_from_robot(robot: Robot, *, lump_fixed_joints: bool) -> Conversion:
-    """A robot as gz takes it from its URDF.
+    """Convert a robot as gz does.
 
     A root link called ``world`` is the world. The addresses of meshes stay as they are written.
 
@@ -104,7 +104,7 @@ class _Converter:
         )
 
     def _with_mass(self, bodies: list[Body]) -> list[Body]:
-        """The bodies that have a mass, without those that hang from one which has none, as gz leaves them out."""
+        """The bodies with a mass, without those below one without, as gz leaves them out."""
         left_out: set[str] = set()
         kept = []
         for body in bodies:
@@ -127,7 +127,7 @@ class _Converter:
         self._report.warning("SDF170", message, element, hint=phrase("give it an <inertial> with a mass"))
 
     def _tell_of_usual_mass(self, bodies: list[Body]) -> None:
-        """Tell of what moves by itself and has no mass: SDF gives it one, where gz leaves it out."""
+        """Warn of a movable body without mass: SDF gives it 1 kg, where gz leaves it out."""
         if self._lumps:
             return
         links = [each.parts[0].link for each in bodies if each.joint is None or each.joint.type != "fixed"]
@@ -162,12 +162,12 @@ class _Converter:
         )
 
     def _weightless(self, link: urdf.Link) -> Inertial | None:
-        """The mass of a link that has none: next to nothing where others that are fixed to it have one."""
+        """The mass of a link that has none: next to nothing where links fixed to it have one."""
         rigid = self._rigid.of(link.name)
         return _FRAME if not self._lumps and rigid is not None and self._rigid.mass(rigid) > 0 else None
 
     def _pose(self, body: Body) -> RawPose:
-        """Where a link stands: where its joint does, in the frame of that, or in that of the link above it."""
+        """The pose of a link: that of its joint, relative to its own or to the parent link."""
         if body.joint is None:
             return RawPose()
         if body.joint.type in _TYPES and body.joint.name not in self._robot.links:
@@ -201,7 +201,7 @@ class _Converter:
         )
 
     def _frames(self, body: Body) -> Iterator[Frame]:
-        """What the lumped links and their joints were, as frames."""
+        """The lumped links and their joints, as frames."""
         for part in body.parts[1:]:
             joint, link = part.joint, part.link
             assert joint is not None
@@ -232,14 +232,14 @@ def _from_parent(body: Body) -> RawPose:
 
 
 def _moved(thing: _Posed, pose: Transform) -> _Posed:
-    """What stood in the frame of a link, in that of the body which the link is a part of."""
+    """A part of a link, moved to the frame of its body."""
     if thing.pose.relative_to:
         return thing
     return replace(thing, pose=RawPose(pose_of(compose(pose, transform_of(thing.pose.pose)))))
 
 
 def _placed(pose: Pose, part: Part) -> RawPose:
-    """A pose in the frame of a part, in that of its body."""
+    """A pose in the frame of a part, expressed in that of its body."""
     return RawPose(pose if part.joint is None else pose_of(compose(part.pose, transform_of(pose))))
 
 
@@ -296,7 +296,7 @@ def _shape(geometry: urdf.Geometry) -> shapes.Shape:
 
 
 def _material(written: urdf.Material | None, said: Material | None) -> Material | None:
-    """The material of a visual with what ``<gazebo>`` says of it, whose colours come first."""
+    """The material of a visual, with the colours and scripts of ``<gazebo>``, which come first."""
     if said is not None and said.script is not None and (look := gazebo_look(said.script.name)) is not None:
         return painted(said, look)
     if written is None or (said is not None and (said.diffuse or said.ambient)):
@@ -316,7 +316,7 @@ def _brighter(part: float) -> float:
 
 
 def _axis(joint: urdf.Joint, said: Axis) -> Axis:
-    """The axis of a joint with the spring that ``<gazebo>`` gives it."""
+    """The axis of a joint, with the spring of ``<gazebo>``."""
     limit, dynamics, mimic = AxisLimit(), said.dynamics, None
     if joint.limit is not None:
         limit = AxisLimit(effort=joint.limit.effort, velocity=joint.limit.velocity)

@@ -1,4 +1,4 @@
-"""``<gazebo>`` in a URDF: what a description says to simulators alone.
+"""``<gazebo>`` in a URDF: what a description tells simulators only.
 
 Most of what stands in it is SDF for the link, joint or model that it refers to; some words are older than SDF and stand
 for elements of it (``mu1``, ``turnGravityOff``). Both are put together as one element of SDF and read by SDF's tables,
@@ -71,7 +71,7 @@ _MATERIALS = "file://media/materials/scripts/gazebo.material"
 
 @dataclass(frozen=True, slots=True)
 class LinkExtension:
-    """What simulators are told of a link.
+    """The simulators' settings of a link.
 
     Attributes:
         link: sensors, lights and whether it falls; its shapes, mass and pose are not those of the link.
@@ -85,7 +85,7 @@ class LinkExtension:
 
 
 class Extensions:
-    """The ``<gazebo>`` elements of a robot by what they refer to.
+    """The ``<gazebo>`` elements of a robot by their ``reference``.
 
     Args:
         robot: the robot.
@@ -100,7 +100,7 @@ class Extensions:
                 self._by_name[element.attributes.get("reference", "")].append(element)
 
     def model(self, robot: Robot) -> Model:
-        """What the whole robot is told: plugins, and the links and joints that URDF cannot have."""
+        """The settings of the whole robot: plugins, and the links and joints that URDF cannot have."""
         whole = _like(robot.element, "model", robot.name)
         for gazebo in self._by_name.get("", ()):
             whole.children += _blobs(gazebo)
@@ -109,7 +109,7 @@ class Extensions:
         return model
 
     def link(self, link: urdf.Link) -> LinkExtension:
-        """What a link, its visuals and its collisions are told."""
+        """The settings of a link, its visuals and its collisions."""
         whole = _like(link.element, "link", link.name)
         visual, collision = _like(link.element, "visual", link.name), _like(link.element, "collision", link.name)
         for gazebo in self._by_name.get(link.name, ()):
@@ -126,7 +126,7 @@ class Extensions:
         )
 
     def joint(self, joint: urdf.Joint, robot: Robot) -> Joint:
-        """What a joint is told: sensors, a spring, whether its forces are measured."""
+        """The settings of a joint: sensors, a spring, whether its forces are measured."""
         whole = _like(joint.element, "joint", joint.name)
         whole.attributes["type"] = "fixed"
         _put(whole, "parent", joint.parent, whole)
@@ -139,11 +139,11 @@ class Extensions:
         return found
 
     def stays_fixed(self, joint: urdf.Joint) -> bool:
-        """Whether the links of a fixed joint are to stay two (``preserveFixedJoint``)."""
+        """Whether the links of a fixed joint stay separate (``preserveFixedJoint``)."""
         return self._is_true(joint, _KEPT_FIXED)
 
     def becomes_revolute(self, joint: urdf.Joint) -> bool:
-        """Whether a fixed joint is to be one that could turn, by no angle (``disableFixedJointLumping``)."""
+        """Whether a fixed joint becomes a revolute one with equal limits (``disableFixedJointLumping``)."""
         return self._is_true(joint, _MADE_REVOLUTE) and not self.stays_fixed(joint)
 
     def _is_true(self, joint: urdf.Joint, word: str) -> bool:
@@ -151,7 +151,7 @@ class Extensions:
         return any(_said(each).casefold() in _TRUE for each in said)
 
     def _add_words(self, whole: Element, gazebo: Element, words: _Words, rule: ElementRule) -> None:
-        """Put what words stand for into an element; of several that say the same thing the last counts."""
+        """Add the elements for words to an element; the last of several equal words counts."""
         for word in gazebo.elements():
             for path in words.get(word.tag, ()):
                 place, text = _rule_at(rule, path), _said(word)
@@ -169,19 +169,19 @@ class Extensions:
 
 
 def _like(element: Element | None, tag: str, name: str) -> Element:
-    """An element of SDF that stands where one of URDF does."""
+    """An element of SDF at the place of one of URDF."""
     if element is None:
         return Element(tag, {"name": name})
     return Element(tag, {"name": name}, element.source, element.offset, element.origin)
 
 
 def _blobs(gazebo: Element) -> Iterator[Element]:
-    """What is SDF already."""
+    """The children that are SDF already."""
     return (each for each in gazebo.elements() if each.tag not in _WORDS and each.tag not in _SHAPES)
 
 
 def _take(shape: Element, said: Element) -> None:
-    """Put what is said of all shapes of a link into one; a later surface or material replaces an earlier one."""
+    """Merge the settings of all shapes of a link; a later surface or material replaces an earlier one."""
     for each in said.elements():
         if each.tag in ("surface", "material"):
             shape.children = [other for other in shape.elements() if other.tag != each.tag]
@@ -195,7 +195,7 @@ def _copied(element: Element) -> Element:
 
 
 def _put(whole: Element, path: str, text: str, place: Element) -> None:
-    """Make an element in others say something; those that are not there are made, and stand where another does."""
+    """Set the text of a nested element; missing ones are made, at the place of another."""
     for tag in path.split("/"):
         inner = whole.first(tag)
         if inner is None:
@@ -212,12 +212,12 @@ def _with_text(word: Element, text: str) -> Element:
 
 
 def _said(word: Element) -> str:
-    """What a word says, as its attribute ``value`` or inside."""
+    """The value of a word, in its attribute ``value`` or inside."""
     return word.attributes.get("value", word.text()).strip()
 
 
 def _truth(word: str, text: str) -> str:
-    """``true`` or ``false``; what is neither leaves things as they usually are."""
+    """A boolean as ``true`` or ``false``; any other text stands for the word's usual value."""
     said = text.casefold()
     if word in _NEGATED:
         return "true" if said in _FALSE else "false"

@@ -1,4 +1,4 @@
-"""Putting included models into the worlds and models that include them."""
+"""Resolving ``<include>`` in worlds and models."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Thing = Model | Light | Actor
 
 @dataclass
 class Included:
-    """What came of resolving the includes of a file.
+    """A file after resolving its includes.
 
     Attributes:
         sdf: the file with the included models in the places of their includes, which are gone; an include that leads
@@ -46,7 +46,7 @@ class Included:
 
 
 def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
-    """Put what a file includes where it is included.
+    """Replace the includes of a file by what they name.
 
     Args:
         sdf: what the file says.
@@ -138,7 +138,7 @@ class _Resolver:
             return merged(whole, replace(part, placement_frame=""))
 
     def _included(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Thing | None:
-        """The included model, light or actor, as it is here; None where there is none, which has been told."""
+        """The included model, light or actor with the include's changes; None, with a finding, if it is missing."""
         if not include.uri:
             return None  # which the reader told
         found = self._finder.model(include.uri, path.parent)
@@ -168,7 +168,7 @@ class _Resolver:
         return None
 
     def _check_name(self, thing: Thing | None, include: Include, names: set[str]) -> None:
-        """Tell of an included model whose name something beside it has already, and keep the name in mind."""
+        """Report an included model whose name is taken, and record the name."""
         if not isinstance(thing, Model):
             return
         if thing.name in names:
@@ -178,7 +178,7 @@ class _Resolver:
         names.add(thing.name)
 
     def _read(self, path: Path, include: Include) -> Reading | None:
-        """What a file says; what is wrong with it is told once, with the place that includes it."""
+        """Read an included file; its findings are reported once, with the place of the include."""
         if path in self._readings:
             return self._readings[path]
         self.files[path] = None
@@ -212,7 +212,7 @@ class _Resolver:
 
 
 def _as_included(model: Model, include: Include) -> Model:
-    """A model with what the include says about it."""
+    """A model with the changes of the include."""
     return replace(
         model,
         name=include.name or model.name,

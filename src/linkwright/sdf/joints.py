@@ -131,7 +131,7 @@ def _direction(said: Vector3, expressed_in: str) -> tuple[Vector3, str]:
 
 
 def _limit(lower: float, upper: float, effort: float, velocity: float, **rest: float) -> AxisLimit:
-    """Bounds with infinities where the file has what stands for them: 1e16 and more, or a negative effort or speed."""
+    """A limit, infinite where the file has what stands for that: 1e16 and more, or a negative effort or speed."""
     return AxisLimit(
         -inf if lower <= -1e16 else lower,
         inf if upper >= 1e16 else upper,

@@ -1,4 +1,4 @@
-"""``<link>``: mass, shapes and what is mounted on it.
+"""``<link>``: inertial, visuals, collisions and sensors.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``link.sdf`` and the files of its parts.
 """
@@ -95,7 +95,7 @@ class Collision:
 
 @dataclass(frozen=True, slots=True)
 class Decay:
-    """The share of linear and angular velocity that is lost in a step."""
+    """Damping: the share of linear and angular velocity that is lost in a step."""
 
     linear: float = 0.0
     angular: float = 0.0

@@ -1,4 +1,4 @@
-"""What stands in a world, as text."""
+"""Listing the contents of a world."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.sdf.worlds import Sdf, World
 
 
 def sdf_text(sdf: Sdf) -> str:
-    """Worlds with their models, lights and actors, models with those in them; two blanks a level, a line for each."""
+    """Worlds with their models, lights and actors, nested models below theirs; two blanks a level, a line for each."""
     lines: list[str] = []
     for world in sdf.worlds:
         lines += [_line(0, phrase("world {name}", name=world.name)), *_world(world)]

@@ -1,4 +1,4 @@
-"""The mass properties of several links as one."""
+"""Lumping the mass properties of several links."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from linkwright.urdf import model as urdf
 
 
 def lumped_inertial(parts: Sequence[Part]) -> Inertial | None:
-    """The mass properties of the parts of a body, in the axes in which those of the first are; None without any.
+    """The mass properties of a body's parts together, in the axes of the first one's; None without any.
 
     Source of the axes: libsdformat's parser of URDF.
     """

@@ -1,4 +1,4 @@
-"""``<material>``: how a shape looks.
+"""``<material>``: colours, textures and shaders.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``material.sdf``.
 """
@@ -13,7 +13,7 @@ from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, made, reada
 
 @dataclass(frozen=True, slots=True)
 class MaterialScript:
-    """A material that stands in a script of the renderer, such as ``Gazebo/Grey``, and where scripts are looked for."""
+    """A material in a script of the renderer, such as ``Gazebo/Grey``, and the folders of scripts."""
 
     uris: tuple[str, ...] = ()
     name: str = ""
@@ -21,7 +21,7 @@ class MaterialScript:
 
 @dataclass(frozen=True, slots=True)
 class Workflow:
-    """A physically based surface: images by their URIs, roughness and metalness from 0 to 1.
+    """A physically based material: images by their URIs, roughness and metalness from 0 to 1.
 
     Attributes:
         metalness: None where the other workflow (specular and glossiness) is given.
@@ -44,7 +44,7 @@ class Workflow:
 
 @dataclass(frozen=True, slots=True)
 class Pbr:
-    """The workflows that a material gives, of which renderers take the one that they know."""
+    """The workflows of a material, of which renderers take the one that they support."""
 
     metal: Workflow | None = None
     specular: Workflow | None = None
@@ -52,7 +52,7 @@ class Pbr:
 
 @dataclass(frozen=True, slots=True)
 class Shader:
-    """How a material is shaded in Gazebo classic: ``vertex``, ``pixel`` or by a map of normals."""
+    """The shader of a material in Gazebo classic: ``vertex``, ``pixel`` or by a normal map."""
 
     type: str = "pixel"
     normal_map: str = ""
@@ -60,7 +60,7 @@ class Shader:
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """How a shape looks; of colours and images that are not given nothing is said.
+    """The material of a visual; colours and images that are absent are None.
 
     Attributes:
         ambient: the colour in the shade.

@@ -45,7 +45,7 @@ def merged(whole: Model, part: Model) -> Model:
 
 
 def _moved(thing: _Posed, frame: str) -> _Posed:
-    """A part whose pose was in the frame of its model: now in that which stands for it."""
+    """A part whose pose is relative to its model's frame, now relative to the frame that replaces it."""
     pose = thing.pose
     is_attached = isinstance(thing, Frame) and thing.attached_to != ""
     if pose.relative_to == MODEL or (pose.relative_to == "" and not is_attached):
@@ -58,7 +58,7 @@ def _attached(thing: Frame, frame: str) -> Frame:
 
 
 def _connected(joint: Joint, frame: str) -> Joint:
-    """A joint whose ends, pose or axes were in the frame of its model; its pose is in the frame of its child."""
+    """A joint whose ends, pose or axes refer to its model's frame; its pose is relative to its child."""
     pose = RawPose(joint.pose.pose, frame) if joint.pose.relative_to == MODEL else joint.pose
     return replace(
         joint,
@@ -71,7 +71,7 @@ def _connected(joint: Joint, frame: str) -> Joint:
 
 
 def _turned(axis: Axis | None, frame: str) -> Axis | None:
-    """An axis that was in the frame of its model."""
+    """An axis in the frame of its model."""
     if axis is None or axis.expressed_in != MODEL:
         return axis
     return replace(axis, expressed_in=frame)

@@ -1,4 +1,4 @@
-"""The files of meshes and heightmaps that worlds and models name."""
+"""Paths of the meshes and heightmaps of worlds and models."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.sdf.shapes import Heightmap, Mesh
 
 
 def shapes_of(model: Model) -> Iterator[Visual | Collision]:
-    """What is seen and touched of a model and of the models in it."""
+    """All shapes of visuals and collisions of a model and of the models in it."""
     for link in model.links:
         yield from link.visuals
         yield from link.collisions
@@ -21,7 +21,7 @@ def shapes_of(model: Model) -> Iterator[Visual | Collision]:
 
 
 def mesh_files(models: Iterable[Model], finder: ResourceFinder) -> tuple[Path, ...]:
-    """The files of the meshes and heightmaps of models, each once; of those that are there."""
+    """The existing files of the meshes and heightmaps of models, each once."""
     found: dict[Path, None] = {}
     for shape in (each for model in models for each in shapes_of(model)):
         if isinstance(shape.geometry, Mesh | Heightmap) and shape.element is not None and shape.element.source:

@@ -19,7 +19,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A frame of its own.
+    """A frame of a model or world.
 
     Attributes:
         attached_to: the link, joint, frame or model that it moves with; empty for the model or world it is in.
@@ -34,7 +34,7 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Include:
-    """A model, light or actor of another file, and what is different about it here.
+    """An included model, light or actor, with the changes that the include makes.
 
     Attributes:
         uri: ``model://NAME``, a path or the address of a model.

@@ -1,4 +1,4 @@
-"""``<noise>`` on what sensors measure.
+"""``<noise>`` of sensors.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``noise.sdf``.
 """
@@ -41,7 +41,7 @@ NO_NOISE = Noise()
 
 @dataclass(frozen=True, slots=True)
 class NoiseXyz:
-    """Noise on the three parts of a vector."""
+    """Noise on the three components of a vector."""
 
     x: Noise = NO_NOISE
     y: Noise = NO_NOISE
@@ -62,12 +62,12 @@ _NOISE_PARTS = (
 
 
 def _noise_of(type: str, said_type: str, **parts: float) -> Noise:  # noqa: A002 - the attribute's name
-    """Noise; older files name its type by an element, and Gazebo takes Gaussian noise where only numbers are given."""
+    """Read noise; older files name its type by an element, and mere numbers are Gaussian noise, as in Gazebo."""
     return Noise(said_type or type or ("gaussian" if any(parts.values()) else "none"), **parts)
 
 
 def noise_rule(tag: str = "noise", meaning: str = "noise on the value", target: str = "") -> ElementRule:
-    """An element that says how something is noisy."""
+    """The rule of an element of noise."""
     return ElementRule(
         tag,
         meaning,
@@ -84,7 +84,7 @@ def noise_rule(tag: str = "noise", meaning: str = "noise on the value", target: 
 
 
 def around_noise(tag: str, meaning: str, target: str = "") -> ElementRule:
-    """An element that has nothing but noise in it, and stands for that."""
+    """The rule of an element that holds nothing but noise."""
     inside = replace(noise_rule(), get=_inner)
     return made(_inner, tag, meaning, inside, default=NO_NOISE, field=target or tag)
 
@@ -94,6 +94,6 @@ def _inner(noise: Noise) -> Noise:
 
 
 def noise_xyz(tag: str, meaning: str, absent: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
-    """An element with noise for each of three parts."""
+    """The rule of an element with noise for each of three components."""
     parts = (around_noise("x", "along x"), around_noise("y", "along y"), around_noise("z", "along z"))
     return made(NoiseXyz, tag, meaning, *parts, default=absent)

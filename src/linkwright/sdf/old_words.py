@@ -1,4 +1,4 @@
-"""SDF 1.0 to 1.2 in the words of today.
+"""Translating SDF 1.0 to 1.2 to the elements of SDF 1.3 and later.
 
 SDF 1.0 wrote values in attributes, ``<origin pose="1 2 0 0 0 0"/>`` and ``<box size="1 1 1"/>``, where later versions
 have elements, ``<pose>1 2 0 0 0 0</pose>`` and ``<box><size>1 1 1</size></box>``. Which value belongs to which element
@@ -29,12 +29,12 @@ _OLD = re.compile(r"1\.[012]").fullmatch
 
 
 def has_old_words(root: Element) -> bool:
-    """Whether a document says that it is SDF 1.0 to 1.2."""
+    """Whether a document declares SDF 1.0 to 1.2."""
     return _OLD(root.attributes.get("version", "").strip()) is not None
 
 
 def in_words_of_today(element: Element, rule: ElementRule) -> Element:
-    """An element as SDF 1.3 writes it; what is told of its parts is told of the place that said them.
+    """Translate an element to SDF 1.3; findings on its parts point to the original ones.
 
     Args:
         element: of SDF 1.0 to 1.2; not changed.
@@ -66,7 +66,7 @@ def _child(child: Element, rule: ElementRule) -> Node:
 
 
 def _said(element: Element, rule: ElementRule, value: str) -> Element:
-    """The element for what an attribute of another one said."""
+    """The element for an attribute of another one."""
     new = Element(rule.tag, None, element.source, element.offset, element.origin)
     if "name" in rule.child_rules:
         new.children.append(_said(element, rule.child_rules["name"], value))

@@ -1,4 +1,4 @@
-"""``<plugin>``: code that the simulator is to run, with whatever parameters that code reads."""
+"""``<plugin>``: a library of the simulator, with parameters of any form."""
 
 from __future__ import annotations
 

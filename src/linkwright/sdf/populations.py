@@ -1,4 +1,4 @@
-"""``<population>``: many models of one kind, spread over a box or a cylinder.
+"""``<population>``: copies of a model, distributed over a box or a cylinder.
 
 Source of the elements: the SDFormat specification 1.12, ``population.sdf``; of the places and names, Gazebo classic's
 ``Population.cc``. There `random` and `uniform` are other places with each start; here they are the same with each one.
@@ -31,7 +31,7 @@ _GOLDEN_ANGLE = pi * (3 - sqrt(5))
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """How models are spread: `rows`, `columns` and `step`, in metres, are those of a grid."""
+    """The distribution of models: `rows`, `columns` and `step`, in metres, are those of a grid."""
 
     type: str = "random"
     rows: int = 1
@@ -41,7 +41,7 @@ class Distribution:
 
 @dataclass(frozen=True, slots=True)
 class Population:
-    """Models of one kind.
+    """A population: a model and the distribution of its copies.
 
     Attributes:
         pose: where the middle of the box is, of a cylinder that of its base, and of a grid its own.
@@ -62,7 +62,7 @@ class Population:
 
 
 def models_of(population: Population) -> Iterator[Model]:
-    """The models of a population, ``NAME_clone_0`` and so on; none where it has no place for them, as in Gazebo."""
+    """The models of a population, ``NAME_clone_0`` and so on; none without a volume, as in Gazebo."""
     if not population.models:
         return
     model = population.models[0]
@@ -75,7 +75,7 @@ def models_of(population: Population) -> Iterator[Model]:
 
 
 def _half(population: Population) -> Vector3:
-    """From the corner that places count from to the pose, which Gazebo does not turn."""
+    """The offset from the corner of the volume to its pose, which Gazebo does not rotate."""
     distribution = population.distribution
     if distribution.type == "grid":
         x, y, _ = distribution.step

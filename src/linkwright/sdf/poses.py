@@ -1,4 +1,4 @@
-"""``<pose>``: where something stands, as it is written, in the frame that it is written in."""
+"""``<pose>``: a pose as written, with the frame that it is relative to."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SEPARATOR = "::"
 
 @dataclass(frozen=True, slots=True)
 class RawPose:
-    """A pose as written; `linkwright.sdf.frames` works out where that is.
+    """A pose as written; `linkwright.sdf.frames` computes the pose in the model.
 
     Attributes:
         pose: the frame of what is posed, in the frame named by `relative_to`.

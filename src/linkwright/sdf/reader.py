@@ -1,4 +1,4 @@
-"""Reading an SDF document into worlds and models, with everything that is wrong with it told at once.
+"""Reading an SDF document into worlds and models, with all of its mistakes as findings.
 
 As libsdformat does, it goes on where it can: what is missing has its default, and what cannot be read counts as
 missing. Where libsdformat then refuses the file, the finding is an error.
@@ -109,7 +109,7 @@ OPEN = frozenset({"plugin", "gui"})
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What came of reading a document.
+    """The worlds, models and findings of a document.
 
     Attributes:
         sdf: what it says; None where it is not SDF.
@@ -121,7 +121,7 @@ class Reading:
 
 
 def read(document: Document) -> Reading:
-    """Read an SDF document; it never raises for what the document says."""
+    """Read an SDF document; never raises for its content."""
     report = SdfReport()
     root = document.root
     if root.tag != "sdf" and not (root.tag == _OLD_ROOT and "version" in root.attributes):
@@ -138,7 +138,7 @@ def read(document: Document) -> Reading:
 
 
 def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
-    """The object of an element that is not nested too deeply, with all that is wrong in it told."""
+    """Read an element of limited depth, with findings on all mistakes in it."""
     found = reader_of(rule, NEWEST).read(element, element, report)
     flat = _is_flat(element)
     for each, each_rule in _known(element, rule):
@@ -150,7 +150,7 @@ def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
 
 
 def is_too_deep(root: Element, report: SdfReport) -> bool:
-    """Whether an element has too many in each other to be read, which is told."""
+    """Whether an element is nested too deeply to be read, with a finding."""
     deep = _too_deep(root)
     if deep is not None:
         message = phrase("elements are nested more than {count} deep", count=_DEEPEST)
@@ -181,7 +181,7 @@ def _check_version(root: Element, report: SdfReport) -> None:
 
 
 def _too_deep(root: Element) -> Element | None:
-    """The first element with too many around it, or None."""
+    """The first element that is nested too deeply, or None."""
     waiting = [(root, 0)]
     while waiting:
         element, depth = waiting.pop()
@@ -205,19 +205,19 @@ def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementR
 
 
 def _is_let_be(element: Element, rule: ElementRule) -> bool:
-    """Whether an element that is not read is no mistake: one with a prefix, or a word of SDF without effect here."""
+    """Whether an unknown element is no mistake: it has a prefix, or is a word of SDF without effect here."""
     tag = element.tag
     return ":" in tag or tag in WITHOUT_EFFECT.get(rule.tag, ()) or (tag == _FRAME and POSE in rule.children)
 
 
 def _is_flat(root: Element) -> bool:
-    """Whether names may have '::' in them: up to SDF 1.7, whose included models became part of what included them."""
+    """Whether names may contain '::': up to SDF 1.7, where included models became part of the including one."""
     found = _VERSION(root.attributes.get("version", "").strip())
     return found is not None and int(found[1]) <= _NEWEST_FLAT_MINOR
 
 
 def _check_names(element: Element, rule: ElementRule, report: SdfReport, *, flat: bool) -> None:
-    """Tell of names that come twice, among all that poses may refer to and among shapes and sensors of one kind.
+    """Report duplicate names, among all that poses may refer to and among shapes and sensors of one kind.
 
     Names that mean something else to poses are told of as well.
     """

@@ -1,4 +1,4 @@
-"""Names that refer to something: whether what joints connect and poses stand relative to is there."""
+"""Checking the references of joints and poses by name."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.xmltree import Element
 
 
 def check_references(sdf: Sdf) -> list[Diagnostic]:
-    """What is wrong with the names that a file, with its includes resolved, refers to; each thing once."""
+    """The findings on references in a file with its includes resolved; each once."""
     found: dict[tuple[object, str], Diagnostic] = {}
     inserted = (model for world in sdf.worlds for state in world.states for model in state.insertions.models)
     owners: tuple[World | Model, ...] = (*sdf.worlds, *sdf.models, *inserted)
@@ -97,7 +97,7 @@ def _pose(pose: RawPose | None, element: Element | None, frames: Frames) -> Iter
 
 
 def _circles(things: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
-    """The circles of frames that stand relative to each other, each where it is met first."""
+    """The cycles of frames whose poses are relative to each other, each at its first frame."""
     told: set[frozenset[str]] = set()
     for thing in things:
         circle = _circle_of(thing.name, frames)
@@ -110,7 +110,7 @@ def _circles(things: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -
 
 
 def _circle_of(name: str, frames: Frames) -> tuple[str, ...]:
-    """The circle that the place of a frame leads into; empty where it leads into none."""
+    """The cycle to which the chain of a frame leads; empty for none."""
     try:
         frames.pose(name)
     except FrameError as error:
@@ -119,7 +119,7 @@ def _circle_of(name: str, frames: Frames) -> tuple[str, ...]:
 
 
 def _is_known(name: str, frames: Frames) -> bool:
-    """Whether a frame is there, or may be in a model that could not be included, about which that was said."""
+    """Whether a frame exists, or may exist in a model that could not be included, which has been reported."""
     if name in frames:
         return True
     head = name.partition(SEPARATOR)[0]

@@ -1,4 +1,4 @@
-"""Words for what is wrong with an element of SDF, from its rule and what is written in its place."""
+"""Messages on elements of SDF, from their rules and what is written."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def described(element: Element) -> Phrase:
 
 
 class SdfReport(Findings):
-    """The findings of one reading, and the words for what the reader of elements meets (`linkwright.schema.report`)."""
+    """Collects the findings of one reading, and words the mistakes that the reader of elements meets."""
 
     __slots__ = ("_misspelt",)
 
@@ -35,7 +35,7 @@ class SdfReport(Findings):
         self._misspelt: list[Element] = []
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """A required attribute, or text inside, is not there."""
+        """Report a missing required attribute or text."""
         if attribute is rule.text:
             message = phrase("<{tag}> of {owner} is empty", tag=rule.tag, owner=described(owner))
             self.error("SDF120", message, element, hint=phrase("write <{tag}>...</{tag}>", tag=rule.tag))
@@ -53,7 +53,7 @@ class SdfReport(Findings):
         self.error("SDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """A value does not say what it must; what stands for an absent one is taken in its place."""
+        """Report an invalid value; the default is used in its place."""
         inside = attribute is rule.text
         text = element.text().strip() if inside else element.attributes[attribute.name]
         message, hint = _explained(_place(element, rule, attribute, owner), text, attribute, element)
@@ -61,11 +61,11 @@ class SdfReport(Findings):
         return UNREADABLE
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
-        """Files of all versions are read by the words of the newest, so that nothing is too new."""
+        """Do nothing: files of all versions are read by the newest, so that nothing is too new."""
         raise AssertionError(f"{rule.tag} {attribute.name} is for some versions only")
 
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
-        """A required child is not there."""
+        """Report a missing required child."""
         candidates = [each for each in element.elements() if each.tag not in rule.child_rules]
         like = nearest(child.tag, [each.tag for each in candidates], limit=1)
         misspelt = next((each for each in candidates if each.tag in like), None)
@@ -83,15 +83,15 @@ class SdfReport(Findings):
         )
 
     def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
-        """SDF has no element whose first child decides."""
+        """Do nothing: SDF has no element whose first child decides."""
         raise AssertionError(rule.tag)
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """SDF has no element whose first child decides."""
+        """Do nothing: SDF has no element whose first child decides."""
         raise AssertionError(rule.tag)
 
     def unknown_element(self, element: Element, rule: ElementRule) -> None:
-        """An element that SDF has no place for where it stands."""
+        """Report an unknown element."""
         if any(element is each for each in self._misspelt):
             return
         hint = did_you_mean(element.tag, [child.tag for child in rule.children])
@@ -100,13 +100,13 @@ class SdfReport(Findings):
         )
 
     def reserved(self, element: Element, name: str) -> None:
-        """A name that means something else where poses and joints use it."""
+        """Report a reserved name."""
         message = phrase("'{name}' cannot be the name of a {kind}", name=name, kind=term(element.tag))
         hint = phrase("'::' stands between names, and 'world' and '__...__' are names of SDF's own")
         self.error("SDF111", message, element, "name", hint=hint)
 
     def twice(self, element: Element, first: Element) -> None:
-        """Two elements side by side have one name."""
+        """Report siblings of one name."""
         notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)
         message = phrase("there are two elements named '{name}' in one place", name=element.attributes.get("name", ""))
         if element.tag == first.tag:
@@ -118,7 +118,7 @@ class SdfReport(Findings):
 
 
 def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Phrase:
-    """Where a value stands: ``<mass> of link 'arm'``, ``'type' of joint 'elbow'``."""
+    """The place of a value: ``<mass> of link 'arm'``, ``'type' of joint 'elbow'``."""
     if "name" in element.attributes:
         return phrase("'{name}' of {owner}", name=attribute.name, owner=described(element))
     place = phrase("<{tag}>", tag=rule.tag)
@@ -128,7 +128,7 @@ def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner:
 
 
 def _explained(place: Phrase, text: str, attribute: AttributeRule, element: Element) -> tuple[Phrase, Phrase | None]:
-    """What to say of a text that is not a value of the attribute's type, and how to mend it."""
+    """The message and hint for a text that is not a value of the attribute's type."""
     told = {"place": place, "value": text}
     if attribute.type in COUNTS:
         return _miscounted(told, text, COUNTS[attribute.type], element)

@@ -1,4 +1,4 @@
-"""Finding models and the files of models: ``model://``, ``package://``, ``file://``, paths, Fuel addresses."""
+"""Resolving URIs of models and their files: ``model://``, ``package://``, ``file://``, paths, Fuel addresses."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
 
 
 class Missing(NamedTuple):
-    """Why an address leads nowhere, and what to do about it."""
+    """The reason why a URI cannot be resolved, and a hint."""
 
     reason: Phrase
     hint: Phrase | None
 
 
 class ResourceFinder:
-    """Finds what worlds refer to.
+    """Resolves the URIs of worlds.
 
     ``model://NAME/PATH`` is looked for as ``NAME/PATH`` in, one after the other,
 
@@ -76,7 +76,7 @@ class ResourceFinder:
         self._environment = os.environ if environment is None else environment
 
     def file(self, address: str, beside: Path) -> Path | Missing:
-        """The file or folder that an address means, which exists, or why there is none.
+        """The existing file or folder of a URI, or why there is none.
 
         Args:
             address: as written.
@@ -99,14 +99,14 @@ class ResourceFinder:
         return path if path.exists() else _no_file(path)
 
     def model(self, address: str, beside: Path) -> Path | Missing:
-        """The SDF file of the model that an address means: the file itself, or the newest that its folder offers."""
+        """The SDF file of a model's URI: the file itself, or the newest in its folder."""
         found = self.file(address, beside)
         if isinstance(found, Missing) or not found.is_dir():
             return found
         return model_file(found)
 
     def models(self) -> dict[str, Path]:
-        """All models that can be named: name of the folder -> the folder; of two of a name the one that is found."""
+        """All models on the search path: name of the folder -> the folder; of two of a name the one that is found."""
         found: dict[str, Path] = {}
         for folder in self._folders:
             with suppress(OSError):
@@ -145,7 +145,7 @@ class ResourceFinder:
 
     @cached_property
     def _folders(self) -> tuple[Path, ...]:
-        """Where models are looked for, in this order; folders that are not there are left out."""
+        """The folders in which models are searched, in order, without missing ones."""
         return tuple(dict.fromkeys(path for path in self._places() if path.is_dir()))
 
     def _places(self) -> Iterator[Path]:
@@ -195,7 +195,7 @@ class ResourceFinder:
         return Missing(phrase("there is no model '{name}' on the search path", name=name), hint)
 
     def _cached(self, address: str) -> Path | Missing:
-        """What gz keeps of an address on Fuel: ``HOST/OWNER/models/NAME/VERSION`` below its cache, in small letters."""
+        """The folder of a Fuel address in gz's cache: ``HOST/OWNER/models/NAME/VERSION``, in lower case."""
         parts = [unquote(part) for part in urlsplit(address).path.split("/") if part]
         host = urlsplit(address).netloc.lower()
         if parts and re.fullmatch(r"[0-9.]+", parts[0]):
@@ -241,12 +241,12 @@ def model_file(folder: Path) -> Path | Missing:
 
 
 def _holds_world(file: Path) -> bool:
-    """Whether an SDF file has a world in it, and not a model."""
+    """Whether an SDF file contains a world."""
     return b"<world" in file.read_bytes()
 
 
 def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
-    """What a package exports to Gazebo in its ``package.xml``; ``${prefix}`` there is its share folder."""
+    """The folders that a package exports to Gazebo in its ``package.xml``; ``${prefix}`` is its share folder."""
     text = ""
     with suppress(OSError):
         text = (share / MANIFEST).read_text(encoding="utf-8", errors="replace")
@@ -261,7 +261,7 @@ def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
 
 
 def hooked_folders(share: Path) -> Iterator[Path]:
-    """What the environment hooks of a package, and their templates in its sources, put into `SEARCH_VARIABLES`.
+    """The values that environment hooks of a package, and their templates in its sources, give `SEARCH_VARIABLES`.
 
     Source: ``ament_environment_hooks`` and the ``.dsv`` files of ament: ``prepend-non-duplicate;VARIABLE;PATH``.
     """
@@ -274,7 +274,7 @@ def hooked_folders(share: Path) -> Iterator[Path]:
 
 
 def _version_in(place: Path, rest: list[str]) -> Path | None:
-    """The folder of a version in the cache, and what of it is meant; ``tip`` or nothing stands for the newest."""
+    """The folder of a version in the cache, and the path below it; ``tip`` or nothing stands for the newest."""
     try:
         versions = sorted((int(each.name), each) for each in place.iterdir() if each.name.isdigit())
     except OSError:
@@ -289,7 +289,7 @@ def _version_in(place: Path, rest: list[str]) -> Path | None:
 
 
 def _kind(path: Path) -> str:
-    """What files that may be taken for each other have in common."""
+    """The kind of a file, for suggesting similar ones."""
     suffix = path.suffix.lower()
     return ".sdf" if suffix == ".world" else suffix
 

@@ -1,4 +1,4 @@
-"""``<state>``: a world as Gazebo classic saved it.
+"""``<state>``: the state of a world that Gazebo classic saved.
 
 A saved world says twice where everything is: in the models as they were written first, and in ``<state>``, which is
 what the simulator goes by. Poses in a state are in the frame of the world.
@@ -16,7 +16,7 @@ from linkwright.sdf.worlds import ModelState, World
 
 
 def as_saved(world: World) -> World:
-    """A world, with its includes resolved, as its last state says; a world without a state is returned as it is."""
+    """A world, with its includes resolved, at its last saved state; a world without one is returned as it is."""
     if not world.states:
         return world
     state = world.states[-1]
@@ -41,7 +41,7 @@ def _place(frames: Frames, model: Model) -> Transform:
 
 
 def _restored(model: Model, state: ModelState | None, place: Transform) -> Model:
-    """A model as its state says; `place` is where it would be without one, in the world."""
+    """A model at its saved state; `place` is its pose in the world without one."""
     if state is None:
         return model
     if state.pose is not None:

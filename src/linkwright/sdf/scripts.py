@@ -1,4 +1,4 @@
-"""Materials of scripts: Gazebo's own by their names, and those that models bring in ``.material`` files.
+"""Material scripts: Gazebo's own by their names, and ``.material`` files of models.
 
 Gazebo classic's renderer, Ogre, has materials in scripts of its own language, of which colours and the first image are
 read here. Colours that an SDF file gives beside the name of a material come before those of the script.
@@ -24,7 +24,7 @@ from linkwright.sdf.worlds import Sdf
 
 
 class Look(NamedTuple):
-    """What a script says of a material: colours, or None, and the image on it, or an empty text."""
+    """The colours of a script's material, or None, and its texture, or an empty text."""
 
     ambient: Color | None = None
     diffuse: Color | None = None
@@ -94,12 +94,12 @@ _COLORS = ("ambient", "diffuse", "specular", "emissive")
 
 
 def gazebo_look(name: str) -> Look | None:
-    """The look of one of Gazebo's own materials, as ``Gazebo/Grey``; None for another name."""
+    """The look of one of Gazebo's materials, as ``Gazebo/Grey``; None for another name."""
     return _NAMED.get(name.removeprefix(_PREFIX)) if name.startswith(_PREFIX) else None
 
 
 def painted(material: Material, look: Look) -> Material:
-    """A material with what a script says of it, where it says nothing itself."""
+    """A material with the colours and texture of a script, where it has none itself."""
     pbr = material.pbr
     if look.image and pbr is None:
         pbr = Pbr(metal=Workflow(albedo_map=look.image))
@@ -114,7 +114,7 @@ def painted(material: Material, look: Look) -> Material:
 
 
 def with_scripts(sdf: Sdf, finder: ResourceFinder) -> Sdf:
-    """A file, with its includes resolved, whose materials have the colours and images of their scripts.
+    """A file, with its includes resolved, whose materials have the colours and textures of their scripts.
 
     Args:
         sdf: the file.
@@ -166,7 +166,7 @@ class _Library:
 
 
 def _image(name: str, script: Path, places: Mapping[str, Path]) -> str:
-    """The address of an image that a script names, in the folders that the world gives or near the script."""
+    """The path of a texture that a script names, in the folders of the material or near the script."""
     if name:
         for uri, place in places.items():
             if (place / name).is_file():
@@ -186,7 +186,7 @@ def _scripts(place: Path) -> list[Path]:
 
 
 def read_script(text: str) -> dict[str, Look]:
-    """The materials that a script of Ogre defines, by their names; what it says first of each counts."""
+    """Parse an Ogre script into materials by their names; the first value of each counts."""
     found: dict[str, Look] = {}
     current = ""
     depth = 0

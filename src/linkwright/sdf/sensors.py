@@ -1,4 +1,4 @@
-"""``<sensor>``: what measures, and how well.
+"""``<sensor>``: sensors, their ranges and noise.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``sensor.sdf`` and the files of each kind.
 """
@@ -30,7 +30,7 @@ class Sweep:
 
     @property
     def count(self) -> int:
-        """How many rays it has: a resolution makes more or fewer of them than samples."""
+        """The number of rays: a resolution multiplies the samples."""
         return max(round(self.samples * self.resolution), 1) if self.resolution > 0 else max(self.samples, 1)
 
     @property
@@ -41,7 +41,7 @@ class Sweep:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """The shortest and longest distance that a sensor measures, and what distances are rounded to; metres."""
+    """The least and greatest distance that a sensor measures, and the resolution; metres."""
 
     min: float = 0.0
     max: float = 0.0
@@ -61,7 +61,7 @@ class Lidar:
 
 @dataclass(frozen=True, slots=True)
 class Imu:
-    """An inertial measurement unit.
+    """An inertial measurement unit (IMU).
 
     Attributes:
         angular_velocity: noise in rad/s.
@@ -82,7 +82,7 @@ class Imu:
 
 @dataclass(frozen=True, slots=True)
 class ContactSensor:
-    """The collision that a contact sensor listens to, and the topic of its messages."""
+    """A contact sensor: its collision, and the topic of its messages."""
 
     collision: str = "__default__"
     topic: str = "__default_topic__"
@@ -90,7 +90,7 @@ class ContactSensor:
 
 @dataclass(frozen=True, slots=True)
 class Navsat:
-    """Noise of a satellite receiver: positions in metres, velocities in m/s, across the ground and upwards."""
+    """A satellite receiver: noise of positions in metres and of velocities in m/s, horizontal and vertical."""
 
     horizontal_position: Noise = NO_NOISE
     vertical_position: Noise = NO_NOISE
@@ -117,7 +117,7 @@ class ForceTorque:
 
 @dataclass(frozen=True, slots=True)
 class Altimeter:
-    """Noise of an altimeter: height in metres, vertical velocity in m/s."""
+    """An altimeter: noise of height in metres and of vertical velocity in m/s."""
 
     vertical_position: Noise = NO_NOISE
     vertical_velocity: Noise = NO_NOISE
@@ -125,7 +125,7 @@ class Altimeter:
 
 @dataclass(frozen=True, slots=True)
 class AirPressure:
-    """A barometer: the altitude in metres that its zero is at, and noise in pascals."""
+    """A barometer: the reference altitude in metres, and noise in pascals."""
 
     reference_altitude: float = 0.0
     noise: Noise = NO_NOISE
@@ -133,7 +133,7 @@ class AirPressure:
 
 @dataclass(frozen=True, slots=True)
 class Sonar:
-    """A sonar: the cone, sphere or box (``geometry``) that it listens in; lengths in metres."""
+    """A sonar with a cone, sphere or box (``geometry``); lengths in metres."""
 
     geometry: str = "cone"
     min: float = 0.0
@@ -143,7 +143,7 @@ class Sonar:
 
 @dataclass(frozen=True, slots=True)
 class LogicalCamera:
-    """A camera that names the models which it sees: distances in metres, the angle across in radians."""
+    """A logical camera, which lists the models in its view: distances in metres, the horizontal angle in radians."""
 
     near: float = 0.0
     far: float = 1.0

@@ -15,7 +15,7 @@ from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, VECTOR3
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A plane through the origin, without end for contacts; `size` is how much of it is drawn."""
+    """An infinite plane through the origin; `size` is the part that is drawn."""
 
     normal: Vector3 = (0.0, 0.0, 1.0)
     size: tuple[float, float] = (1.0, 1.0)
@@ -46,7 +46,7 @@ class Submesh:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A mesh file by its URI, scaled along x, y, z, whole or one part of it."""
+    """A mesh file by its URI, scaled along x, y, z; the whole or one submesh."""
 
     uri: str
     scale: Vector3 = (1.0, 1.0, 1.0)
@@ -55,7 +55,7 @@ class Mesh:
 
 @dataclass(frozen=True, slots=True)
 class TerrainTexture:
-    """A texture of a heightmap: its images by their URIs and the edge length in metres that one of them covers."""
+    """A texture of a heightmap: its images by their URIs and its edge length in metres."""
 
     diffuse: str = ""
     normal: str = ""
@@ -64,7 +64,7 @@ class TerrainTexture:
 
 @dataclass(frozen=True, slots=True)
 class Blend:
-    """Where one texture of a heightmap goes over into the next: from a height in metres, over a distance."""
+    """The transition between two textures of a heightmap: from a height in metres, over a distance."""
 
     min_height: float = 0.0
     fade_dist: float = 0.0
@@ -104,7 +104,7 @@ class Image:
 
 @dataclass(frozen=True, slots=True)
 class Polyline:
-    """A polygon in the plane z = 0, raised to a height."""
+    """A polygon in the plane z = 0, extruded to a height."""
 
     points: tuple[tuple[float, float], ...]
     height: float = 1.0
@@ -135,12 +135,12 @@ Shape = (
 
 
 def _shape(**shapes: Shape | tuple[Polyline, ...] | None) -> Shape:
-    """The shape that counts: the first in libsdformat's order, which is that of the table, not that of the file."""
+    """The shape that is used of several: the first in libsdformat's order, which is that of the table."""
     return next((shape for shape in shapes.values() if shape), NO_SHAPE)
 
 
 def _if(kind: type) -> Callable[[Shape], Shape | None]:
-    """What is written of a shape in the place of one kind."""
+    """The value to be written for one kind of shape; None for other kinds."""
     return lambda shape: shape if isinstance(shape, kind) else None
 
 

@@ -1,4 +1,4 @@
-"""The text that a new world begins with."""
+"""The text of a new world."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ _TEXT = """\
 
 
 def starting_world(name: str) -> str:
-    """A world with ground, light and a box, explained, that Gazebo classic and gz read as they are.
+    """A world with ground, light and a box, with comments, that Gazebo classic and gz read.
 
     Args:
         name: the world's.

@@ -1,4 +1,4 @@
-"""``<surface>``: friction, bounce and stiffness of what touches.
+"""``<surface>``: friction, restitution and stiffness of contacts.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``surface.sdf``.
 """
@@ -76,7 +76,7 @@ class Contact:
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """What happens where a shape touches another.
+    """The contact properties of a collision.
 
     Attributes:
         friction: friction, or None where nothing is said.
@@ -156,7 +156,7 @@ _Group = TypeVar("_Group")
 
 
 def _different(group: _Group, usual: _Group) -> _Group | None:
-    """What is to be written of a group: nothing where all is as usual."""
+    """The value to be written for a group: None where all are defaults."""
     return None if group == usual else group
 
 

@@ -1,4 +1,4 @@
-"""XML text as the simulators' parser takes it, which is not quite as XML says.
+"""Parsing XML as the simulators' parser (TinyXML2) does, which accepts more than XML allows.
 
 tinyxml2 knows no namespaces and ends a comment at ``-->`` alone; blanks and comments before the XML declaration, an
 ``&`` that begins no entity and bytes that are no UTF-8 do not trouble it either. Such files work for their users, so
@@ -25,7 +25,7 @@ _LATE_DECLARATION = re.compile(r"(?:\s|<!--.*?-->)+(<\?xml\s[^>]*\?>)", re.DOTAL
 
 
 def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Read a text as Gazebo does, with a warning for each kind of thing that XML forbids.
+    """Parse a text as Gazebo does, with a warning for each kind of thing that XML forbids.
 
     Raises:
         LinkwrightError: it is not XML (XML###).
@@ -60,7 +60,7 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
 
 
 def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
-    """The text of a file; bytes that are not in its encoding are taken for Latin-1."""
+    """Decode the text of a file; bytes that are invalid in its encoding are taken for Latin-1."""
     try:
         return decode(data, name), []
     except LinkwrightError as error:
@@ -72,12 +72,12 @@ def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
 
 
 def _tags_alone(text: str) -> str:
-    """The text with blanks in place of comments and CDATA."""
+    """The text with comments and CDATA blanked."""
     return _OUTSIDE_TAGS.sub(lambda found: " " * len(found[0]), text)
 
 
 def _put_back(root: Element) -> None:
-    """Put an ``&`` where another character was read for one."""
+    """Restore each ``&`` that was replaced by another character."""
     for element in root.walk():
         for name, value in element.attributes.items():
             element.attributes[name] = value.replace(_STAND_IN, "&")
@@ -101,7 +101,7 @@ def _parsed(text: str, name: str, read_as: str) -> tuple[Document, tuple[Diagnos
 
 
 def _has_dashes(comment: str | None) -> bool:
-    """Whether XML forbids the inside of a comment; None stands for what is no comment."""
+    """Whether XML forbids the content of a comment; None stands for other parts."""
     return comment is not None and ("--" in comment or comment.endswith("-"))
 
 

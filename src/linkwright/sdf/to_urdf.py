@@ -1,4 +1,4 @@
-"""A model of SDF as a robot of URDF, as ROS takes it where a robot description is SDF.
+"""Converting a model of SDF to a robot of URDF, as ROS does where a robot description is SDF.
 
 Source: the package sdformat_urdf, which is urdfdom's reader of SDF.
 """
@@ -38,7 +38,7 @@ _AMBIENT, _DIFFUSE = 0.4, 0.8
 
 
 class _NoRobotError(Exception):
-    """A model that is no robot, with the element that says so."""
+    """A model cannot be a robot; names the element that prevents it."""
 
     def __init__(self, reason: Phrase, element: Element | None, hint: Phrase | None = None) -> None:
         super().__init__(reason)
@@ -48,7 +48,7 @@ class _NoRobotError(Exception):
 
 
 def robot_from_sdf(sdf: Sdf, root: Element) -> Reading:
-    """The robot of an SDF text.
+    """Convert the model of an SDF text to a robot.
 
     The frame of a link of URDF is that of the joint above it: what is in a link moves with it. Addresses of meshes stay
     as they are written. Sensors, lights and plugins have no place in the robot.
@@ -173,7 +173,7 @@ class _Converter:
         )
 
     def _frame(self, link: str, above: dict[str, Joint]) -> Transform:
-        """Where the frame that URDF gives a link stands in the model: that of its joint, or its own."""
+        """The pose in the model of the frame that URDF gives a link: that of its joint, or its own."""
         return self._frames.pose(above[link].name if link in above else link)
 
     def _link(self, link: Link, above: Joint | None) -> urdf.Link:

@@ -1,4 +1,4 @@
-"""The types of values in SDF, and the short forms by which the tables of the language are written.
+"""Types of values in SDF, and abbreviations for the tables of the language.
 
 SDF writes a value as the text of an element: ``<mass>2.5</mass>``. Numbers are separated by blanks of any kind. What a
 text may be goes by libsdformat's parser (``Param.cc``): ``inf`` and ``nan`` are numbers there, and a truth value is
@@ -35,7 +35,7 @@ def number(text: str) -> float:
 
 
 def numbers(text: str) -> tuple[float, ...]:
-    """Any count of numbers.
+    """A list of numbers.
 
     Raises:
         ValueError: one of them is none.
@@ -44,7 +44,7 @@ def numbers(text: str) -> tuple[float, ...]:
 
 
 def plain(value: float) -> str:
-    """A number as short as it can be written without loss."""
+    """Format a number as briefly as possible without loss."""
     return repr(float(value) or 0.0).removesuffix(".0")  # -0 is 0
 
 
@@ -89,7 +89,7 @@ def _color(text: str) -> Color:
 
 
 def _time(text: str) -> float:
-    """Seconds and nanoseconds, or seconds alone."""
+    """Parse seconds and nanoseconds, or seconds alone."""
     found = numbers(text)
     if len(found) == 1:
         return found[0]
@@ -119,7 +119,7 @@ COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}
 
 
 def choice(*names: str) -> ValueType:
-    """A type of which the values are some words."""
+    """The type of an enumeration."""
 
     def read(text: str) -> str:
         if text.strip() not in names:
@@ -141,7 +141,7 @@ def value(
     usual: bool = False,
     get: Callable[[Any], Any] | None = None,
 ) -> ElementRule:
-    """An element that says one value, as ``<mass>2.5</mass>`` does."""
+    """An element with one value, as ``<mass>2.5</mass>``."""
     rule = AttributeRule(
         "text", kind, meaning, unit, required=required, default=default, usual=usual, field=field or tag, get=get
     )
@@ -150,7 +150,7 @@ def value(
 
 
 def values(tag: str, kind: ValueType, meaning: str, *, field: str = "") -> ElementRule:
-    """An element that may come any number of times, each with one value."""
+    """An element with one value that may occur any number of times."""
     rule = AttributeRule("text", kind, meaning, field="said", get=_only)
     return ElementRule(tag, meaning, text=rule, many=True, make=_only, field=field or f"{tag}s")
 
@@ -160,7 +160,7 @@ def _only(said: Any) -> Any:
 
 
 def unwritten(_: Any) -> None:
-    """What is written of a word that another one stands for today."""
+    """Never written: a synonym of another word."""
 
 
 def name_of(meaning: str = "its name, unique among its kind in the model or world") -> AttributeRule:
@@ -169,12 +169,12 @@ def name_of(meaning: str = "its name, unique among its kind in the model or worl
 
 
 def made(kind: Callable[..., Any], tag: str, meaning: str, *children: ElementRule, **details: Any) -> ElementRule:
-    """An element with parts, of which an object is made; what is wrong in one part leaves the others."""
+    """Make an object from parts; a mistake in one part leaves the others."""
     return ElementRule(tag, meaning, children=children, make=kind, keeps=True, **details)
 
 
 def readable(kind: Callable[..., Any]) -> Callable[..., Any]:
-    """What makes an object of parts, among them `values`: without those that are empty or could not be read."""
+    """Adapt a function of parts, so that empty and unreadable ones of `values` are left out."""
 
     def make(**parts: Any) -> Any:
         return kind(
@@ -190,7 +190,7 @@ def readable(kind: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Pose:
-    """The pose that six or seven numbers say.
+    """The pose of six or seven numbers.
 
     Raises:
         ValueError: as many numbers do not go with the format.

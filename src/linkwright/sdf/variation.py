@@ -1,4 +1,4 @@
-"""Models that differ in their masses, in how much they grip, or in how noisy their sensors are."""
+"""Varying models: masses, friction, noise of sensors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SCALED_NOISE = ("mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_std
 
 
 def with_mass(model: Model, factor: float) -> Model:
-    """A model whose links weigh so many times as much, of the same shapes: their inertias grow as well."""
+    """A model with the masses of its links multiplied, of the same shapes: inertias grow as well."""
 
     def scaled(link: Link) -> Link:
         inertial = link.inertial or Inertial()
@@ -39,7 +39,7 @@ def with_friction(model: Model, coefficient: float) -> Model:
 
 
 def with_noise(model: Model, factor: float) -> Model:
-    """A model whose sensors have so many times the noise and bias that is written in their ``<noise>``."""
+    """A model with the noise and bias of its sensors, as written in ``<noise>``, multiplied."""
 
     def scaled(noise: Noise) -> Noise:
         return replace(noise, **{name: getattr(noise, name) * factor for name in _SCALED_NOISE})
@@ -48,7 +48,7 @@ def with_noise(model: Model, factor: float) -> Model:
 
 
 def _changed(value: V, kind: type[Any], change: Callable[[Any], Any]) -> V:
-    """A value with all values of a class in it changed; what is not changed is the same object."""
+    """A value with all values of a class in it changed; unchanged ones are the same objects."""
     if isinstance(value, kind):
         return cast("V", change(value))
     if isinstance(value, tuple):

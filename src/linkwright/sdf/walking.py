@@ -1,4 +1,4 @@
-"""Where a figure is while it walks along its path.
+"""Poses of a figure along its path.
 
 Source: Gazebo's ``common::PoseAnimation``, ``Spline`` and ``RotationSpline``: through the points of a trajectory goes a
 Catmull-Rom spline, whose tangents its tension shortens, and through their rotations a spline of quaternions (squad).
@@ -33,11 +33,11 @@ class Walk:
 
     @property
     def is_somewhere(self) -> bool:
-        """Whether it goes through any point."""
+        """Whether it has any waypoint."""
         return bool(self._legs)
 
     def pose(self, seconds: float) -> Transform:
-        """Where the figure is at a time: at the first point before the walk, at the last after one that ends.
+        """The pose at a time: that of the first waypoint before the walk, that of the last after one that ends.
 
         Args:
             seconds: of the world's time.
@@ -56,7 +56,7 @@ class Walk:
 
 @dataclass(frozen=True, slots=True)
 class _Key:
-    """A point with the tangents of the splines through it."""
+    """A waypoint with the tangents of the splines through it."""
 
     point: Vector3
     turn: Quaternion
@@ -65,7 +65,7 @@ class _Key:
 
 
 class _Leg:
-    """One trajectory."""
+    """The segment of one trajectory."""
 
     def __init__(self, trajectory: Trajectory) -> None:
         found = {each.time: transform_of(each.pose.pose) for each in trajectory.waypoints}
@@ -99,7 +99,7 @@ def _key(poses: list[Transform], index: int, stretch: float) -> _Key:
 
 
 def _between(one: _Key, other: _Key, share: float) -> Vector3:
-    """A point of the cubic curve through two points with the tangents there."""
+    """A point of the cubic Hermite curve through two points with tangents there."""
     square, cube = share**2, share**3
     first, last = 2 * cube - 3 * square + 1, 3 * square - 2 * cube
     leaving, coming = cube - 2 * square + share, cube - square
@@ -132,7 +132,7 @@ def _slerp(one: Quaternion, other: Quaternion, share: float) -> Quaternion:
 
 
 def _log(turn: Quaternion) -> Vector3:
-    """Half the angle of a rotation, along its axis."""
+    """The logarithm of a rotation: half its angle, along its axis."""
     x, y, z, w = turn
     if w < 0.0:
         x, y, z, w = -x, -y, -z, -w

@@ -1,4 +1,4 @@
-"""``<world>`` and ``<sdf>``: what a whole file says.
+"""``<world>`` and ``<sdf>``: worlds, physics, scene, saved state.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``world.sdf``, ``physics.sdf``, ``scene.sdf``,
 ``state.sdf``.
@@ -39,7 +39,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Physics:
-    """How time goes.
+    """Time step and solver of the physics engine.
 
     Attributes:
         type: the engine that the author had in mind.
@@ -64,7 +64,7 @@ class Physics:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """How the world looks; colours are as in `Material`. Where there is no sky it is None, and so is fog."""
+    """The look of a world: light, background, sky, fog; colours are as in `Material`, None stands for no sky or fog."""
 
     ambient: Color = (0.4, 0.4, 0.4, 1.0)
     background: Color = (0.7, 0.7, 0.7, 1.0)
@@ -78,7 +78,7 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class SphericalCoordinates:
-    """Where on earth the origin is: degrees north and east, metres above the ellipsoid, degrees that x is turned."""
+    """The position of the origin on earth: degrees north and east, metres above the ellipsoid, heading in degrees."""
 
     surface_model: str = "EARTH_WGS84"
     world_frame_orientation: str = "ENU"
@@ -110,7 +110,7 @@ class Road:
 
 @dataclass(frozen=True, slots=True)
 class LinkState:
-    """Where a link was when the world was saved, in the frame of the world."""
+    """The state of a link in a saved world, in the frame of the world."""
 
     name: str
     pose: RawPose | None = None
@@ -118,7 +118,7 @@ class LinkState:
 
 @dataclass(frozen=True, slots=True)
 class ModelState:
-    """Where a model, its links and the models in it were when the world was saved, in the frame of the world."""
+    """The state of a model, its links and nested models in a saved world, in the frame of the world."""
 
     name: str
     pose: RawPose | None = None
@@ -130,7 +130,7 @@ class ModelState:
 
 @dataclass(frozen=True, slots=True)
 class LightState:
-    """Where a light was when the world was saved."""
+    """The state of a light in a saved world."""
 
     name: str
     pose: RawPose | None = None
@@ -138,7 +138,7 @@ class LightState:
 
 @dataclass(frozen=True, slots=True)
 class Insertions:
-    """Models and lights that were put in after the start."""
+    """Models and lights that were inserted after the start."""
 
     models: tuple[Model, ...] = ()
     lights: tuple[Light, ...] = ()
@@ -146,14 +146,14 @@ class Insertions:
 
 @dataclass(frozen=True, slots=True)
 class Deletions:
-    """Names of what was taken out after the start."""
+    """Names of models and lights that were deleted after the start."""
 
     names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """How a world was when Gazebo classic saved it, which comes before what the rest of the file says.
+    """A saved state of a world by Gazebo classic, which replaces what the rest of the file says.
 
     Attributes:
         world_name: the world.
@@ -203,7 +203,7 @@ class World:
 
 @dataclass(frozen=True, slots=True)
 class Sdf:
-    """What a file says: worlds, or a model, light or actor by itself."""
+    """A file: worlds, or a model, light or actor by itself."""
 
     version: str
     worlds: tuple[World, ...] = ()
@@ -214,7 +214,7 @@ class Sdf:
 
 
 def gravity_of(world: World) -> Vector3:
-    """The gravity that counts, in m/s2: the world's, that of its physics in old files, or the usual."""
+    """The gravity in m/s2: the world's, that of its physics in old files, or the default."""
     if world.gravity is not None:
         return world.gravity
     physics = physics_of(world)
@@ -222,13 +222,13 @@ def gravity_of(world: World) -> Vector3:
 
 
 def populated(world: World) -> World:
-    """A world with the models of its populations among the others."""
+    """A world with the models of its populations added."""
     more = (model for population in world.populations for model in models_of(population))
     return replace(world, models=(*world.models, *more), populations=())
 
 
 def physics_of(world: World) -> Physics:
-    """The physics that counts: the one marked as default, or the first."""
+    """The physics in use: the one marked as default, or the first."""
     return next((each for each in world.physics if each.default), world.physics[0] if world.physics else Physics())
 
 

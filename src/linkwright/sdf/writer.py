@@ -40,7 +40,7 @@ def save(thing: Sdf | World | Model) -> str:
 
 
 def _complete(element: Element, rule: ElementRule, instance: Any) -> None:
-    """Add what no rule reads."""
+    """Add the parts that no rule of the tables covers."""
     read: Element | None = getattr(instance, "element", None)
     if read is None:
         return

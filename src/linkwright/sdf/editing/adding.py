@@ -24,7 +24,7 @@ LightKind = Literal["point", "directional", "spot"]
 
 @dataclass(frozen=True, slots=True)
 class NewShape:
-    """What a shape is where nothing else is said: metres, kilograms, red green blue; without a mass it is static."""
+    """The defaults of a new shape: metres, kilograms, red green blue; without a mass it is static."""
 
     size: tuple[float, ...]
     colour: tuple[float, float, float]
@@ -66,7 +66,7 @@ _THINGS = ("model", "include", "light", "actor")
 def add_shape(
     world: WorldText, kind: ShapeKind, pose: Sequence[float], size: Sequence[float] = ()
 ) -> tuple[WorldText, str]:
-    """Add a model that is one simple shape.
+    """Add a model of one simple shape.
 
     Args:
         world: the world.

@@ -41,7 +41,7 @@ _FIRST = ("uri", "name")
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What is to be different about a thing; None for what stays.
+    """The properties to be changed; None for those that stay.
 
     Attributes:
         name: the thing.
@@ -61,7 +61,7 @@ class Change:
 
 
 def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
-    """Change things.
+    """Change models and lights.
 
     Args:
         world: the world.
@@ -83,7 +83,7 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
 
 
 def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tuple[WorldText, list[str]]:
-    """Copy things.
+    """Copy models and lights.
 
     Args:
         world: the world.
@@ -112,7 +112,7 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
 
 
 def delete(world: WorldText, names: Iterable[str]) -> WorldText:
-    """Take things out, and what a saved state says of them.
+    """Delete models and lights, and their parts of a saved state.
 
     Raises:
         EditError: one is not there, or something that stays refers to it.
@@ -133,7 +133,7 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
 
 
 def pose_in_world(numbers: Sequence[float]) -> Pose:
-    """A pose that somebody gave by six numbers.
+    """A pose from the six numbers of a user.
 
     Raises:
         EditError: they are none.
@@ -145,7 +145,7 @@ def pose_in_world(numbers: Sequence[float]) -> Pose:
 
 
 def pose_of_thing(thing: Thing) -> Pose:
-    """Where a thing is in the world: by the numbers of the file where they say just that."""
+    """The pose of a thing in the world: exactly the numbers of the file, where they mean that."""
     own = thing.pose
     if own.pose.quaternion is None and not own.relative_to and transform_of(own.pose) == thing.place:
         return own.pose
@@ -153,7 +153,7 @@ def pose_of_thing(thing: Thing) -> Pose:
 
 
 def moved(world: WorldText, thing: Thing, pose: Pose) -> list[Replacement]:
-    """The edits by which a thing ends in a pose in the world, whatever frame its own is given in.
+    """The edits that move a thing to a pose in the world, whatever frame its own pose is given in.
 
     Raises:
         EditError: that frame is not there.
@@ -175,7 +175,7 @@ def place(thing: Thing, pose: Pose) -> list[Replacement]:
 
 
 def state_of(world: WorldText, name: str) -> list[Element]:
-    """What the last saved state says of a thing."""
+    """The part of the last saved state that holds a thing."""
     state = world.state
     entries = () if state is None else (*state.elements("model"), *state.elements("light"))
     return [entry for entry in entries if entry.attributes.get("name") == name]
@@ -187,7 +187,7 @@ def named_in(element: Element, attribute: str | None) -> str:
 
 
 def renamed_references(world: WorldText, names: dict[str, str]) -> list[Replacement]:
-    """The edits by which what refers to things, or to what is in them, does so by other names."""
+    """The edits that rename a thing, or its parts, in everything that refers to them."""
     edits: list[Replacement] = []
     for element, attribute in writing.references(world.element):
         written = named_in(element, attribute)
@@ -251,7 +251,7 @@ def _resized(thing: Thing, size: tuple[float, ...]) -> list[Replacement]:
 
 
 def _same_values(owner: Element, new: Element) -> list[Replacement]:
-    """Give what is written in an element the values of one that was made."""
+    """Write the values of a new element into an existing one."""
     edits: list[Replacement] = []
     found = list(owner.elements(new.tag))
     if not found:
@@ -360,7 +360,7 @@ def _copied(thing: Thing, name: str) -> Replacement:
 
 
 def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replacement] = ()) -> WorldText:
-    """Other edits, and things in other places: what stands relative to something comes after that."""
+    """Edits together with new poses of things; a thing is moved after the one that its pose is relative to."""
     alone = [name for name in poses if not world.thing(name).pose.relative_to]
     edits = [*edits, *(edit for name in alone for edit in moved(world, world.thing(name), poses[name]))]
     world = world.edited(edits)
@@ -370,7 +370,7 @@ def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replac
 
 
 def _local(world: WorldText, thing: Thing, pose: Pose) -> Pose:
-    """A pose in the world as it is written of a thing: in the frame that it is given in, of its placement frame."""
+    """A pose in the world, expressed in the frame in which a thing's pose is given."""
     relative_to = thing.pose.relative_to
     placed = thing.model.placement_frame if thing.model is not None else ""
     if isinstance(thing.written, Model | Include):
@@ -390,7 +390,7 @@ def _local(world: WorldText, thing: Thing, pose: Pose) -> Pose:
 
 
 def _state_moved(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
-    """Move what a saved state says of a thing, whose parts are told in the frame of the world as well."""
+    """Move the saved state of a thing, whose parts have poses in the frame of the world as well."""
     by = compose(new, invert(old))
     edits: list[Replacement] = []
     for element in entry.walk():
@@ -410,7 +410,7 @@ def _state_moved(entry: Element, old: Transform, new: Transform, pose: Pose) -> 
 
 
 def _depth(world: WorldText, name: str) -> int:
-    """How many things a thing stands relative to, one after the other."""
+    """The length of the chain of frames to which the pose of a thing is relative."""
     depth, seen = 0, set[str]()
     thing = world.things.get(name)
     while thing is not None and thing.name not in seen:

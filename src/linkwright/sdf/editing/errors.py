@@ -1,4 +1,4 @@
-"""Why a world cannot be edited."""
+"""The error of edits that a world does not allow."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from linkwright.diagnostics import Phrase
 
 
 class EditError(Exception):
-    """A world cannot be edited so; the text says why, as a sentence without a full stop.
+    """An edit is refused; the text says why, as a sentence without a full stop.
 
     Attributes:
         message: the text.

@@ -1,4 +1,4 @@
-"""Making one model of several, and several of one."""
+"""Grouping models into one, and ungrouping."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
 
 
 def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
-    """Make one model of several, which stay where they are; it stands in the middle of them.
+    """Make one model of several, which keep their poses in the world; its frame is in the middle of them.
 
     A saved state tells no more of them: where it had them, they stand now.
 
@@ -75,7 +75,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
 
 
 def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
-    """Make models of the world of the parts of one, which stay where they are.
+    """Replace a model by its parts as models of the world, which keep their poses in the world.
 
     Returns:
         The world, and the names of the parts, which are others where they were taken.
@@ -119,7 +119,7 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
 
 
 def renamed_references_outside(world: WorldText, inside: frozenset[str], group_name: str) -> list[Replacement]:
-    """The edits by which what stands outside of a group refers to what is in it."""
+    """The edits that adapt references from outside of a group to what is in it."""
     names = {each: f"{group_name}{SEPARATOR}{each}" for each in inside}
     ranges = [writing.range_of(world.thing(each).element) for each in inside]
     return [
@@ -146,7 +146,7 @@ def _check_group(things: Sequence[Thing]) -> None:
 
 
 def _placed_in(world: WorldText, thing: Thing, origin: Transform) -> list[Replacement]:
-    """Write the pose of a thing in the frame of a group that stands at a place, by which it is where it is now."""
+    """Write the pose of a thing in the frame of a group with a pose, so that it stays where it is."""
     written = pose_of_thing(thing)
     x, y, z = (a - b for a, b in zip(written.xyz, origin[:3], strict=True))
     local = Pose((x, y, z), written.rpy)
@@ -162,7 +162,7 @@ def _placed_in(world: WorldText, thing: Thing, origin: Transform) -> list[Replac
 
 
 def _old_names(thing: Thing, parts: Sequence[Element]) -> list[str]:
-    """The names of parts within their group, in the order of the text: models first, then what is included."""
+    """The names of parts within their group, in document order: models first, then includes."""
     assert isinstance(thing.written, Model), "groups are models"
     assert thing.model is not None, "groups are models"
     models = [id(each.element) for each in thing.written.models]
@@ -183,7 +183,7 @@ def _names_of(world: WorldText, thing: Thing, parts: Sequence[Element]) -> dict[
 def _let_out(
     world: WorldText, thing: Thing, element: Element, old: str, names: dict[str, str], there: Transform
 ) -> list[Replacement]:
-    """What changes in a part of a group that comes out of it."""
+    """The edits in a part of a group that is taken out of it."""
     assert thing.model is not None, "groups are models"
     model = next(each for each in thing.model.models if each.name == old)
     edits: list[Replacement] = []
@@ -220,12 +220,12 @@ def _let_out(
 
 
 def _shifted(text: str, step: str) -> str:
-    """A text with its lines but the first set in by a step; those in CDATA stay."""
+    """A text with all lines but the first indented by one step; those in CDATA stay."""
     return _outside_cdata(text, lambda part: _LINE.sub(step, part))
 
 
 def _unshifted(text: str, step: str) -> str:
-    """The other way round."""
+    """The inverse of `_shifted`."""
     pattern = re.compile(rf"(?<=\n){re.escape(step)}")
     return _outside_cdata(text, lambda part: pattern.sub("", part)) if step else text
 

@@ -1,4 +1,4 @@
-"""Models that are one simple shape: recognising them, their parts as elements, and the mass of what they are.
+"""Models of one simple shape: recognising them, making their elements, and their masses.
 
 A wall is a box whose link is called ``wall``. A ramp is a wedge that rises along x, a ``<polyline>`` of three corners
 in a link called ``ramp``: so a file keeps what they are without anything that is not SDF.
@@ -35,7 +35,7 @@ DIGITS = 9
 
 @dataclass(frozen=True, slots=True)
 class SimpleShape:
-    """What a model of one simple shape is.
+    """The kind, size and colour of a model of one simple shape.
 
     Attributes:
         kind: which.
@@ -49,7 +49,7 @@ class SimpleShape:
 
 
 def simple_shape(model: Model) -> SimpleShape | None:
-    """What a model is, where it is one link in its frame, whose shapes are all the same; else None."""
+    """The shape of a model of one link in its frame, whose visuals and collisions are all the same; else None."""
     if len(model.links) != 1 or model.joints or model.models or model.includes:
         return None
     link = model.links[0]
@@ -99,23 +99,23 @@ def _colour(material: Material | None) -> Color | None:
 
 
 def is_size(kind: str, size: tuple[float, ...]) -> bool:
-    """Whether numbers can be the size of a shape."""
+    """Whether numbers are a valid size of a shape."""
     return len(size) == COUNTS[kind] and all(isfinite(each) and 1e-6 <= each <= 1e6 for each in size)
 
 
 def wedge(size: tuple[float, ...]) -> Polyline:
-    """The outline of a ramp in x and z, as the x and y of a polyline, raised to its width."""
+    """The outline of a ramp in x and z, as the x and y of a polyline, extruded to its width."""
     x, y, z = size
     return Polyline(((-x / 2, -z / 2), (x / 2, -z / 2), (x / 2, z / 2)), y)
 
 
 def ramp_pose(size: tuple[float, ...]) -> Pose:
-    """Where the polyline of a ramp stands in its link: on its side."""
+    """The pose of a ramp's polyline in its link: on its side."""
     return Pose((0.0, size[1] / 2, 0.0), (pi / 2, 0.0, 0.0))
 
 
 def solid(kind: str, size: tuple[float, ...], density: float = 1.0) -> MassProperties:
-    """The mass of a solid shape, its centre and its inertia, in the frame of its link."""
+    """Mass, centre of mass and inertia of a solid shape, in the frame of its link."""
     if kind == "cylinder":
         return shape_properties(Cylinder(*size), density)
     if kind == "sphere":
@@ -138,29 +138,29 @@ def tensor(properties: MassProperties) -> dict[str, str]:
 
 
 def number(value: float) -> str:
-    """A number as it is written: with six digits that count, as those of inertia have."""
+    """Format a number with six significant digits, as those of inertia have."""
     return plain(float(f"{value:.6g}"))
 
 
 def length(value: float) -> str:
-    """A length or angle as it is written."""
+    """Format a length or angle."""
     return plain(round(value, DIGITS))
 
 
 def lengths(values: tuple[float, ...]) -> str:
-    """Several of them."""
+    """Format several lengths or angles."""
     return " ".join(map(length, values))
 
 
 def made(tag: str, *children: Element | str, **attributes: str) -> Element:
-    """An element with a text or with others in it."""
+    """Make an element with a text or with children."""
     element = Element(tag, attributes)
     element.children.extend(Text(child) if isinstance(child, str) else child for child in children)
     return element
 
 
 def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
-    """The ``<inertial>`` of a solid shape with a mass in kg."""
+    """Make the ``<inertial>`` of a solid shape with a mass in kg."""
     properties = solid(kind, size).with_mass(mass)
     parts = [made("mass", number(mass))]
     if properties.center.any():
@@ -170,7 +170,7 @@ def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
 
 
 def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
-    """The ``<geometry>`` of a shape; before it, where the shape does not stand in its frame, its ``<pose>``."""
+    """Make the ``<geometry>`` of a shape; before it, where the shape is not at its frame's origin, a ``<pose>``."""
     if kind == "ramp":
         outline = wedge(size)
         points = (made("point", lengths(point)) for point in outline.points)

@@ -1,4 +1,4 @@
-"""A world as text: what stands in it, where each thing is written, and where it stands."""
+"""The text of a world, with the places and poses of its models and lights."""
 
 from __future__ import annotations
 
@@ -59,26 +59,26 @@ class Thing:
 
     @property
     def pose(self) -> RawPose:
-        """Its pose as it is written."""
+        """Its pose as written."""
         return self.written.pose or AT_ORIGIN
 
     @property
     def static(self) -> bool:
-        """Whether it never moves."""
+        """Whether it is static."""
         if self.model is not None:
             return self.model.static
         return isinstance(self.written, Include) and bool(self.written.static)
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """The names of the models in it, where it is nothing but these."""
+        """The names of the models in it, if it contains nothing else."""
         if not isinstance(self.written, Model) or self.model is None or self.written.links:
             return ()
         return tuple(each.name for each in self.model.models)
 
 
 class WorldText:
-    """A world as text, read; of a file with several worlds the first.
+    """The text of a world with what was read of it; of a file with several worlds, of the first.
 
     Args:
         text: SDF.
@@ -119,7 +119,7 @@ class WorldText:
 
     @property
     def errors(self) -> list[Diagnostic]:
-        """What is wrong with it so that simulators refuse it."""
+        """The findings for which simulators refuse it."""
         return [each for each in self._findings if has_errors([each])]
 
     @cached_property
@@ -132,11 +132,11 @@ class WorldText:
 
     @property
     def state(self) -> Element | None:
-        """The last saved state, which says where things are."""
+        """The last saved state, whose poses come before those of the models."""
         return self.world.states[-1].element if self.world.states else None
 
     def thing(self, name: str) -> Thing:
-        """A model or light by its name.
+        """Find a model or light by its name.
 
         Raises:
             EditError: there is none.
@@ -147,7 +147,7 @@ class WorldText:
             raise EditError(phrase("there is no '{name}' in the world's file", name=name)) from None
 
     def edited(self, edits: list[Replacement]) -> WorldText:
-        """The world with replacements made in its text.
+        """The world after replacements in its text.
 
         Raises:
             EditError: no world would come of them, which is a mistake of the one who made them.
@@ -169,7 +169,7 @@ class WorldText:
             raise EditError(phrase("the text would not be SDF: {reason}", reason=found.message)) from None
 
     def free_name(self, wanted: str, taken: AbstractSet[str] | None = None) -> str:
-        """A name that nothing has: the wanted one, or with a number behind it."""
+        """A free name: the wanted one, or with a number behind it."""
         taken = self.taken if taken is None else taken
         if wanted not in taken:
             return wanted
@@ -181,7 +181,7 @@ class WorldText:
         return f"{stem}_{number}"
 
     def check_name(self, name: str) -> None:
-        """Refuse what cannot be the name of a new thing.
+        """Check the name of a new thing.
 
         Raises:
             EditError: it is empty, taken, or means something else in SDF.

@@ -1,4 +1,4 @@
-"""The smallest edits that give elements of a world other values."""
+"""Minimal edits that give elements of a world other values."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def text_of(element: Element) -> str:
 
 
 def range_of(element: Element) -> tuple[int, int]:
-    """Where an element is written, from its ``<`` to behind its last ``>``.
+    """The range of an element in its text, from its ``<`` to behind its last ``>``.
 
     Raises:
         EditError: it comes from an entity.
@@ -49,7 +49,7 @@ def range_of(element: Element) -> tuple[int, int]:
 
 
 def content_of(element: Element) -> tuple[int, int]:
-    """Where the content of an element is written; for ``<a/>`` an empty range at its end."""
+    """The range of an element's content; for ``<a/>`` an empty range at its end."""
     start, end = range_of(element)
     tag = start_tag_of(element)
     assert tag is not None, "its range is known"
@@ -57,7 +57,7 @@ def content_of(element: Element) -> tuple[int, int]:
 
 
 def set_text(element: Element, value: str) -> list[Replacement]:
-    """Give an element another text; blanks around it stay."""
+    """Set the text of an element; blanks around it stay."""
     text, (start, end) = text_of(element), content_of(element)
     tag = start_tag_of(element)
     assert tag is not None, "its content is known"
@@ -70,7 +70,7 @@ def set_text(element: Element, value: str) -> list[Replacement]:
 
 
 def set_numbers(element: Element, numbers: Sequence[float]) -> list[Replacement]:
-    """Give an element other numbers; those that stay are left as they are written."""
+    """Set the numbers of an element; those that are equal are left as they are written."""
     text, (start, end) = text_of(element), content_of(element)
     plain = _COMMENT.sub(lambda found: " " * len(found[0]), text[start:end])
     words = list(re.finditer(r"\S+", plain))
@@ -93,7 +93,7 @@ def _says(word: str, number: float) -> bool:
 def set_child(
     owner: Element, tag: str, value: str | Sequence[float], *, after: tuple[str, ...] = ()
 ) -> list[Replacement]:
-    """Give a child of an element another value; one that is not there comes behind the last of `after`, or at the end.
+    """Set the value of a child; a missing one is inserted behind the last of `after`, or at the end.
 
     Args:
         owner: the element.
@@ -109,7 +109,7 @@ def set_child(
 
 
 def inserted_in(owner: Element, new: list[Element], *, after: tuple[str, ...] = (), first: bool = False) -> Replacement:
-    """Put elements into another: behind the last child with a tag of `after`; else at the end, or at the beginning.
+    """Insert elements into another: behind the last child with a tag of `after`; else at the end, or at the beginning.
 
     Raises:
         EditError: the owner comes from an entity.
@@ -122,7 +122,7 @@ def inserted_in(owner: Element, new: list[Element], *, after: tuple[str, ...] = 
 
 
 def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
-    """Give an attribute another value, in the quotes that it has; one that is not there comes behind the others."""
+    """Set an attribute, in the quotes that it has; a missing one is inserted behind the others."""
     text = text_of(element)
     found = attribute_value_range(text, element.offset, name)
     if found is None:
@@ -137,12 +137,12 @@ def set_attribute(element: Element, name: str, value: str) -> list[Replacement]:
 
 
 def set_reference(element: Element, attribute: str | None, name: str) -> list[Replacement]:
-    """Have an element name something else, by an attribute, or by its text where that is None."""
+    """Set the name to which an element refers, in an attribute, or in its text where that is None."""
     return set_text(element, name) if attribute is None else set_attribute(element, attribute, name)
 
 
 def without_attribute(element: Element, name: str) -> list[Replacement]:
-    """Take an attribute away, and the blanks before it."""
+    """Remove an attribute, and the blanks before it."""
     text = text_of(element)
     named, found = (each(text, element.offset, name) for each in (attribute_name_range, attribute_value_range))
     if named is None or found is None:
@@ -152,12 +152,12 @@ def without_attribute(element: Element, name: str) -> list[Replacement]:
 
 
 def removed(element: Element) -> Replacement:
-    """Take an element out with all it holds, and with its lines where nothing else stands there."""
+    """Remove an element with its content, and with its lines where nothing else stands there."""
     return Replacement(*whole_lines(text_of(element), *range_of(element)), "")
 
 
 def exchanged(element: Element, new: list[Element]) -> Replacement:
-    """Put elements in the place of another, which is taken out."""
+    """Replace an element by others."""
     if not new:
         return removed(element)
     text, (start, end) = text_of(element), range_of(element)
@@ -167,7 +167,7 @@ def exchanged(element: Element, new: list[Element]) -> Replacement:
 
 
 def set_pose(element: Element, pose: Pose) -> list[Replacement]:
-    """Give a ``<pose>`` other numbers, in the units and the form that it says it has."""
+    """Set the numbers of a ``<pose>``, in the units and the form that it declares."""
     if element.attributes.get("rotation_format", "").strip() == "quat_xyzw":
         numbers: tuple[float, ...] = (*pose.xyz, *_nearest(element, quaternion_of(pose)))
     elif element.attributes.get("degrees", "").strip().casefold() in _TRUE:
@@ -178,7 +178,7 @@ def set_pose(element: Element, pose: Pose) -> list[Replacement]:
 
 
 def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
-    """Of the two quaternions of a rotation that on the side of the one that is written."""
+    """Of the two quaternions of a rotation the one nearer to the written one."""
     try:
         written = [float(word) for word in element.text().split()[3:]]
     except ValueError:
@@ -190,7 +190,7 @@ def _nearest(element: Element, quaternion: Quaternion) -> Quaternion:
 
 
 def pose_from(transform: Transform) -> Pose:
-    """A transform as a pose by angles, exact where pitch is 90 degrees too."""
+    """A transform as a pose with angles, exact where pitch is 90 degrees too."""
     x, y, z, w = transform[3:]
     along, across = 1 - 2 * (y * y + z * z), 2 * (x * y + z * w)
     pitch = atan2(-2 * (x * z - y * w), hypot(along, across))
@@ -207,7 +207,7 @@ def pose_element(pose: Pose) -> Element:
 
 
 def references(world: Element) -> Iterator[tuple[Element, str | None]]:
-    """Where elements of a world name things of it: the element, and its attribute, or None for its text."""
+    """The references of a world by name: the element, and its attribute, or None for its text."""
     for child in world.elements():
         for element in (child, *child.elements("sensor")):
             pose = element.first("pose")
