@@ -13,7 +13,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, did_you_mean, phrase
 from linkwright.schema import ElementRule, reader_of
-from linkwright.sdf.old_words import has_old_words, in_words_of_today
+from linkwright.sdf.old_versions import is_old, upgraded
 from linkwright.sdf.poses import POSE, SEPARATOR, WORLD
 from linkwright.sdf.report import NEWEST, SdfReport
 from linkwright.sdf.worlds import SDF, Sdf
@@ -130,7 +130,7 @@ def read(document: Document) -> Reading:
     _check_version(root, report)
     if is_too_deep(root, report):
         return Reading(None, report.in_order())
-    sdf: Sdf = read_element(in_words_of_today(root, SDF) if has_old_words(root) else root, SDF, report)
+    sdf: Sdf = read_element(upgraded(root, SDF) if is_old(root) else root, SDF, report)
     if not (sdf.worlds or sdf.models or sdf.lights or sdf.actors):
         hint = phrase("put a <world> or a <model> in it")
         report.error("SDF131", phrase("<sdf> has neither a world nor a model in it"), root, hint=hint)

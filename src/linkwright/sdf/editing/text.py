@@ -20,7 +20,7 @@ from linkwright.sdf.includes import resolve_includes
 from linkwright.sdf.joints import Joint
 from linkwright.sdf.lights import Light
 from linkwright.sdf.models import Frame, Include, Model
-from linkwright.sdf.old_words import has_old_words
+from linkwright.sdf.old_versions import is_old
 from linkwright.sdf.poses import AT_ORIGIN, SEPARATOR, WORLD, RawPose
 from linkwright.sdf.reader import read
 from linkwright.sdf.resources import ResourceFinder
@@ -99,7 +99,7 @@ class WorldText:
     def __init__(self, text: str, path: Path, finder: ResourceFinder, reserved: frozenset[str] = frozenset()) -> None:
         self.text, self.path, self.finder, self.reserved = text, path, finder, reserved
         document, _ = parse_as_gazebo(text, str(path))
-        if has_old_words(document.root):
+        if is_old(document.root):
             raise EditError(
                 phrase("SDF before 1.3 is not edited; 'linkwright convert' writes '{path}' anew", path=str(path))
             )

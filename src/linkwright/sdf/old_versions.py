@@ -28,17 +28,17 @@ _VALUES = ("pose", "rgba", "xyz", "angle", "enabled", "link", "name")
 _OLD = re.compile(r"1\.[012]").fullmatch
 
 
-def has_old_words(root: Element) -> bool:
+def is_old(root: Element) -> bool:
     """Whether a document declares SDF 1.0 to 1.2."""
     return _OLD(root.attributes.get("version", "").strip()) is not None
 
 
-def in_words_of_today(element: Element, rule: ElementRule) -> Element:
-    """Translate an element to SDF 1.3; findings on its parts point to the original ones.
+def upgraded(element: Element, rule: ElementRule) -> Element:
+    """An element translated to SDF 1.3; findings on its parts point to the original ones.
 
     Args:
         element: of SDF 1.0 to 1.2; not changed.
-        rule: what SDF says of it today.
+        rule: the rule of the element in SDF today.
     """
     new = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
     new.children = [_child(each, rule) if isinstance(each, Element) else each for each in element.children]
@@ -60,7 +60,7 @@ def _child(child: Element, rule: ElementRule) -> Node:
     child_rule = rule.child_rules.get(tag)
     if child_rule is None or tag == "plugin":
         return child
-    new = in_words_of_today(child, child_rule)
+    new = upgraded(child, child_rule)
     new.tag = tag
     return new
 
