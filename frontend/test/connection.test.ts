@@ -2,7 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection, socketUrl } from "../src/connection/connection";
 import { tokenOf, Tokens, type AddressBar } from "../src/connection/tokens";
 import { PROTOCOL_VERSION } from "../src/protocol";
-import type { BrowserStorage } from "../src/state/storage";
+import type { BrowserStorage } from "../src/storage";
 import { packed } from "./messages";
 
 class FakeSocket {

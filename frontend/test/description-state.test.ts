@@ -11,7 +11,7 @@ import { cells, sorted } from "../src/state/joint-table";
 import { flattened, LinkTreeState } from "../src/state/link-tree";
 import { general } from "../src/state/number-text";
 import { Session } from "../src/state/session";
-import { browserStorage } from "../src/state/storage";
+import { browserStorage } from "../src/storage";
 import { display, robot, tree } from "./messages";
 
 const NOWHERE = { expanded: null, origin: null, calls: [] };

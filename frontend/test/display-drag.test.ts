@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { dropPart, dropPlace, type DropPart } from "../src/panels/display-drag";
+import { dropPart, dropPlace, type DropPart } from "../src/panels/displays/display-drag";
 import { DisplaysState } from "../src/state/displays";
 import { display, tree } from "./messages";
 

@@ -1,10 +1,10 @@
-import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Euler, Quaternion } from "three";
+import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { EditablePart, PageMessage } from "../src/protocol";
 import { EditingState } from "../src/state/editing/editing";
 import { nearestRpy, quaternionOf } from "../src/state/editing/rotation";
-import { browserStorage } from "../src/state/storage";
+import { browserStorage } from "../src/storage";
 
 let sent: PageMessage[];
 let connection: Connection;

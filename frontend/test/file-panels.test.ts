@@ -1,10 +1,10 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { FilePanels, type Arrangement } from "../src/panels/file-panels";
-import { Layouts, type Layout } from "../src/panels/layouts";
+import { FilePanels, type Arrangement } from "../src/panels/dock/file-panels";
+import { Layouts, type Layout } from "../src/panels/dock/layouts";
 import type { PanelId } from "../src/panels/panel";
 import type { Configuration, PageMessage, PanelName, ServerMessage } from "../src/protocol";
-import { Signal } from "../src/state/signal";
+import { Signal } from "../src/signal";
 
 /** A dock without a picture: what the browser keeps is a list of panels for each file. */
 class BareDock implements Arrangement {

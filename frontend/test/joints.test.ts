@@ -1,11 +1,11 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { halvesOf } from "../src/panels/joint-row";
+import { halvesOf } from "../src/panels/joints/joint-row";
 import type { JointControl, PageMessage } from "../src/protocol";
 import { JointsState } from "../src/state/joints";
 import { PoseStore, posesOf, srdfOf, standsAs } from "../src/state/named-poses";
-import { browserStorage } from "../src/state/storage";
 import { roundTrip, Sweep } from "../src/state/sweep";
+import { browserStorage } from "../src/storage";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 

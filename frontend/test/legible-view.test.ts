@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { legibleView } from "../src/panels/legible-view";
+import { legibleView } from "../src/widgets/legible-view";
 
 describe("a picture that opens", () => {
   it("is shown whole and in the middle where its texts can be read", () => {

@@ -1,6 +1,6 @@
 import type { BufferGeometry } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { progressText } from "../src/panels/mesh-notice";
+import { progressText } from "../src/panels/over-scene/mesh-notice";
 import { readMesh } from "../src/scene/meshes/formats";
 import type { MeshFiles } from "../src/scene/meshes/mesh-files";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";

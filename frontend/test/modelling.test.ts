@@ -6,7 +6,7 @@ import { AngleUnits } from "../src/state/angle-unit";
 import { Modelling } from "../src/state/modelling/modelling";
 import { placementAt, resized, scaledSize, stretch, wallBetween } from "../src/state/modelling/shapes";
 import { Snapping, snapped } from "../src/state/modelling/snapping";
-import { browserStorage } from "../src/state/storage";
+import { browserStorage } from "../src/storage";
 import type { TreeItem } from "../src/tree/tree-item";
 
 // The page's words ask the browser for its language.

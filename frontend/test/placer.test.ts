@@ -6,7 +6,7 @@ import { Placer } from "../src/scene/modelling/placer";
 import type { Stage } from "../src/scene/stage";
 import type { ToolEvent } from "../src/scene/tools/tool";
 import { Modelling } from "../src/state/modelling/modelling";
-import { browserStorage } from "../src/state/storage";
+import { browserStorage } from "../src/storage";
 
 let sent: PageMessage[];
 let modelling: Modelling;

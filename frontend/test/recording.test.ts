@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { amountText, sizeText } from "../src/panels/timeline-text";
+import { amountText, sizeText } from "../src/panels/timeline/timeline-text";
 import type { PageMessage, RecordedFile, RecordingState } from "../src/protocol";
 import { RecordingControl } from "../src/state/recording";
 import { TimelineState } from "../src/state/timeline";

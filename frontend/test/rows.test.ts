@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { detailRows } from "../src/panels/detail-rows";
-import { displayRows, linkOfKey, linkPath } from "../src/panels/robot-rows";
+import { detailRows } from "../src/panels/displays/detail-rows";
+import { displayRows, linkOfKey, linkPath } from "../src/panels/displays/robot-rows";
 import type { JointScene, Property, ServerMessage } from "../src/protocol";
 import { composed, relative } from "../src/state/pose-numbers";
 import { Session } from "../src/state/session";

@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
 import { socketUrl } from "../src/connection/connection";
 import { addressFor, hasOwnDisplays, ownKey } from "../src/shell/own-displays";
-import { keyText, matches, SHORTCUTS } from "../src/shell/shortcuts";
-import { ThemeState } from "../src/shell/theme";
+import { ThemeState } from "../src/state/theme";
+import { keyText, matches, SHORTCUTS } from "../src/widgets/shortcuts";
 
 function storage(): { getItem(key: string): string | null; setItem(key: string, text: string): void } {
   const texts = new Map<string, string>();

@@ -1,8 +1,8 @@
 import { expect, it, vi } from "vitest";
-import { isAboutPage } from "../src/panels/line-notice";
 import type { DisplayData } from "../src/connection/data";
+import { isAboutPage } from "../src/panels/over-scene/line-notice";
+import { Signal } from "../src/signal";
 import type { DisplayDataStore } from "../src/state/display-data";
-import { Signal } from "../src/state/signal";
 import { SlowLine } from "../src/state/slow-line";
 
 vi.mock("../src/strings", () => ({ strings: {} }));

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { agoText, clockText, densities, keptText, momentText, passedText } from "../src/panels/timeline-text";
+import { agoText, clockText, densities, keptText, momentText, passedText } from "../src/panels/timeline/timeline-text";
 import type { PageMessage, Playhead } from "../src/protocol";
 import { TimelineState } from "../src/state/timeline";
 

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
-import type { TextStorage } from "../src/state/storage";
 import { Speaker } from "../src/state/voice/speaker";
+import type { TextStorage } from "../src/storage";
 
 /** Voices of a browser, which keeps what they are to say. */
 class Voices extends EventTarget {

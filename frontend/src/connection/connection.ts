@@ -1,11 +1,11 @@
 import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../protocol";
-import { Signal } from "../state/signal";
-import { browserStorage } from "../state/storage";
+import { Signal } from "../signal";
+import { browserStorage } from "../storage";
 import { unpackData, type DisplayData } from "./data";
 import { isPiece, Pieces } from "./pieces";
 import { recordingIn } from "./recording-address";
-import type { Tokens } from "./tokens";
 import { unpackSamples, type SeriesSamples } from "./samples";
+import type { Tokens } from "./tokens";
 import { unpackTransforms, type Transforms } from "./transforms";
 
 /**

@@ -1,4 +1,4 @@
-import type { BrowserStorage } from "../state/storage";
+import type { BrowserStorage } from "../storage";
 
 const PARAMETER = "token";
 const KEY = "linkwright.token";

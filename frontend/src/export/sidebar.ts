@@ -1,14 +1,14 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import { ComparisonPanel } from "../panels/comparison-panel";
-import { tickBox } from "../panels/controls";
-import { jointBar } from "../panels/joint-bar";
-import { JointRow } from "../panels/joint-row";
+import { ComparisonPanel } from "../panels/description/comparison-panel";
+import { jointBar } from "../panels/joints/joint-bar";
+import { JointRow } from "../panels/joints/joint-row";
 import type { View } from "../protocol";
-import type { ThemeState } from "../shell/theme";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
+import type { ThemeState } from "../state/theme";
 import { chooseLanguage, language, strings } from "../strings";
+import { tickBox } from "../widgets/controls";
 import type { Side } from "./views";
 
 const SIDES: readonly Side[] = ["iso", "front", "left", "top"];

@@ -1,4 +1,4 @@
-import { Signal } from "../state/signal";
+import { Signal } from "../signal";
 
 /** Frames may come this much early and still count as keeping to the rate: screens do not tick evenly. */
 const TOLERANCE_MS = 4;

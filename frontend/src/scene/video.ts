@@ -1,4 +1,4 @@
-import { Signal } from "../state/signal";
+import { Signal } from "../signal";
 
 const FRAME_RATE = 30;
 /** So often a scene that stands still is drawn, or there would be nothing to record: browsers take a canvas when it is painted. */

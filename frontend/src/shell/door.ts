@@ -1,8 +1,8 @@
 import type { Connection } from "../connection/connection";
 import { tokenOf, type Tokens } from "../connection/tokens";
 import { button, h } from "../dom";
-import { Logo } from "../panels/logo";
 import { strings } from "../strings";
+import { Logo } from "../widgets/logo";
 
 /** Before everything else while the page has no token that the program knows: where it is to be had, and a field for it. */
 export class Door {

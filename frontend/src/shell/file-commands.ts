@@ -1,8 +1,8 @@
 import type { ConfigurationRefused, EditName } from "../protocol";
 import type { ConfigurationState } from "../state/configuration";
 import { strings } from "../strings";
-import { saveText } from "../panels/save-file";
-import { Dialog, tell } from "./dialog";
+import { Dialog, tell } from "../widgets/dialog";
+import { saveText } from "../widgets/save-file";
 import { FileDialog } from "./file-dialog";
 
 /** Bytes of a file that fits into a message to the server, quotes and all. */

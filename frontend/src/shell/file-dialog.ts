@@ -3,7 +3,7 @@ import { icon } from "../icons";
 import type { Folder } from "../protocol";
 import type { ConfigurationState } from "../state/configuration";
 import { strings } from "../strings";
-import { Dialog } from "./dialog";
+import { Dialog } from "../widgets/dialog";
 
 const ENDING = ".rviz";
 

@@ -2,10 +2,10 @@ import { addressOf, recordingIn } from "../connection/recording-address";
 import type { Tokens } from "../connection/tokens";
 import { RefusedError, Upload } from "../connection/upload";
 import { h } from "../dom";
-import { amountOf } from "../panels/timeline-text";
+import { amountOf } from "../panels/timeline/timeline-text";
 import type { Session } from "../state/session";
 import { language, strings } from "../strings";
-import { Dialog, tell } from "./dialog";
+import { Dialog, tell } from "../widgets/dialog";
 import { filesOf, recordingAmong, type Dropped } from "./recording-files";
 
 /** Recordings that the user drops on the page, chooses or has made: they go to the server, and a page with their timeline opens. */

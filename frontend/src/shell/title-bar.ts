@@ -1,16 +1,16 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
-import type { Dock } from "../panels/dock";
-import { Logo } from "../panels/logo";
-import { openMenu, type MenuEntry } from "../panels/menu";
-import type { ShareMenu } from "../panels/share-menu";
+import type { Dock } from "../panels/dock/dock";
 import type { Session } from "../state/session";
+import { THEME_CHOICES, type ThemeState } from "../state/theme";
 import { chooseLanguage, language, strings } from "../strings";
+import { Logo } from "../widgets/logo";
+import { openMenu, type MenuEntry } from "../widgets/menu";
+import { keyText, SHORTCUTS } from "../widgets/shortcuts";
 import { editText, type FileCommands } from "./file-commands";
 import { addressFor } from "./own-displays";
 import type { RecordingDrop } from "./recording-drop";
-import { keyText, SHORTCUTS } from "./shortcuts";
-import { THEME_CHOICES, type ThemeState } from "./theme";
+import type { ShareMenu } from "./share-menu";
 
 /** The head of the page: menus, the configuration file, and what concerns all of the page. */
 export class TitleBar {

@@ -1,5 +1,5 @@
-import { Signal } from "./signal";
-import type { TextStorage } from "./storage";
+import { Signal } from "../signal";
+import type { TextStorage } from "../storage";
 
 export type AngleUnit = "rad" | "deg";
 

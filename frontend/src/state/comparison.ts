@@ -1,7 +1,7 @@
 import type { Connection } from "../connection/connection";
 import type { ComparedDescriptions, ComparedItem, ComparedRobot } from "../protocol";
+import { Signal } from "../signal";
 import type { ElementName } from "./description-model";
-import { Signal } from "./signal";
 
 export type MarkName = "added" | "changed" | "removed" | "old";
 

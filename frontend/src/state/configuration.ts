@@ -6,7 +6,7 @@ import type {
   DisplayChoices,
   Folder,
 } from "../protocol";
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 /** The configuration file on the server, what can be added to it, undone in it and done with it. */
 export class ConfigurationState {

@@ -1,7 +1,7 @@
 import type { Connection } from "../connection/connection";
 import type { DescriptionChanged, InertiaFinding, InertiaFindings } from "../protocol";
+import { Signal } from "../signal";
 import { DescriptionModel } from "./description-model";
-import { Signal } from "./signal";
 
 /** What an edit on disk changed. */
 export interface Change {

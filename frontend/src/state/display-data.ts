@@ -1,6 +1,6 @@
 import type { Connection } from "../connection/connection";
 import type { DisplayData } from "../connection/data";
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 /** The newest content of every display, by key. */
 export class DisplayDataStore {

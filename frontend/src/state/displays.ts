@@ -1,6 +1,6 @@
 import type { Display, Property, PropertyValue, StatusLevel, StatusRow, Tree } from "../protocol";
+import { Signal } from "../signal";
 import { PropertyNode, PropertyRows } from "./properties";
-import { Signal } from "./signal";
 
 const GROUP = "rviz_common/Group";
 

@@ -1,4 +1,4 @@
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 /** So many frames are looked back at. */
 const FRAMES = 60;

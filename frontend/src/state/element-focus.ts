@@ -1,7 +1,7 @@
 import type { RobotScene } from "../protocol";
+import { Signal } from "../signal";
 import type { ElementName } from "./description-model";
 import type { SelectionState } from "./selection";
-import { Signal } from "./signal";
 
 /**
  * The link or joint that the panels of the description are about. A joint selects the link that it moves in the scene;

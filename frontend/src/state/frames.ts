@@ -1,6 +1,6 @@
-import type { FrameTable } from "../protocol";
 import type { Transforms } from "../connection/transforms";
-import { Signal } from "./signal";
+import type { FrameTable } from "../protocol";
+import { Signal } from "../signal";
 
 /** Position (m) and orientation of a frame in the fixed frame. */
 export interface FramePose {

@@ -1,5 +1,5 @@
-import { Signal } from "./signal";
-import type { TextStorage } from "./storage";
+import { Signal } from "../signal";
+import type { TextStorage } from "../storage";
 
 const KEY = "linkwright.inspect";
 

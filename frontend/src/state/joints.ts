@@ -1,6 +1,6 @@
 import type { Connection } from "../connection/connection";
 import type { JointControl } from "../protocol";
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 /** Joints in one message: the server takes messages of 64 KiB. */
 const MOST_AT_ONCE = 200;

@@ -1,4 +1,4 @@
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 /** Loading that is done before is not told. */
 const TOLD_AFTER_MS = 500;

@@ -1,6 +1,6 @@
 import type { Connection } from "../connection/connection";
 import type { RecordedFile, RecordingState } from "../protocol";
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 /** What the server records for pages: one recording at a time, which all of them see. */
 export class RecordingControl {

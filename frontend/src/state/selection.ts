@@ -1,5 +1,5 @@
 import type { LinkScene, RobotScene } from "../protocol";
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 /** A thing of a display: a link, a marker, a point; `key` is what the display's drawing calls it. */
 export interface SelectedItem {

@@ -1,6 +1,6 @@
 import type { Connection } from "../connection/connection";
 import type { ControlSimulation, SimulationStatus } from "../protocol";
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 /** The simulation in the graph, if there is one, as the server tells of it. */
 export class SimulationState {

@@ -1,6 +1,6 @@
 import type { DisplayData } from "../connection/data";
+import { Signal } from "../signal";
 import type { DisplayDataStore } from "./display-data";
-import { Signal } from "./signal";
 
 /** Over so long contents are counted for their rate, ms. */
 const COUNTED_MS = 3000;

@@ -1,6 +1,6 @@
 import type { Connection } from "../connection/connection";
 import type { Clock, TimeState } from "../protocol";
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 export type SyncMode = TimeState["mode"];
 

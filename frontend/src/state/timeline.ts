@@ -1,6 +1,6 @@
 import type { Connection } from "../connection/connection";
 import type { Kept, Playhead, Timeline } from "../protocol";
-import { Signal } from "./signal";
+import { Signal } from "../signal";
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10] as const;
 

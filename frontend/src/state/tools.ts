@@ -1,7 +1,7 @@
 import type { Connection } from "../connection/connection";
 import type { PropertyValue, Tool, ToolClass } from "../protocol";
+import { Signal } from "../signal";
 import { PropertyNode, PropertyRows } from "./properties";
-import { Signal } from "./signal";
 
 /** One tool of the toolbar. */
 export class ToolState {

@@ -1,7 +1,7 @@
-import type { Property, PropertyValue, SavedView, View, ViewClass } from "../protocol";
 import type { Connection } from "../connection/connection";
+import type { Property, PropertyValue, SavedView, View, ViewClass } from "../protocol";
+import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
-import { Signal } from "./signal";
 import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
 import { holds, spanInTarget } from "./views/fit";

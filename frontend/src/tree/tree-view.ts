@@ -1,5 +1,5 @@
 import { coalesced, h } from "../dom";
-import { Signal } from "../state/signal";
+import { Signal } from "../signal";
 import { ColumnSplitter } from "./column-splitter";
 import type { TreeItem } from "./tree-item";
 import { TreeRow } from "./tree-row";

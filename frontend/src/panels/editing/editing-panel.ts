@@ -6,11 +6,11 @@ import { ANGLE_STEPS } from "../../state/modelling/snapping";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { formatNumber, parseNumber } from "../../tree/numbers";
-import { choice } from "../controls";
+import { choice } from "../../widgets/controls";
+import { UnitSwitch } from "../../widgets/unit-switch";
+import { holdWhileSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 import { shortPath } from "../place";
-import { UnitSwitch } from "../unit-switch";
-import { holdWhileVisible } from "../visibility";
 import { EditOutcome } from "./edit-outcome";
 
 /** m */
@@ -54,7 +54,7 @@ export class EditingPanel implements Panel {
       const link = current && focus.linkOf(current);
       editing.follow(current && typeof link === "string" ? { display: current.display, link } : null);
     };
-    holdWhileVisible(this.element, () => editing.hold(), update);
+    holdWhileSeen(this.element, () => editing.hold(), update);
     focus.changed.on(follow);
     for (const signal of [editing.changed, editing.draftChanged, editing.snapping.changed]) signal.on(update);
     angles.changed.on(() => {

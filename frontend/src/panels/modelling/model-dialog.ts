@@ -1,9 +1,9 @@
 import { h } from "../../dom";
 import { icon } from "../../icons";
 import type { ModelChoice } from "../../protocol";
-import { Dialog } from "../../shell/dialog";
 import type { Modelling } from "../../state/modelling/modelling";
 import { strings } from "../../strings";
+import { Dialog } from "../../widgets/dialog";
 
 /** Chooses among the models on the search path; the next click in the scene puts it there. */
 export class ModelDialog {

@@ -1,9 +1,9 @@
 import { button, h } from "../../dom";
 import { icon, type IconName } from "../../icons";
-import { keyText, type Shortcut } from "../../shell/shortcuts";
 import type { GizmoMode, Modelling, Placing } from "../../state/modelling/modelling";
 import type { NewKind } from "../../state/modelling/shapes";
 import { strings } from "../../strings";
+import { keyText, type Shortcut } from "../../widgets/shortcuts";
 import { ModelDialog } from "./model-dialog";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 

@@ -4,7 +4,7 @@ import type { WorldThing } from "../../protocol";
 import type { Modelling } from "../../state/modelling/modelling";
 import type { Shape } from "../../state/modelling/shapes";
 import { strings } from "../../strings";
-import { VirtualRows } from "../virtual-rows";
+import { VirtualRows } from "../../widgets/virtual-rows";
 
 const ROW_HEIGHT = 23;
 const ICONS: Readonly<Record<Shape, IconName>> = {

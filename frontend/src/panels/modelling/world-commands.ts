@@ -1,7 +1,7 @@
-import { askName } from "../../shell/dialog";
-import { matches, type Shortcut } from "../../shell/shortcuts";
 import type { Modelling } from "../../state/modelling/modelling";
 import { strings } from "../../strings";
+import { askName } from "../../widgets/dialog";
+import { matches, type Shortcut } from "../../widgets/shortcuts";
 
 /** The keys of modelling, as Gazebo and Blender have them. */
 export const WORLD_KEYS = {

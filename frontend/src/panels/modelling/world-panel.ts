@@ -1,17 +1,17 @@
 import { button, h } from "../../dom";
 import { icon, type IconName } from "../../icons";
-import { keyText, type Shortcut } from "../../shell/shortcuts";
 import type { AngleUnits } from "../../state/angle-unit";
 import type { Modelling } from "../../state/modelling/modelling";
 import { ANGLE_STEPS, LENGTH_STEPS } from "../../state/modelling/snapping";
 import { strings } from "../../strings";
 import { TreeView } from "../../tree/tree-view";
-import { choice } from "../controls";
+import { choice } from "../../widgets/controls";
+import { keyText, type Shortcut } from "../../widgets/shortcuts";
+import { UnitSwitch } from "../../widgets/unit-switch";
 import type { Panel } from "../panel";
 import { shortPath } from "../place";
-import { UnitSwitch } from "../unit-switch";
-import { ThingList } from "./thing-list";
 import { thingItems } from "./thing-items";
+import { ThingList } from "./thing-list";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
 /** What stands in the world that is modelled, and the numbers of what is selected. */

@@ -1,11 +1,11 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { EnrolledWord, TakeJudged } from "../../protocol";
-import { askName } from "../../shell/dialog";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
-import { saveText } from "../save-file";
-import { textField } from "../controls";
+import { textField } from "../../widgets/controls";
+import { askName } from "../../widgets/dialog";
+import { saveText } from "../../widgets/save-file";
 
 /** Below this the loudest sample of a recording is rather quiet: -24 dB. */
 const QUIET = 0.06;

@@ -1,8 +1,8 @@
 import type { Connection } from "../../connection/connection";
 import type { DiagnosticItem, EditablePart, EditableParts, EditPreview } from "../../protocol";
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
+import type { TextStorage } from "../../storage";
 import { Snapping } from "../modelling/snapping";
-import type { TextStorage } from "../storage";
 
 /** Where the part that is edited shall be: metres, or the parts of an axis; rad, empty for an axis. */
 export interface Draft {

@@ -1,7 +1,7 @@
 import type { Connection } from "../../connection/connection";
 import type { ModelChoice, ModellingState, WorldThing } from "../../protocol";
-import { Signal } from "../signal";
-import type { TextStorage } from "../storage";
+import { Signal } from "../../signal";
+import type { TextStorage } from "../../storage";
 import type { Change, NewKind, Placement } from "./shapes";
 import { Snapping } from "./snapping";
 

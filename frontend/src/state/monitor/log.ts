@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
 import type { LogLine } from "../../protocol";
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
 
 /** Records that are kept; the oldest go, a tenth at a time. */
 export const MOST_LINES = 20_000;

@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import type { TextStorage } from "../storage";
+import type { TextStorage } from "../../storage";
 import { fieldText } from "./field-text";
 import { LogState } from "./log";
 import { NavigationState } from "./navigation";

@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
 import type { NavigationCommand, NavigationState as Told } from "../../protocol";
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
 
 /** What nav2 is doing; asked for only while the panel is seen. */
 export class NavigationState {

@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
 import type { NodeGraph } from "../../protocol";
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
 
 /** The nodes and topics of the graph while somebody looks at them. */
 export class NodeGraphState {

@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
 import type { NodeParameters, ParameterDump, ParameterKind, ParameterResult } from "../../protocol";
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
 
 /** The nodes that have parameters, and the parameters of the one that is chosen. */
 export class ParametersState {

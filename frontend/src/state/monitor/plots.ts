@@ -1,7 +1,7 @@
 import type { Connection } from "../../connection/connection";
 import type { SeriesSamples } from "../../connection/samples";
 import type { TopicFields } from "../../protocol";
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
 import { fieldText, type FieldName } from "./field-text";
 import { SeriesBuffer, type TimeSource } from "./series-buffer";
 

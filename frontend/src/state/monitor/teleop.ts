@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
 import type { TeleopState as Aim, TwistKind } from "../../protocol";
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
 import { isStill, STILL, together, type Motion } from "./teleop-keys";
 
 export interface TeleopSettings {

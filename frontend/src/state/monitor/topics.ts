@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
 import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
 
 /** The topics, and what is known of those that somebody watches. */
 export class TopicsState {

@@ -1,4 +1,4 @@
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
 import type { CaptureMessage } from "./capture-worklet";
 import workletUrl from "./capture-worklet.ts?worker&url";
 

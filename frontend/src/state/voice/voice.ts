@@ -1,7 +1,7 @@
 import type { Connection } from "../../connection/connection";
 import { MOST_LOST_SAMPLES, SOUND_KIND, SOUND_RATE, type SaidPart, type TalkMode, type VoiceState as Told } from "../../protocol";
-import { Signal } from "../signal";
-import type { TextStorage } from "../storage";
+import { Signal } from "../../signal";
+import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
 import { Speaker } from "./speaker";
 

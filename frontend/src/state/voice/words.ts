@@ -1,6 +1,6 @@
 import type { Connection } from "../../connection/connection";
 import type { EnrolledWord, TakeJudged } from "../../protocol";
-import { Signal } from "../signal";
+import { Signal } from "../../signal";
 import type { VoiceState } from "./voice";
 
 /** How long a recording goes on after the button was let go: the end of a word is soft. */

@@ -1,0 +1,190 @@
+import { button, coalesced, h } from "../../dom";
+import { icon, type IconName } from "../../icons";
+import type { ComparedItem, ComparedPlace } from "../../protocol";
+import { grouped, MARK_COLORS, marksIn, type DifferenceGroup } from "../../state/comparison";
+import type { DisplayState } from "../../state/displays";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { tickBox } from "../../widgets/controls";
+import type { Panel } from "../panel";
+import { shortPlace } from "../place";
+
+const KIND_ICONS = { added: "plus", removed: "minus", renamed: "rename", changed: "options" } as const satisfies Record<string, IconName>;
+const SUBJECT_ICONS = { robot: "diagram", link: "cube", joint: "joints", extension: "code" } as const satisfies Record<string, IconName>;
+
+/** How two descriptions differ, and which of them are seen. */
+export class ComparisonPanel implements Panel {
+  readonly id = "comparison";
+  readonly icon = "compare";
+  readonly element: HTMLElement;
+  private readonly old = this.switchOf("old", strings.comparison.old, strings.comparison.showOld);
+  private readonly new = this.switchOf("new", strings.comparison.new, strings.comparison.showNew);
+  private readonly alpha = h("input", { class: "slider", title: strings.comparison.alpha, aria: { label: strings.comparison.alpha } });
+  private readonly marks = tickBox(strings.comparison.marks, strings.comparison.marksHint, (ticked) => (this.session.comparison.marks = ticked));
+  private readonly legend = h("ul", { class: "comparison-legend" });
+  private readonly count = h("p", { class: "comparison-count", role: "status" });
+  private readonly list = h("div", { class: "comparison-list", role: "list", aria: { label: strings.comparison.list } });
+
+  /** `look`: has the camera look at what is selected. */
+  constructor(
+    private readonly session: Session,
+    private readonly look: () => void,
+  ) {
+    this.alpha.type = "range";
+    [this.alpha.min, this.alpha.max, this.alpha.step] = ["0", "1", "0.05"];
+    this.alpha.style.setProperty("--zero", "0");
+    this.alpha.addEventListener("input", () => {
+      const row = this.display("old")?.rows.find("Alpha");
+      if (row) session.setProperty(row.id, Number(this.alpha.value));
+      this.showSwitches();
+    });
+    const head = h(
+      "div",
+      { class: "comparison-head" },
+      h("div", { class: "comparison-row" }, this.new),
+      h("div", { class: "comparison-row" }, this.old, this.alpha),
+      h("div", { class: "comparison-row" }, this.marks),
+      this.legend,
+    );
+    const body = h("div", { class: "comparison-body" }, h("div", { class: "comparison-top" }, head, this.count), this.list);
+    this.element = h("div", { class: "panel comparison" }, body);
+    this.list.addEventListener("pointerleave", () => session.focus.setHovered(null));
+    const { comparison, displays } = session;
+    const switches = coalesced(() => this.showSwitches());
+    comparison.changed.on(() => this.show());
+    displays.treeChanged.on(switches);
+    displays.enabledChanged.on(switches);
+    displays.valueChanged.on(({ display }) => {
+      if (display) switches();
+    });
+    session.focus.changed.on(coalesced(() => this.showFocus()));
+    this.show();
+  }
+
+  private switchOf(side: "old" | "new", text: string, hint: string): ReturnType<typeof tickBox> {
+    const tick = tickBox(text, hint, (ticked) => {
+      const display = this.display(side);
+      if (display) this.session.setProperty(display.enabledId, ticked);
+    });
+    tick.append(h("span", { class: "comparison-file" }));
+    return tick;
+  }
+
+  private display(side: "old" | "new"): DisplayState | undefined {
+    return this.session.displays.find(this.session.comparison.compared?.[side].display ?? "");
+  }
+
+  private show(): void {
+    const { compared } = this.session.comparison;
+    if (!compared) return;
+    const words = strings.comparison;
+    for (const [tick, { label }] of [[this.old, compared.old], [this.new, compared.new]] as const) {
+      const file = tick.querySelector(".comparison-file");
+      if (file) file.textContent = shortPlace(label);
+      tick.title = `${tick === this.old ? words.showOld : words.showNew}\n${label}`;
+    }
+    const marks = marksIn([compared.new, compared.old]);
+    this.legend.replaceChildren(
+      ...marks.map((mark) => {
+        const swatch = h("span", { class: "comparison-swatch" });
+        swatch.style.background = MARK_COLORS[mark];
+        return h("li", { data: { mark } }, swatch, words.mark[mark]);
+      }),
+    );
+    const { items } = compared;
+    this.count.textContent = items.length === 0 ? words.same : words.count(items.length);
+    const at = this.list.scrollTop;
+    this.list.replaceChildren(...grouped(items).map((group) => this.group(group)));
+    this.list.scrollTop = at;
+    this.showSwitches();
+    this.showFocus();
+  }
+
+  private showSwitches(): void {
+    for (const [tick, side] of [[this.old, "old"], [this.new, "new"]] as const) {
+      const display = this.display(side);
+      tick.box.disabled = display === undefined;
+      tick.box.checked = display?.enabled ?? false;
+    }
+    const alpha = this.display("old")?.rows.number(1, "Alpha") ?? 1;
+    this.alpha.disabled = !this.old.box.checked;
+    this.alpha.value = String(alpha);
+    this.alpha.style.setProperty("--part", String(alpha));
+    this.marks.box.checked = this.session.comparison.marks;
+  }
+
+  /** Marks the group of what is selected. */
+  private showFocus(): void {
+    const { current } = this.session.focus;
+    const key = current ? keyOf(current) : "";
+    for (const group of this.list.querySelectorAll<HTMLElement>(".difference-group")) {
+      const isOne = group.dataset["element"] === key;
+      group.classList.toggle("selected", isOne);
+      if (isOne) group.scrollIntoView({ block: "nearest" });
+    }
+  }
+
+  private group({ items, kind }: DifferenceGroup): HTMLElement {
+    const [first] = items;
+    if (!first) return h("div");
+    const words = strings.comparison;
+    const { focus, comparison } = this.session;
+    const element = comparison.elementOf(first);
+    const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, words.subjects[first.subject]), first.name] as const;
+    const choose = (): void => {
+      focus.select(element);
+      this.look();
+    };
+    const header = element
+      ? button(words.select(first.name), choose, "difference-name", ...label)
+      : h("div", { class: "difference-name" }, ...label);
+    const group = h(
+      "div",
+      { class: "difference-group", role: "listitem", data: element ? { element: keyOf(element) } : {} },
+      h("div", { class: "difference-head" }, header, items.length === 1 && first.property === "" ? kindTag(kind) : null),
+      ...items.map((item) => this.item(item, choose)),
+    );
+    const hover = (): void => focus.setHovered(element);
+    group.addEventListener("pointerenter", hover);
+    group.addEventListener("focusin", hover);
+    group.addEventListener("focusout", () => focus.setHovered(null));
+    return group;
+  }
+
+  private item(item: ComparedItem, choose: () => void): HTMLElement {
+    const words = strings.comparison;
+    const none = (text: string | null): string => text ?? words.nothing;
+    const line =
+      item.property === ""
+        ? null
+        : h(
+            "div",
+            { class: "difference-values" },
+            icon(KIND_ICONS[item.kind]),
+            h("span", { class: "difference-property" }, item.property),
+            h("span", { class: "difference-value" }, h("del", {}, none(item.old)), " → ", h("ins", {}, [none(item.new), item.unit].filter((part) => part !== "").join(" "))),
+          );
+    line?.addEventListener("click", choose);
+    const places = [this.place(item.old_place, "old"), this.place(item.new_place, "new")].filter((place) => place !== null);
+    return h("div", { class: "difference" }, line, places.length > 0 ? h("div", { class: "difference-places" }, ...places) : null);
+  }
+
+  /** Where it is written: a way into the Source panel where that can show it. */
+  private place(place: ComparedPlace | null, side: "old" | "new"): HTMLElement | null {
+    if (!place) return null;
+    const { text, file, line } = place;
+    const words = [h("span", { class: "difference-side" }, strings.comparison[side]), shortPlace(text)] as const;
+    const display = this.session.comparison.compared?.[side].display ?? "";
+    if (file === "" || display === "") return h("span", { class: "place", title: text }, ...words);
+    const name = text.replace(/(:\d+)+$/, "");
+    return button(text, () => this.session.description.placeAsked.emit({ file, line, display, name }), "place", ...words);
+  }
+}
+
+function kindTag(kind: ComparedItem["kind"]): HTMLElement {
+  return h("span", { class: `difference-tag ${kind}` }, icon(KIND_ICONS[kind]), strings.comparison.kinds[kind]);
+}
+
+function keyOf({ display, kind, name }: { display: string; kind: string; name: string }): string {
+  return [display, kind, name].join(" ");
+}

@@ -1,0 +1,142 @@
+import { button, coalesced, h } from "../../dom";
+import { icon, LEVEL_ICONS } from "../../icons";
+import type { DiagnosticItem, DiagnosticNote, StatusRow } from "../../protocol";
+import { troublesOf, type DisplayState } from "../../state/displays";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { troubleText } from "../displays/display-items";
+import type { Panel } from "../panel";
+import { placeText, shortPath } from "../place";
+
+/** What is wrong with the description, with the lines it is about, and why displays show nothing. */
+export class DiagnosticsPanel implements Panel {
+  readonly id = "diagnostics";
+  readonly icon = "warn";
+  readonly element = h("div", { class: "panel diagnostics" });
+  private readonly findings = h("div", { aria: { live: "polite" } });
+  private readonly displays = h("div");
+  private readonly none = h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none);
+  private cards: ReadonlyMap<string, TroubleCard> = new Map<string, TroubleCard>();
+
+  constructor(private readonly session: Session) {
+    this.element.append(this.none, this.findings, this.displays);
+    session.diagnosticsChanged.on(() => this.showFindings());
+    const { displays } = session;
+    const show = coalesced(() => this.showDisplays());
+    for (const signal of [displays.statusChanged, displays.enabledChanged, displays.treeChanged]) {
+      (signal as { on(listener: () => void): void }).on(show);
+    }
+    this.showFindings();
+    this.showDisplays();
+  }
+
+  private showFindings(): void {
+    const show = (file: string, line: number): void => this.session.description.placeAsked.emit({ file, line });
+    this.findings.replaceChildren(...this.session.diagnostics.map((item) => card(item, show)));
+    this.showNone();
+  }
+
+  private showDisplays(): void {
+    const { displays } = this.session;
+    const all = troublesOf(displays.globalStatus);
+    const next = new Map<string, TroubleCard>();
+    const show = (id: string, name: string, troubles: readonly StatusRow[], title: () => HTMLElement): void => {
+      if (troubles.length === 0) return;
+      const card = this.cards.get(id) ?? new TroubleCard(title());
+      card.show(name, troubles);
+      next.set(id, card);
+    };
+    show("#status", strings.tree.globalStatus, all, () => h("span"));
+    for (const each of displays.displays) show(each.id, each.name, each.troubles, () => this.rowButton(each));
+    this.cards = next;
+    const elements = [...next.values()].map((each) => each.element);
+    const before = [...this.displays.children];
+    // What is there stays the same element, whatever it says: it may be about to be clicked.
+    if (elements.length !== before.length || elements.some((each, index) => each !== before[index])) this.displays.replaceChildren(...elements);
+    this.showNone();
+  }
+
+  private showNone(): void {
+    this.none.hidden = this.findings.childElementCount + this.displays.childElementCount > 0;
+  }
+
+  private rowButton(display: DisplayState): HTMLElement {
+    const { displays } = this.session;
+    return button(strings.diagnostics.showDisplay, () => displays.rowAsked.emit(display), "text-link", display.name);
+  }
+}
+
+/** What is wrong with a display. */
+class TroubleCard {
+  readonly element = h("article");
+  private readonly sign = h("span");
+  private readonly list = h("ul");
+  private shown = "";
+
+  constructor(private readonly title: HTMLElement) {
+    this.element.append(h("header", {}, this.sign, h("strong", {}, this.title)), this.list);
+  }
+
+  show(name: string, troubles: readonly StatusRow[]): void {
+    const key = JSON.stringify([name, troubles]);
+    if (key === this.shown) return;
+    this.shown = key;
+    const level = troubles[0]?.level ?? "ok";
+    this.element.className = `diagnostic ${level === "warn" ? "warning" : level}`;
+    this.sign.replaceChildren(icon(LEVEL_ICONS[level], `level-${level}`));
+    this.title.textContent = name;
+    this.list.replaceChildren(...troubles.map((row) => h("li", {}, troubleText(row))));
+  }
+}
+
+type Show = (file: string, line: number) => void;
+
+function card(item: DiagnosticItem, show: Show): HTMLElement {
+  const notes = item.notes.map((note) => {
+    return h(
+      "li",
+      {},
+      h("span", { class: "tag" }, strings.diagnostics.note),
+      note.message,
+      placeButton(note, show),
+    );
+  });
+  const hints = item.hints.map((hint) =>
+    h("li", { class: "hint-line" }, h("span", { class: "tag" }, strings.diagnostics.hint), hint),
+  );
+  return h(
+    "article",
+    { class: `diagnostic ${item.severity}` },
+    h(
+      "header",
+      {},
+      icon(LEVEL_ICONS[item.severity], `level-${item.severity}`),
+      h("strong", {}, item.message),
+      h("code", { class: "code" }, item.code),
+    ),
+    placeButton(item, show),
+    excerpt(item),
+    notes.length + hints.length > 0 ? h("ul", {}, ...notes, ...hints) : null,
+  );
+}
+
+/** A place that is shown in the Source panel when it is clicked. */
+function placeButton({ file, line, column }: Pick<DiagnosticNote, "file" | "line" | "column">, show: Show): HTMLElement | null {
+  if (file === null) return null;
+  const text = placeText(shortPath(file), line, column);
+  return button(placeText(file, line, column), () => show(file, line ?? 1), "place", icon("file"), text);
+}
+
+/** The source line with the part in question marked. */
+function excerpt(item: DiagnosticItem): HTMLElement | null {
+  if (item.excerpt === "") return null;
+  const text = item.excerpt.trimStart();
+  const indent = item.excerpt.length - text.length;
+  const offset = (column: number): number => Math.min(Math.max(0, column - 1 - indent), text.length);
+  const start = offset(item.column ?? 1);
+  const sameLine = item.end_line === null || item.end_line === item.line;
+  const end = sameLine && item.end_column !== null ? offset(item.end_column) : text.length;
+  const code = h("code", {}, text.slice(0, start));
+  code.append(h("mark", {}, text.slice(start, Math.max(end, start + 1))), text.slice(Math.max(end, start + 1)));
+  return h("pre", { class: "excerpt" }, h("span", { class: "line-number" }, String(item.line ?? "")), code);
+}

@@ -1,0 +1,218 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { DescriptionModel, ElementName } from "../../state/description-model";
+import { layOut, type Diagram, type DiagramNode } from "../../state/diagram-layout";
+import { same } from "../../state/element-focus";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { PanZoom } from "../../widgets/pan-zoom";
+import { holdWhileSeen } from "../../widgets/when-seen";
+import type { Panel } from "../panel";
+import { currentModel } from "./current-model";
+
+const SVG = "http://www.w3.org/2000/svg";
+const FONT = "12px Inter, 'Segoe UI', 'Noto Sans', sans-serif";
+const LINE_PX = 13;
+/** Of the smallest texts, the origins. */
+const TEXT_PX = 11;
+const FLASH_MS = 1600;
+
+/** The structure of the robot, as urdf_to_graphviz draws it. */
+export class DiagramPanel implements Panel {
+  readonly id = "diagram";
+  readonly icon = "diagram";
+  readonly element: HTMLElement;
+  private readonly canvas = h("div", { class: "diagram", tabIndex: 0, role: "group", aria: { label: strings.description.diagram.label } });
+  private readonly svg = svg("svg", {});
+  private readonly picture = svg("g", {});
+  private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
+  private readonly panZoom: PanZoom;
+  private readonly nodes = new Map<string, SVGGElement>();
+  private readonly measure = textMeasure();
+  private origins = true;
+  private model: DescriptionModel | undefined;
+  private diagram: Diagram | null = null;
+  private isPlaced = false;
+
+  constructor(private readonly session: Session) {
+    const words = strings.description.diagram;
+    this.svg.append(this.picture);
+    this.canvas.append(this.svg);
+    this.panZoom = new PanZoom(
+      this.canvas,
+      (x, y, scale) => this.picture.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`),
+      () => this.fit(),
+    );
+    const origins = button(words.originsHint, () => this.toggleOrigins(origins), "tool on", words.origins);
+    origins.setAttribute("aria-pressed", "true");
+    const bar = h(
+      "div",
+      { class: "toolbar" },
+      button(words.fitHint, () => this.fit(), "tool", icon("fit"), words.fit),
+      button(words.zoomIn, () => this.panZoom.zoomBy(1.25), "tool bare", icon("plus")),
+      button(words.zoomOut, () => this.panZoom.zoomBy(0.8), "tool bare", icon("minus")),
+      h("span", { class: "spacer" }),
+      origins,
+    );
+    this.element = h("div", { class: "panel" }, bar, this.empty, this.canvas);
+    const { description, focus } = session;
+    const update = coalesced(() => this.update());
+    holdWhileSeen(this.element, () => description.hold(), update);
+    description.arrived.on(update);
+    session.robotChanged.on(update);
+    focus.changed.on(coalesced(() => this.focused()));
+    description.edited.on(({ links, joints }) => this.flash(links, joints));
+    this.update();
+  }
+
+  /** For tests. */
+  inspect(): object {
+    const { nodes = [], width = 0, height = 0 } = this.diagram ?? {};
+    return {
+      links: nodes.filter(({ element }) => element.kind === "link").length,
+      joints: nodes.filter(({ element }) => element.kind === "joint").length,
+      width,
+      height,
+      scale: this.panZoom.scale,
+    };
+  }
+
+  private update(): void {
+    const model = currentModel(this.session);
+    this.empty.hidden = model !== undefined;
+    this.canvas.hidden = model === undefined;
+    if (!model) return;
+    if (model !== this.model) {
+      this.isPlaced &&= this.model?.display === model.display && this.model.links.size === model.links.size;
+      this.model = model;
+      this.draw(model);
+    }
+    if (this.isPlaced || this.canvas.clientWidth === 0) return;
+    this.isPlaced = true;
+    this.place();
+    this.focused();
+  }
+
+  private draw(model: DescriptionModel): void {
+    this.diagram = layOut(model, this.origins, this.measure);
+    this.nodes.clear();
+    const edges = svg("g", { class: "edges" });
+    const shapes = svg("g", {});
+    for (const node of this.diagram.nodes) {
+      const { above } = node;
+      if (above) {
+        edges.append(svg("path", { d: edge(above, node), class: "edge" }), svg("path", { d: head(node), class: "edge-head" }));
+      }
+      const shape = this.node(node, model);
+      this.nodes.set(key(node.element), shape);
+      shapes.append(shape);
+    }
+    this.picture.replaceChildren(edges, shapes);
+  }
+
+  private node(node: DiagramNode, model: DescriptionModel): SVGGElement {
+    const { element, x, y, width, height, origin } = node;
+    const kind = element.kind === "joint" ? (model.joints.get(element.name)?.kind ?? "") : "";
+    const group = svg("g", { class: `node ${element.kind} ${kind}`, transform: `translate(${x} ${y})` });
+    group.dataset[element.kind] = element.name;
+    origin.forEach((text, i) => {
+      const at = -height / 2 - 12 - (origin.length - 1 - i) * LINE_PX;
+      group.append(label(text, at, "origin"));
+    });
+    const shape =
+      element.kind === "link"
+        ? svg("rect", { x: -width / 2, y: -height / 2, width, height, rx: 3 })
+        : svg("ellipse", { rx: width / 2, ry: height / 2 });
+    group.append(shape, label(element.name, 0, "name"));
+    group.addEventListener("click", () => {
+      if (!this.panZoom.dragged) this.session.focus.select(element);
+    });
+    group.addEventListener("pointerenter", () => this.session.focus.setHovered(element));
+    group.addEventListener("pointerleave", () => this.session.focus.setHovered(null));
+    return group;
+  }
+
+  private focused(): void {
+    const { current } = this.session.focus;
+    for (const old of this.picture.querySelectorAll(".node.selected")) old.classList.remove("selected");
+    if (!current) return;
+    this.nodes.get(key(current))?.classList.add("selected");
+    const node = this.diagram?.nodes.find(({ element }) => same(element, current));
+    if (node && !this.canvas.matches(":hover")) this.panZoom.reveal(node.x, node.y);
+  }
+
+  private fit(): void {
+    if (this.diagram && this.canvas.clientWidth > 0) this.panZoom.show(this.diagram.width, this.diagram.height);
+  }
+
+  /** What is selected, or else the root, is in sight and can be read. */
+  private place(): void {
+    const { diagram } = this;
+    if (!diagram || this.canvas.clientWidth === 0) return;
+    const { current } = this.session.focus;
+    const node = (current && diagram.nodes.find(({ element }) => same(element, current))) ?? diagram.nodes.find(({ above }) => !above);
+    this.panZoom.open(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
+  }
+
+  private toggleOrigins(pressed: HTMLElement): void {
+    this.origins = !this.origins;
+    pressed.classList.toggle("on", this.origins);
+    pressed.setAttribute("aria-pressed", String(this.origins));
+    if (this.model) this.draw(this.model);
+    this.place();
+    this.focused();
+  }
+
+  private flash(links: readonly string[], joints: readonly string[]): void {
+    // The new picture comes with the answer to the question that the same change made.
+    setTimeout(() => {
+      const names = [...links.map((name) => `link ${name}`), ...joints.map((name) => `joint ${name}`)];
+      for (const node of names.flatMap((name) => this.nodes.get(name) ?? [])) {
+        node.classList.add("flash");
+        setTimeout(() => node.classList.remove("flash"), FLASH_MS);
+      }
+    }, 200);
+  }
+}
+
+function key({ kind, name }: ElementName): string {
+  return `${kind} ${name}`;
+}
+
+/** From the lower end of one node to the upper end of the other. */
+function edge(from: DiagramNode, to: DiagramNode): string {
+  const [top, bottom] = [from.y + from.height / 2, to.y - to.height / 2];
+  const middle = Math.min(14, (bottom - top) / 2);
+  return `M${from.x} ${top}C${from.x} ${top + middle} ${to.x} ${top} ${to.x} ${top + 2 * middle}V${bottom - 5}`;
+}
+
+function head({ x, y, height }: DiagramNode): string {
+  return `M${x - 3.5} ${y - height / 2 - 7}h7l-3.5 7z`;
+}
+
+function label(text: string, y: number, className: string): SVGTextElement {
+  const element = svg("text", { y, class: className });
+  element.textContent = text;
+  return element;
+}
+
+function svg<K extends keyof SVGElementTagNameMap>(
+  tag: K,
+  attributes: Readonly<Record<string, string | number>>,
+): SVGElementTagNameMap[K] {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+  return element;
+}
+
+/** Widths of texts in the diagram's font, each measured once. */
+function textMeasure(): (text: string) => number {
+  const context = document.createElement("canvas").getContext("2d");
+  const known = new Map<string, number>();
+  if (context) context.font = FONT;
+  return (text) => {
+    let width = known.get(text);
+    if (width === undefined) known.set(text, (width = context?.measureText(text).width ?? text.length * 7));
+    return width;
+  };
+}

@@ -1,0 +1,194 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { DescriptionModel, ElementName } from "../../state/description-model";
+import { same } from "../../state/element-focus";
+import { flattened, LinkTreeState, type TreeRow } from "../../state/link-tree";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { VirtualRows } from "../../widgets/virtual-rows";
+import { holdWhileSeen } from "../../widgets/when-seen";
+import type { Panel } from "../panel";
+import { currentModel } from "./current-model";
+
+const ROW_PX = 23;
+const FLASH_MS = 1600;
+
+/** The kinematic tree: each link with the joint that moves it. */
+export class LinksPanel implements Panel {
+  readonly id = "links";
+  readonly icon = "tree";
+  readonly element: HTMLElement;
+  private readonly rows = new VirtualRows("link-rows", ROW_PX, (index) => this.row(index));
+  private readonly search = h("input", { class: "field filter" });
+  private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
+  private readonly count = h("span", { class: "toolbar-label" });
+  private readonly tree = new LinkTreeState();
+  private shown: TreeRow[] = [];
+  private model: DescriptionModel | undefined;
+  private flashing = new Set<string>();
+
+  constructor(private readonly session: Session) {
+    const words = strings.description;
+    this.search.type = "search";
+    this.search.placeholder = words.search;
+    this.search.setAttribute("aria-label", words.search);
+    this.search.addEventListener("input", () => this.update());
+    const bar = h(
+      "div",
+      { class: "toolbar" },
+      this.count,
+      h("span", { class: "spacer" }),
+      button(words.expandAll, () => this.fold(false), "tool bare", icon("expand")),
+      button(words.collapseAll, () => this.fold(true), "tool bare", icon("collapse")),
+    );
+    this.rows.element.setAttribute("role", "tree");
+    this.rows.element.setAttribute("aria-label", words.linksLabel);
+    this.rows.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.rows.element.addEventListener("pointerleave", () => session.focus.setHovered(null));
+    this.element = h("div", { class: "panel" }, bar, this.search, this.empty, this.rows.element);
+    const update = coalesced(() => this.update());
+    const { description, focus } = session;
+    holdWhileSeen(this.element, () => description.hold(), update);
+    description.arrived.on(update);
+    description.findingsArrived.on(update);
+    session.robotChanged.on(update);
+    focus.changed.on(coalesced(() => this.focused()));
+    description.edited.on(({ links, joints }) => this.flash([...links, ...joints]));
+    this.update();
+  }
+
+  private update(): void {
+    this.model = currentModel(this.session);
+    const { model } = this;
+    this.empty.hidden = model !== undefined;
+    this.rows.element.hidden = this.search.hidden = model === undefined;
+    if (!model) return;
+    const { links, joints } = model;
+    this.count.textContent = strings.description.count(links.size, joints.size);
+    this.shown = flattened(model, this.tree, this.search.value);
+    const deepest = this.shown.reduce((most, { depth }) => Math.max(most, depth), 1);
+    this.rows.element.style.setProperty("--deepest", String(deepest));
+    this.rows.refresh(this.shown.length);
+  }
+
+  /** Another element is the one: its row is opened and shown. */
+  private focused(): void {
+    const link = this.focusedLink();
+    if (this.model && link !== undefined && this.search.value === "") this.tree.open(this.model, link);
+    this.update();
+    const index = this.shown.findIndex((row) => row.link.name === link);
+    if (index >= 0) this.rows.reveal(index);
+  }
+
+  private focusedLink(): string | undefined {
+    const { current } = this.session.focus;
+    return current && current.display === this.model?.display ? this.session.focus.linkOf(current) : undefined;
+  }
+
+  private row(index: number): HTMLElement {
+    const row = this.shown[index];
+    const model = this.model;
+    if (!row || !model) return h("div");
+    const { link, joint, depth, folded } = row;
+    const focus = this.session.focus.current;
+    const name = (kind: "link" | "joint", of: string): ElementName => ({ display: model.display, kind, name: of });
+    const self = name("link", link.name);
+    const twist = h("span", { class: row.inner ? "twist" : "twist leaf" }, icon("chevron"));
+    twist.addEventListener("click", (event) => {
+      event.stopPropagation();
+      this.toggle(index);
+    });
+    const findings = this.session.description.findingsOf(model.display).filter((each) => each.link === link.name);
+    const element = h(
+      "div",
+      { class: "link-row", role: "treeitem", data: { link: link.name } },
+      twist,
+      icon("cube"),
+      h("span", { class: "link-name", title: link.name }, link.name),
+      findings.length > 0 ? badge(findings.map((each) => each.message)) : null,
+      h("span", { class: "spacer" }),
+      joint ? this.jointName(name("joint", joint.name), joint.kind) : null,
+    );
+    element.style.setProperty("--depth", String(depth));
+    element.id = `link-row-${index}`;
+    element.setAttribute("aria-level", String(depth + 1));
+    element.setAttribute("aria-selected", String(same(focus, self)));
+    if (row.inner) element.setAttribute("aria-expanded", String(!folded));
+    element.classList.toggle("selected", link.name === this.focusedLink());
+    element.classList.toggle("flash", this.flashing.has(link.name) || (joint !== null && this.flashing.has(joint.name)));
+    element.addEventListener("click", () => this.select(index, self));
+    element.addEventListener("pointerenter", () => this.session.focus.setHovered(self));
+    return element;
+  }
+
+  private jointName(joint: ElementName, kind: keyof typeof strings.description.kinds): HTMLElement {
+    const element = h(
+      "span",
+      { class: `joint-of ${kind}`, title: `${joint.name} (${strings.description.kinds[kind]})`, data: { joint: joint.name } },
+      icon("joints"),
+      h("span", {}, joint.name),
+    );
+    element.classList.toggle("selected", same(this.session.focus.current, joint));
+    element.addEventListener("click", (event) => {
+      event.stopPropagation();
+      this.session.focus.select(joint);
+    });
+    element.addEventListener("pointerenter", () => this.session.focus.setHovered(joint));
+    return element;
+  }
+
+  private select(index: number, element: ElementName): void {
+    this.rows.element.setAttribute("aria-activedescendant", `link-row-${index}`);
+    this.session.focus.select(element);
+  }
+
+  private toggle(index: number): void {
+    const row = this.shown[index];
+    if (row?.inner) this.tree.toggle(row.link.name);
+    this.update();
+  }
+
+  private fold(all: boolean): void {
+    if (this.model) this.tree.fold(this.model, all);
+    this.update();
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const link = this.focusedLink();
+    const index = this.shown.findIndex((row) => row.link.name === link);
+    const row = this.shown[index];
+    const go = (to: number): void => {
+      const next = this.shown[Math.min(Math.max(0, to), this.shown.length - 1)];
+      if (next && this.model) this.select(to, { display: this.model.display, kind: "link", name: next.link.name });
+    };
+    if (event.key === "ArrowDown") go(index + 1);
+    else if (event.key === "ArrowUp") go(index - 1);
+    else if (event.key === "Home") go(0);
+    else if (event.key === "End") go(this.shown.length - 1);
+    else if (event.key === "ArrowRight" && row?.inner && row.folded) this.toggle(index);
+    else if (event.key === "ArrowRight") go(index + 1);
+    else if (event.key === "ArrowLeft" && row?.inner && !row.folded) this.toggle(index);
+    else if (event.key === "ArrowLeft" && row?.joint) go(this.shown.findIndex((each) => each.link.name === row.joint?.parent));
+    else if (event.key === "Enter" && row?.joint && this.model) {
+      // From a link to its joint, and back.
+      const kind = this.session.focus.current?.kind === "joint" ? "link" : "joint";
+      const name = kind === "link" ? row.link.name : row.joint.name;
+      this.session.focus.select({ display: this.model.display, kind, name });
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  private flash(names: readonly string[]): void {
+    this.flashing = new Set(names);
+    this.update();
+    setTimeout(() => {
+      this.flashing.clear();
+      this.update();
+    }, FLASH_MS);
+  }
+}
+
+function badge(messages: readonly string[]): HTMLElement {
+  return h("span", { class: "level-warn", title: messages.join("\n") }, icon("warn"));
+}

@@ -1,0 +1,116 @@
+import { h } from "../../dom";
+import { lineStates, tokenize, type LineState } from "../../state/xml-tokens";
+import { strings } from "../../strings";
+import { VirtualRows } from "../../widgets/virtual-rows";
+
+const ROW_PX = 18;
+/** Longer lines are cut: some files are one line of a megabyte. */
+const LONGEST_LINE = 4000;
+
+/** Lines from..to, 1-based and inclusive, and how they are to look. */
+export interface Highlight {
+  readonly from: number;
+  readonly to: number;
+  readonly look: "focus" | "problem";
+}
+
+/** A text with line numbers and colours, of which only what is in sight is drawn. */
+export class SourceView {
+  readonly element: HTMLElement;
+  private readonly rows = new VirtualRows("source-lines", ROW_PX, (index) => this.row(index));
+  private lines: readonly string[] = [];
+  private states: readonly LineState[] = [];
+  private highlights: readonly Highlight[] = [];
+  private cursor = 1;
+  private text: string | null = null;
+
+  /** @param chosen called with the line that the user clicked, or pressed Enter on. */
+  constructor(
+    label: string,
+    private readonly chosen: (line: number) => void,
+  ) {
+    this.element = this.rows.element;
+    this.element.setAttribute("role", "region");
+    this.element.setAttribute("aria-label", label);
+    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.element.addEventListener("click", (event) => this.clicked(event));
+  }
+
+  get lineCount(): number {
+    return this.lines.length;
+  }
+
+  get highlighted(): readonly Highlight[] {
+    return this.highlights;
+  }
+
+  /** Shows a text; the same one stays as it is. */
+  setText(text: string): void {
+    if (text === this.text) return;
+    this.text = text;
+    this.lines = text.replace(/\n$/, "").split(/\r\n?|\n/);
+    this.states = lineStates(this.lines);
+    const longest = this.lines.reduce((most, line) => Math.max(most, line.length), 0);
+    this.rows.body.style.minWidth = `calc(${Math.min(longest, LONGEST_LINE) + 4}ch + 70px)`;
+    this.rows.element.style.setProperty("--gutter", `${String(this.lines.length).length + 1}ch`);
+    this.rows.refresh(this.lines.length);
+  }
+
+  setHighlights(highlights: readonly Highlight[]): void {
+    if (JSON.stringify(highlights) === JSON.stringify(this.highlights)) return;
+    this.highlights = highlights;
+    this.rows.refresh();
+  }
+
+  /** Scrolls to a line; the cursor goes there. */
+  reveal(line: number): void {
+    this.cursor = line;
+    this.rows.reveal(line - 1);
+  }
+
+  private row(index: number): HTMLElement {
+    const line = this.lines[index] ?? "";
+    const code = h("code", { class: "source-code" });
+    const { tokens } = tokenize(line.slice(0, LONGEST_LINE), this.states[index] ?? "text");
+    for (const { kind, text } of tokens) code.append(kind === "text" ? text : h("span", { class: `xml-${kind}` }, text));
+    if (line.length > LONGEST_LINE) code.append(h("i", {}, strings.description.source.long(line.length - LONGEST_LINE)));
+    const number = index + 1;
+    const row = h(
+      "div",
+      { class: "source-line", data: { line: String(number) } },
+      h("span", { class: "source-number" }, String(number)),
+      code,
+    );
+    for (const { from, to, look } of this.highlights) if (from <= number && number <= to) row.classList.add(look);
+    return row;
+  }
+
+  private clicked(event: MouseEvent): void {
+    if (!window.getSelection()?.isCollapsed) return; // text is being selected
+    const row = (event.target as HTMLElement).closest<HTMLElement>(".source-line");
+    if (row) this.choose(Number(row.dataset["line"]));
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step !== undefined && !event.ctrlKey && !event.metaKey) {
+      this.cursor = Math.min(Math.max(1, this.cursor + step), this.lines.length);
+      this.rows.reveal(this.cursor - 1);
+      this.showCursor();
+    } else if (event.key === "Enter") this.choose(this.cursor);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  private choose(line: number): void {
+    this.cursor = line;
+    this.showCursor();
+    this.chosen(line);
+  }
+
+  private showCursor(): void {
+    for (const old of this.element.querySelectorAll(".source-line.cursor")) old.classList.remove("cursor");
+    this.rows.rowAt(this.cursor - 1)?.classList.add("cursor");
+  }
+}

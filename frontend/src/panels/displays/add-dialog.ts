@@ -1,0 +1,214 @@
+import { button, h } from "../../dom";
+import { displayIcon, icon } from "../../icons";
+import type { DisplayClass, TopicChoice } from "../../protocol";
+import type { DisplayState } from "../../state/displays";
+import { obviousDisplay } from "../../state/obvious-display";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { Dialog } from "../../widgets/dialog";
+
+interface Choice {
+  cls: string;
+  topic: string | null;
+  element: HTMLElement;
+}
+
+type Tab = "type" | "topic";
+
+/** RViz's dialog that adds a display: by its type, or by a topic that it shows. */
+export class AddDialog {
+  private readonly dialog: Dialog;
+  private readonly search = h("input", { class: "field" });
+  private readonly list = h("div", { class: "choices", role: "listbox", aria: { label: strings.displays.addTitle } });
+  private readonly name = h("input", { class: "field wide" });
+  private readonly showAll = h("input", { class: "check" });
+  private readonly allBox: HTMLElement;
+  private readonly tabs: Readonly<Record<Tab, HTMLButtonElement>>;
+  private readonly forget: () => void;
+  private tab: Tab = "type";
+  private waits = false;
+  private choices: Choice[] = [];
+  private chosen: Choice | null = null;
+  private named = "";
+
+  /** @param group - what the display goes into; null for none. */
+  constructor(
+    private readonly session: Session,
+    private readonly group: DisplayState | null,
+  ) {
+    const words = strings.displays;
+    this.tabs = { type: this.makeTab("type", words.byType), topic: this.makeTab("topic", words.byTopic) };
+    this.search.type = "search";
+    this.search.placeholder = words.search;
+    this.search.setAttribute("aria-label", words.search);
+    this.search.addEventListener("input", () => this.fill());
+    this.search.addEventListener("keydown", (event) => this.keyed(event));
+    this.list.addEventListener("keydown", (event) => this.keyed(event));
+    this.name.setAttribute("aria-label", words.displayName);
+    this.name.maxLength = 200;
+    this.showAll.type = "checkbox";
+    this.showAll.addEventListener("change", () => this.fill());
+    this.allBox = h("label", { class: "check-label" }, this.showAll, words.showAll);
+    this.dialog = new Dialog(
+      words.addTitle,
+      [
+        h("div", { class: "tabs", role: "tablist" }, this.tabs.type, this.tabs.topic),
+        h("div", { class: "search-box" }, icon("search"), this.search),
+        this.list,
+        this.allBox,
+        h("label", { class: "form-field" }, h("span", {}, words.displayName), this.name),
+        ...(group ? [h("p", { class: "hint" }, words.into(group.name))] : []),
+      ],
+      [{ label: strings.shell.cancel }, { label: words.add, main: true, run: () => this.accept() }],
+      "add-dialog",
+    );
+    this.forget = session.configuration.offered.on(() => {
+      if (!this.waits) return; // what is listed stays where the mouse may be
+      this.waits = false;
+      this.fill();
+    });
+    this.dialog.element.addEventListener("close", () => this.forget());
+  }
+
+  open(): void {
+    this.dialog.open(this.search);
+    this.show("type");
+  }
+
+  private makeTab(tab: Tab, label: string): HTMLButtonElement {
+    const made = button(label, () => this.show(tab), "tab", label);
+    made.setAttribute("role", "tab");
+    made.addEventListener("keydown", (event) => {
+      if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+      const other = tab === "type" ? "topic" : "type";
+      this.show(other);
+      this.tabs[other].focus();
+    });
+    return made;
+  }
+
+  private show(tab: Tab): void {
+    this.tab = tab;
+    for (const each of ["type", "topic"] as const) {
+      this.tabs[each].setAttribute("aria-selected", String(each === tab));
+      this.tabs[each].tabIndex = each === tab ? 0 : -1;
+    }
+    this.allBox.hidden = tab !== "topic";
+    const { configuration } = this.session;
+    this.waits = tab === "topic" || configuration.choices === null;
+    if (this.waits) configuration.askChoices();
+    this.fill();
+  }
+
+  private fill(): void {
+    const wanted = this.search.value.trim().toLowerCase();
+    const before = this.chosen;
+    this.choices = [];
+    const entries = this.tab === "type" ? this.types(wanted) : this.byTopic(wanted);
+    this.list.replaceChildren(...entries);
+    if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.emptyText()));
+    const again = this.choices.find((each) => each.cls === before?.cls && each.topic === before.topic);
+    this.choose(again ?? (wanted === "" ? null : (this.choices[0] ?? null)));
+    const first = this.choices[0];
+    if (first && !again) first.element.tabIndex = 0;
+  }
+
+  private emptyText(): string {
+    const words = strings.displays;
+    if (this.waits) return words.asking;
+    return this.tab === "topic" && this.offered.topics.length === 0 ? words.noTopics : words.notFound;
+  }
+
+  private get offered(): { classes: DisplayClass[]; topics: TopicChoice[] } {
+    const { choices } = this.session.configuration;
+    return this.waits || choices === null ? { classes: [], topics: [] } : choices;
+  }
+
+  private types(wanted: string): HTMLElement[] {
+    return this.offered.classes
+      .map(({ cls, messages }) => ({ cls, about: aboutDisplay(cls), messages }))
+      .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(wanted)))
+      .map(({ cls, about }) => this.choice(cls, null, shortName(cls), about));
+  }
+
+  private byTopic(wanted: string): HTMLElement[] {
+    const matches = ({ topic, message, classes }: TopicChoice): boolean =>
+      [topic, message, ...classes].some((text) => text.toLowerCase().includes(wanted));
+    const listed = this.offered.topics.filter((each) => each.classes.length > 0 || this.showAll.checked);
+    return listed.filter(matches).map((each) => {
+      const { topic, message, classes } = each;
+      const rows = classes.map((cls) => this.choice(cls, topic, shortName(cls), aboutDisplay(cls)));
+      const obvious = rows[classes.indexOf(obviousDisplay(each) ?? "")];
+      const name = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
+      // The name stands for the display that everybody would take.
+      for (const kind of ["click", "dblclick"] as const) {
+        name.addEventListener(kind, () => obvious?.dispatchEvent(new MouseEvent(kind)));
+      }
+      const none = classes.length === 0 ? h("p", { class: "hint" }, strings.displays.topicNotShown) : null;
+      return h("div", { class: "topic-choice", role: "group", aria: { label: topic } }, name, ...rows, none);
+    });
+  }
+
+  private choice(cls: string, topic: string | null, name: string, about: string): HTMLElement {
+    const element = h(
+      "div",
+      { class: "choice-row", role: "option", tabIndex: -1, aria: { selected: "false" } },
+      icon(displayIcon(cls)),
+      h("strong", {}, name),
+      h("span", { class: "about" }, about),
+    );
+    const choice: Choice = { cls, topic, element };
+    element.addEventListener("click", () => this.choose(choice));
+    element.addEventListener("focus", () => this.choose(choice));
+    element.addEventListener("dblclick", () => {
+      if (this.accept()) this.dialog.close();
+    });
+    this.choices.push(choice);
+    return element;
+  }
+
+  private choose(choice: Choice | null): void {
+    this.chosen = choice;
+    for (const each of this.choices) {
+      each.element.setAttribute("aria-selected", String(each === choice));
+      each.element.tabIndex = each === choice ? 0 : -1;
+    }
+    this.dialog.ready = choice !== null;
+    // A name that the user typed stays.
+    if (choice && (this.name.value === "" || this.name.value === this.named)) {
+      this.named = shortName(choice.cls);
+      this.name.value = this.named;
+    }
+    choice?.element.scrollIntoView({ block: "nearest" });
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const index = this.chosen ? this.choices.indexOf(this.chosen) : -1;
+    const inList = event.target !== this.search;
+    const step = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[event.key];
+    if (step !== undefined) {
+      const next = this.choices[Math.max(0, Math.min(this.choices.length - 1, index + step))];
+      this.choose(next ?? null);
+      if (inList) next?.element.focus();
+    } else if (inList && event.key === "Enter") {
+      if (this.accept()) this.dialog.close();
+    } else return;
+    event.preventDefault();
+  }
+
+  private accept(): boolean {
+    if (!this.chosen) return false;
+    const { cls, topic } = this.chosen;
+    this.session.configuration.add(cls, this.name.value.trim() || shortName(cls), this.group?.id ?? null, topic);
+    return true;
+  }
+}
+
+/** What a class of displays is for, in a sentence. */
+function aboutDisplay(cls: string): string {
+  return (strings.displays.about as Readonly<Record<string, string | undefined>>)[shortName(cls)] ?? cls;
+}
+
+function shortName(cls: string): string {
+  return cls.split("/").pop() ?? cls;
+}

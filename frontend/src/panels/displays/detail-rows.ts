@@ -1,0 +1,147 @@
+import type { JointScene } from "../../protocol";
+import type { DisplayState } from "../../state/displays";
+import type { FrameStore } from "../../state/frames";
+import { composed, relative, type PoseNumbers } from "../../state/pose-numbers";
+import type { PropertyNode } from "../../state/properties";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import type { DetailName } from "../../strings/en/details";
+import { formatNumber } from "../../tree/numbers";
+import type { TreeItem } from "../../tree/tree-item";
+
+/** What a position or quaternion is told to, m. */
+const FINEST = 1e-6;
+
+/**
+ * The read-only rows that a row with `details` is shown with: where a frame, link or joint is now. They are not sent by
+ * the server, which would have to with every move: the page has the poses. Names and forms are RViz's.
+ */
+export function detailRows(node: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
+  switch (node.details) {
+    case "frame":
+      return frameRows(node, session.frames);
+    case "link":
+      return poseRows(node.id, () => linkPose(node.name, display, session));
+    case "joint":
+      return jointRows(node, display, session);
+    case "effort":
+      return effortRows(node, display, session);
+    case null:
+      return [];
+  }
+}
+
+function frameRows({ id, name }: PropertyNode, frames: FrameStore): TreeItem[] {
+  const parent = (): number => frames.parents[frames.row(name)] ?? -1;
+  const seen = (): PoseNumbers | null => {
+    const [above, here] = [poseOf(frames, parent()), poseOf(frames, frames.row(name))];
+    return above && here ? relative(above, here) : null;
+  };
+  return [
+    textRow(`${id}#Parent`, "Parent", () => frames.names[parent()] ?? ""),
+    ...poseRows(id, () => poseOf(frames, frames.row(name))),
+    ...poseRows(id, seen, "Relative "),
+  ];
+}
+
+function jointRows({ id, name }: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
+  const joint = session.robots.get(display.id)?.joints.find((each) => each.name === name);
+  if (!joint) return [];
+  const rows = [
+    ...poseRows(id, () => jointPose(joint, display, session)),
+    textRow(`${id}#Type`, "Type", () => joint.kind),
+  ];
+  if (joint.lower !== null) rows.push(numberRow(`${id}#Lower Limit`, "Lower Limit", () => joint.lower));
+  if (joint.upper !== null) rows.push(numberRow(`${id}#Upper Limit`, "Upper Limit", () => joint.upper));
+  if (joint.kind !== "fixed" && joint.kind !== "floating") {
+    rows.push(vectorRow(`${id}#Joint Axis`, "Joint Axis", ["X", "Y", "Z"], () => joint.axis));
+  }
+  return rows;
+}
+
+function effortRows({ id, name }: PropertyNode, display: DisplayState, session: Session): TreeItem[] {
+  const latest = (): { effort: number; limit: number } | null => {
+    let found: { effort: number; limit: number } | null = null;
+    let stamp = -Infinity;
+    for (const { content, stamp: at } of session.data.of(display.id)) {
+      if (content.kind !== "effort_rings" || at < stamp) continue;
+      const i = content.joints.indexOf(name);
+      if (i < 0) continue;
+      found = { effort: content.efforts[i] ?? 0, limit: content.limits[i] ?? 0 };
+      stamp = at;
+    }
+    return found;
+  };
+  return [
+    numberRow(`${id}#Effort`, "Effort", () => latest()?.effort ?? 0),
+    numberRow(`${id}#Max Effort`, "Max Effort", () => latest()?.limit ?? 0),
+  ];
+}
+
+function poseRows(id: string, pose: () => PoseNumbers | null, prefix = ""): TreeItem[] {
+  const [position, orientation] = [`${prefix}Position`, `${prefix}Orientation`];
+  return [
+    vectorRow(`${id}#${position}`, position, ["X", "Y", "Z"], () => settled(pose())?.slice(0, 3) ?? null),
+    vectorRow(`${id}#${orientation}`, orientation, ["X", "Y", "Z", "W"], () => settled(pose())?.slice(3) ?? null),
+  ];
+}
+
+/** Without what single precision adds to zeros. */
+function settled(pose: PoseNumbers | null): number[] | null {
+  return pose && pose.map((part) => Math.round(part / FINEST) * FINEST);
+}
+
+/** Numbers in one row as RViz writes them, and a row for each below it. */
+function vectorRow(
+  key: string,
+  name: string,
+  parts: readonly string[],
+  numbers: () => readonly number[] | null,
+): TreeItem {
+  return {
+    ...textRow(key, name, () => numbers()?.map(formatNumber).join("; ") ?? ""),
+    get value() {
+      return numbers()?.map(formatNumber).join("; ") ?? "";
+    },
+    children: () => parts.map((part, i) => numberRow(`${key}/${part}`, part, () => numbers()?.[i] ?? null)),
+  };
+}
+
+function numberRow(key: string, name: string, number: () => number | null): TreeItem {
+  return textRow(key, name, () => {
+    const value = number();
+    return value === null ? "" : formatNumber(value);
+  });
+}
+
+function textRow(key: string, name: string, text: () => string): TreeItem {
+  return {
+    key,
+    name,
+    kind: "string",
+    get value() {
+      return text();
+    },
+    description: name in strings.details ? strings.details[name as DetailName] : "",
+    readOnly: true,
+    live: true,
+  };
+}
+
+function linkPose(name: string, display: DisplayState, { robots, frames }: Session): PoseNumbers | null {
+  const link = robots.get(display.id)?.links.find((each) => each.name === name);
+  return link ? poseOf(frames, frames.row(link.frame)) : null;
+}
+
+function jointPose(joint: JointScene, display: DisplayState, session: Session): PoseNumbers | null {
+  const above = linkPose(joint.parent, display, session);
+  const [x = 0, y = 0, z = 0] = joint.position;
+  const [qx = 0, qy = 0, qz = 0, qw = 1] = joint.quaternion;
+  return above && composed(above, [x, y, z, qx, qy, qz, qw]);
+}
+
+function poseOf(frames: FrameStore, row: number): PoseNumbers | null {
+  if (!frames.has(row)) return null;
+  const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = frames.poses.subarray(row * 7, row * 7 + 7);
+  return [x, y, z, qx, qy, qz, qw];
+}

@@ -1,0 +1,99 @@
+import type { DisplayState } from "../../state/displays";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { askName } from "../../widgets/dialog";
+import type { MenuEntry } from "../../widgets/menu";
+import { keyText, matches, SHORTCUTS } from "../../widgets/shortcuts";
+import { AddDialog } from "./add-dialog";
+
+/** What can be done to the display that is selected, or to all of them. */
+export class DisplayCommands {
+  constructor(
+    private readonly session: Session,
+    private readonly selected: () => DisplayState | null,
+    private readonly all: () => readonly DisplayState[],
+  ) {}
+
+  add(): void {
+    const display = this.selected();
+    new AddDialog(this.session, display?.isGroup === true ? display : null).open();
+  }
+
+  duplicate(): void {
+    const ids = this.ids;
+    if (ids.length > 0) this.session.configuration.duplicate(ids);
+  }
+
+  remove(): void {
+    const ids = this.ids;
+    if (ids.length > 0) this.session.configuration.remove(ids);
+  }
+
+  rename(): void {
+    const display = this.selected();
+    if (!display) return;
+    const { configuration } = this.session;
+    const words = strings.displays;
+    askName(words.renameTitle, words.name, display.name, (name) => configuration.rename(display.id, name));
+  }
+
+  group(): void {
+    const ids = this.ids;
+    if (ids.length > 0) this.session.configuration.group(ids, strings.displays.newGroup);
+  }
+
+  private get ids(): string[] {
+    return this.all().map(({ id }) => id);
+  }
+
+  /** Moves the display past the one above or below it, into and out of groups on the way as a list would. */
+  move(up: boolean): void {
+    const display = this.selected();
+    if (!display) return;
+    const { displays, configuration } = this.session;
+    const siblings = displays.within(display.group);
+    const index = siblings.indexOf(display);
+    const group = display.group?.id ?? null;
+    if (up && index > 0) configuration.move([display.id], group, siblings[index - 1]?.id ?? null);
+    else if (!up && index < siblings.length - 1) configuration.move([display.id], group, siblings[index + 2]?.id ?? null);
+  }
+
+  /** Whether a key was one of these; on the row of a property only Add is. */
+  pressed(event: KeyboardEvent, onDisplay: boolean): boolean {
+    const keys: readonly (readonly [keyof typeof SHORTCUTS, () => void])[] = [
+      ["add", () => this.add()],
+      ["addToo", () => this.add()],
+      ["duplicate", () => this.duplicate()],
+      ["rename", () => this.rename()],
+      ["remove", () => this.remove()],
+      ["moveUp", () => this.move(true)],
+      ["moveDown", () => this.move(false)],
+    ];
+    const found = keys.find(([name]) => matches(event, SHORTCUTS[name]));
+    if (!found || (!found[0].startsWith("add") && !onDisplay)) return false;
+    found[1]();
+    return true;
+  }
+
+  /** The menu of a display. */
+  menu(display: DisplayState): MenuEntry[] {
+    const words = strings.displays;
+    const { session } = this;
+    return [
+      {
+        label: display.checked ? words.disable : words.enable,
+        icon: "check",
+        run: () => {
+          for (const each of this.all()) session.setProperty(each.enabledId, !display.checked);
+        },
+      },
+      { label: words.addHint, icon: "add", keys: keyText(SHORTCUTS.add), separate: true, run: () => this.add() },
+      { label: words.duplicate, icon: "duplicate", keys: keyText(SHORTCUTS.duplicate), run: () => this.duplicate() },
+      { label: words.rename, icon: "rename", keys: keyText(SHORTCUTS.rename), run: () => this.rename() },
+      { label: words.remove, icon: "remove", keys: keyText(SHORTCUTS.remove), run: () => this.remove() },
+      { label: words.group, icon: "Group", separate: true, run: () => this.group() },
+      { label: words.moveUp, keys: keyText(SHORTCUTS.moveUp), run: () => this.move(true) },
+      { label: words.moveDown, keys: keyText(SHORTCUTS.moveDown), run: () => this.move(false) },
+    ];
+  }
+}

@@ -1,0 +1,104 @@
+import type { DisplayState } from "../../state/displays";
+
+/** Where something is dropped on a display's row. */
+export type DropPart = "before" | "inside" | "after";
+
+export interface DropPlace {
+  group: string | null;
+  before: string | null;
+}
+
+/** Where a display goes that is dropped on another; null where it cannot go. */
+export function dropPlace(
+  displays: readonly DisplayState[],
+  dragged: DisplayState,
+  target: DisplayState,
+  part: DropPart,
+): DropPlace | null {
+  if (target === dragged || target.isWithin(dragged)) return null;
+  if (part === "inside") {
+    const first = displays.find((each) => each.group === target && each !== dragged);
+    return target.isGroup ? { group: target.id, before: first?.id ?? null } : null;
+  }
+  const group = target.group?.id ?? null;
+  if (part === "before") return { group, before: target.id };
+  const siblings = displays.filter((each) => each.group === target.group && each !== dragged);
+  return { group, before: siblings[siblings.indexOf(target) + 1]?.id ?? null };
+}
+
+/** The part of a row that a pointer is on: a group's middle means into it. */
+export function dropPart(offset: number, height: number, isGroup: boolean): DropPart {
+  const part = offset / height;
+  if (isGroup && part > 0.3 && part < 0.7) return "inside";
+  return part < 0.5 ? "before" : "after";
+}
+
+interface Tree {
+  readonly element: HTMLElement;
+  /** The display whose row an element is in, and that row, if it is the display's own. */
+  displayAt(target: EventTarget | null): { display: DisplayState; row: HTMLElement | null } | null;
+  displays(): readonly DisplayState[];
+  move(dragged: DisplayState, place: DropPlace): void;
+}
+
+/** Lets the rows of displays be dragged to other places. */
+export class DisplayDrag {
+  private dragged: DisplayState | null = null;
+  private marked: HTMLElement | null = null;
+
+  constructor(private readonly tree: Tree) {
+    const { element } = tree;
+    element.addEventListener("pointerdown", (event) => {
+      const found = tree.displayAt(event.target);
+      // Fields and boxes in the row have their own use for the mouse.
+      const free = event.target instanceof Element && event.target.closest(".row-value, .twist") === null;
+      if (found?.row) found.row.draggable = free;
+    });
+    element.addEventListener("dragstart", (event) => {
+      this.dragged = tree.displayAt(event.target)?.display ?? null;
+      if (!this.dragged || !event.dataTransfer) return;
+      event.dataTransfer.effectAllowed = "move";
+      event.dataTransfer.setData("text/plain", this.dragged.name);
+    });
+    element.addEventListener("dragover", (event) => this.over(event));
+    element.addEventListener("dragleave", (event) => {
+      if (!element.contains(event.relatedTarget as Node | null)) this.mark(null);
+    });
+    element.addEventListener("drop", (event) => {
+      const place = this.placeOf(event);
+      if (this.dragged && place) tree.move(this.dragged, place.place);
+      if (this.dragged) event.preventDefault();
+      this.end();
+    });
+    element.addEventListener("dragend", () => this.end());
+  }
+
+  private over(event: DragEvent): void {
+    const place = this.placeOf(event);
+    this.mark(place?.row ?? null, place?.part);
+    if (!place) return;
+    event.preventDefault();
+    if (event.dataTransfer) event.dataTransfer.dropEffect = "move";
+  }
+
+  private placeOf(event: DragEvent): { place: DropPlace; part: DropPart; row: HTMLElement | null } | null {
+    const found = this.tree.displayAt(event.target);
+    if (!this.dragged || !found) return null;
+    const { display, row } = found;
+    const box = row?.getBoundingClientRect();
+    const part = box ? dropPart(event.clientY - box.top, box.height, display.isGroup) : "after";
+    const place = dropPlace(this.tree.displays(), this.dragged, display, part);
+    return place && { place, part, row };
+  }
+
+  private mark(row: HTMLElement | null, part?: DropPart): void {
+    if (this.marked && this.marked !== row) delete this.marked.dataset["drop"];
+    this.marked = row;
+    if (row && part) row.dataset["drop"] = part;
+  }
+
+  private end(): void {
+    this.mark(null);
+    this.dragged = null;
+  }
+}

@@ -1,0 +1,159 @@
+import { displayIcon } from "../../icons";
+import type { PropertyValue, StatusLevel, StatusRow } from "../../protocol";
+import { DRAWINGS } from "../../scene/displays/registry";
+import type { DisplayState } from "../../state/displays";
+import type { Session } from "../../state/session";
+import { shortName } from "../../state/views/catalog";
+import { strings } from "../../strings";
+import { propertyItem } from "../../tree/property-item";
+import type { TreeItem } from "../../tree/tree-item";
+import { displayRows } from "./robot-rows";
+
+/** The rows of the Displays panel, read from the session each time the tree is drawn. */
+export function displayItems(session: Session): TreeItem[] {
+  const { displays } = session;
+  const set = (id: string, value: PropertyValue): void => session.setProperty(id, value);
+  return [
+    {
+      key: "#options",
+      name: strings.tree.globalOptions,
+      kind: "group",
+      value: "",
+      description: "",
+      icon: "options",
+      strong: true,
+      expanded: true,
+      children: () => displays.globalOptions.nodes.map((node) => propertyItem(node, set)),
+    },
+    statusItem("#status", strings.tree.globalStatus, displays.globalLevel, displays.globalStatus, true),
+    ...displays.within(null).map((display) => displayItem(session, display, set)),
+  ];
+}
+
+function displayItem(
+  session: Session,
+  display: DisplayState,
+  set: (id: string, value: PropertyValue) => void,
+): TreeItem {
+  const drawn = isDrawn(display);
+  const status: TreeItem[] = [];
+  if (display.enabled && display.status.length > 0) {
+    const name = `${strings.tree.status}: ${strings.tree.levels[display.level]}`;
+    status.push(statusItem(`${display.id}#status`, name, display.level, display.status, false));
+  }
+  const within = (): TreeItem[] =>
+    session.displays.within(display).map((each) => displayItem(session, each, set));
+  const offered = (item: TreeItem): TreeItem =>
+    item.kind === "topic" ? { ...item, ask: (show) => offerTopics(session, display, item.name, show) } : item;
+  return {
+    key: display.id,
+    name: display.name,
+    kind: "bool",
+    value: display.checked,
+    description: describe(display, drawn),
+    icon: drawn ? displayIcon(display.drawing) : "unknown",
+    strong: true,
+    severally: true,
+    muted: !drawn || !display.enabled,
+    ...(drawn && display.enabled ? { level: worstWithin(session, display) } : {}),
+    ...(display.troubles.length > 0 ? { hint: [display.name, ...display.troubles.map(troubleText)].join("\n") } : {}),
+    ...(drawn ? {} : { badge: strings.tree.notDrawn }),
+    expanded: display.isGroup || (display.enabled && isOnlyContent(session, display)),
+    children: () => [...status, ...displayRows(display, session, set).map(offered), ...within()],
+    set: (value) => set(display.enabledId, value),
+  };
+}
+
+/** What descriptions of robots come as. */
+const TEXT = "std_msgs/msg/String";
+
+/** The topics that fit a row of a display. */
+function offerTopics(
+  session: Session,
+  display: DisplayState,
+  row: string,
+  show: (names: readonly string[]) => void,
+): void {
+  const { configuration } = session;
+  const own = display.rows.find(row)?.topics;
+  const words = own?.words ?? [];
+  const named = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
+  const forget = configuration.offered.on(({ classes, topics }) => {
+    forget();
+    const known = own?.messages ?? classes.find((each) => each.cls === display.cls)?.messages ?? [];
+    const messages = known.length > 0 ? known : [TEXT];
+    show(topics.filter(({ topic, message }) => messages.includes(message) && named(topic)).map(({ topic }) => topic));
+  });
+  configuration.askChoices();
+}
+
+function isDrawn(display: DisplayState): boolean {
+  return display.isGroup || (display.supported && DRAWINGS.has(display.drawing));
+}
+
+/** A row of a status in one line. */
+export function troubleText({ name, text }: StatusRow): string {
+  return `${name}: ${text}`;
+}
+
+/** What a display is, in a sentence or two. */
+export function describe(display: DisplayState, drawn = isDrawn(display)): string {
+  const name = display.cls.split("/").pop() ?? "";
+  const about = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
+  const rest = drawn ? (about ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
+  return `${display.cls}. ${rest}`;
+}
+
+/** Displays that take no messages of their own: they do not need to be seen in the list. */
+const SCENERY = ["Grid", "Axes", "TF", "Group"];
+
+/** A RobotModel that is all there is to look at starts open; otherwise its links would push the others out of sight. */
+function isOnlyContent(session: Session, display: DisplayState): boolean {
+  if (!display.cls.endsWith("/RobotModel")) return false;
+  return session.displays.displays.every((each) => each === display || SCENERY.includes(shortName(each.cls)));
+}
+
+/** A group shows the worst of what is in it. */
+function worstWithin(session: Session, display: DisplayState): StatusLevel {
+  const levels = [display, ...session.displays.displays.filter((each) => each.isWithin(display))]
+    .filter((each) => each.enabled)
+    .map((each) => each.level);
+  return levels.includes("error") ? "error" : levels.includes("warn") ? "warn" : "ok";
+}
+
+function statusItem(
+  key: string,
+  name: string,
+  level: StatusLevel,
+  rows: readonly StatusRow[],
+  strong: boolean,
+): TreeItem {
+  return {
+    key,
+    name: strong ? `${name}: ${strings.tree.levels[level]}` : name,
+    kind: "group",
+    value: "",
+    description: "",
+    level,
+    showLevelIcon: true,
+    strong,
+    wide: true,
+    expanded: level === "error",
+    children: () =>
+      worstFirst(rows).map((row) => ({
+        key: `${key}/${row.name}`,
+        name: row.name,
+        kind: "group",
+        value: row.text,
+        description: row.text,
+        level: row.level,
+        showLevelIcon: true,
+      })),
+  };
+}
+
+/** Among hundreds of links the one that fails must be seen. */
+function worstFirst(rows: readonly StatusRow[]): StatusRow[] {
+  const order: Readonly<Record<StatusLevel, number>> = { error: 0, warn: 1, ok: 2 };
+  return [...rows].sort((a, b) => order[a.level] - order[b.level]);
+}

@@ -1,0 +1,216 @@
+import { button, h } from "../../dom";
+import { icon, LEVEL_ICONS } from "../../icons";
+import type { StatusRow } from "../../protocol";
+import type { DisplayState } from "../../state/displays";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { filterItems } from "../../tree/filter-items";
+import { TreeView } from "../../tree/tree-view";
+import { openMenuAt } from "../../widgets/menu";
+import { keyText, SHORTCUTS } from "../../widgets/shortcuts";
+import type { Panel } from "../panel";
+import { DisplayCommands } from "./display-commands";
+import { DisplayDrag } from "./display-drag";
+import { describe, displayItems, troubleText } from "./display-items";
+import { followLiveValues } from "./live-values";
+import { isExpansion, linkOfKey, linkPath } from "./robot-rows";
+
+/** RViz's Displays panel: what can be done, the property tree, and what the selected row means. */
+export class DisplaysPanel implements Panel {
+  readonly id = "displays";
+  readonly icon = "displays";
+  readonly element: HTMLElement;
+  private readonly tree: TreeView;
+  private readonly commands: DisplayCommands;
+  private readonly filter = h("input", { class: "field" });
+  private readonly nothing = h("p", { class: "empty" }, strings.displays.nothingFound);
+  /** Comes with the first row that is selected. */
+  private readonly help = h("div", { class: "help", aria: { live: "polite" } });
+  private explained = "";
+  private readonly needsDisplay: HTMLButtonElement[] = [];
+
+  constructor(private readonly session: Session) {
+    this.tree = new TreeView(strings.panels.displays, () => this.items(), () => session.frames.names);
+    this.commands = new DisplayCommands(session, () => this.selected, () => this.selectedAll);
+    this.nothing.hidden = this.help.hidden = true;
+    this.element = h("div", { class: "panel displays-panel" }, this.toolbar(), this.filterBar(), this.nothing, this.tree.element, this.help);
+    this.listen();
+    this.takeKeysAndMouse();
+    this.enableButtons();
+  }
+
+  /** The display that the selected row is of or belongs to. */
+  private get selected(): DisplayState | null {
+    return this.displayOf(this.tree.selection);
+  }
+
+  /** The displays of all selected rows. */
+  private get selectedAll(): DisplayState[] {
+    const displays = this.tree.selections.flatMap((key) => this.displayOf(key) ?? []);
+    return [...new Set(displays)];
+  }
+
+  private toolbar(): HTMLElement {
+    const words = strings.displays;
+    const { commands } = this;
+    const tool = (label: string, name: Parameters<typeof icon>[0], keys: string, run: () => void): HTMLButtonElement => {
+      const made = button(`${label} (${keys})`, run, "tool bare", icon(name));
+      this.needsDisplay.push(made);
+      return made;
+    };
+    return h(
+      "div",
+      { class: "toolbar", role: "toolbar", aria: { label: strings.panels.displays } },
+      button(`${words.addHint} (${keyText(SHORTCUTS.add)})`, () => commands.add(), "tool", icon("add"), words.add),
+      tool(words.duplicate, "duplicate", keyText(SHORTCUTS.duplicate), () => commands.duplicate()),
+      tool(words.rename, "rename", keyText(SHORTCUTS.rename), () => commands.rename()),
+      tool(words.remove, "remove", keyText(SHORTCUTS.remove), () => commands.remove()),
+    );
+  }
+
+  private filterBar(): HTMLElement {
+    this.filter.type = "search";
+    this.filter.placeholder = strings.displays.filter;
+    this.filter.setAttribute("aria-label", strings.displays.filter);
+    this.filter.addEventListener("input", () => this.tree.refresh());
+    this.filter.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape" || this.filter.value === "") return;
+      this.filter.value = "";
+      this.tree.refresh();
+      event.stopPropagation();
+    });
+    return h("div", { class: "search-box" }, icon("search"), this.filter);
+  }
+
+  private items(): ReturnType<typeof filterItems> {
+    const items = filterItems(displayItems(this.session), this.filter.value);
+    this.nothing.hidden = items.length > 0;
+    return items;
+  }
+
+  private listen(): void {
+    const { displays, selection, frames } = this.session;
+    for (const signal of [displays.treeChanged, displays.rowsChanged, displays.valueChanged]) {
+      (signal as { on(listener: () => void): void }).on(this.tree.refresh);
+    }
+    displays.valueChanged.on(({ node, display }) => {
+      if (!display || !isExpansion(node)) return;
+      const below = [`${display.id}/Links/`, `${display.id}/Joints/`];
+      this.tree.forgetExpansion((key) => below.some((start) => key.startsWith(start)));
+    });
+    displays.statusChanged.on(this.tree.refresh);
+    displays.statusChanged.on((display) => {
+      if (display && this.tree.selection === display.id) this.explainDisplay(display);
+    });
+    displays.rowAsked.on((display) => {
+      this.filter.value = "";
+      this.tree.reveal(pathTo(display));
+      this.explainDisplay(display);
+      this.enableButtons();
+    });
+    displays.enabledChanged.on(this.tree.refresh);
+    displays.treeChanged.on(() => {
+      this.enableButtons();
+      const { selected } = this;
+      if (selected && this.tree.selection === selected.id) this.explainDisplay(selected);
+    });
+    frames.tableChanged.on(this.tree.refresh);
+    followLiveValues(this.tree, this.session);
+    this.tree.selected.on((item) => {
+      const display = this.session.displays.find(item.key);
+      if (display) this.explainDisplay(display);
+      else this.explain(item.name, item.description);
+      this.selectLink(item.key);
+      this.enableButtons();
+    });
+    selection.changed.on(() => this.showSelection());
+  }
+
+  private takeKeysAndMouse(): void {
+    const { tree, commands, session } = this;
+    tree.element.addEventListener(
+      "keydown",
+      (event) => {
+        const onRow = event.target instanceof Element && event.target.matches("[role=treeitem], .check");
+        const onDisplay = tree.selections.length > 0 && tree.selections.every((key) => session.displays.find(key));
+        if (!onRow || !commands.pressed(event, onDisplay)) return;
+        event.preventDefault();
+        event.stopPropagation();
+      },
+      true,
+    );
+    tree.element.addEventListener("contextmenu", (event) => {
+      const found = tree.itemAt(event.target);
+      const display = this.displayOf(found?.item.key ?? null);
+      if (!found || !display || (event.target instanceof Element && event.target.matches("input[type=text]"))) return;
+      event.preventDefault();
+      if (!tree.selections.includes(found.item.key)) found.element.focus();
+      const words = strings.displays;
+      const box = found.element.getBoundingClientRect();
+      const [x, y] = event.clientX === 0 && event.clientY === 0 ? [box.left + 24, box.bottom] : [event.clientX, event.clientY];
+      openMenuAt(x, y, found.element, [
+        ...commands.menu(display),
+        { label: words.expandAll, icon: "expand", separate: true, run: () => tree.expandAll(found.item, true) },
+        { label: words.collapseAll, icon: "collapse", run: () => tree.expandAll(found.item, false) },
+      ]);
+    });
+    new DisplayDrag({
+      element: tree.element,
+      displayAt: (target) => {
+        const found = tree.itemAt(target);
+        const display = this.displayOf(found?.item.key ?? null);
+        return found && display && { display, row: found.item.key === display.id ? found.element : null };
+      },
+      displays: () => session.displays.displays,
+      move: (display, { group, before }) => session.configuration.move([display.id], group, before),
+    });
+  }
+
+  private displayOf(key: string | null): DisplayState | null {
+    const id = key?.split(/[/#]/, 1)[0];
+    return (id !== undefined && this.session.displays.find(id)) || null;
+  }
+
+  private enableButtons(): void {
+    const none = this.selected === null;
+    for (const each of this.needsDisplay) each.disabled = none;
+  }
+
+  private explain(name: string, description: string, troubles: readonly StatusRow[] = []): void {
+    const key = JSON.stringify([name, description, troubles]);
+    if (key === this.explained) return; // said once, not again with each message that comes
+    this.explained = key;
+    this.tree.whenReleased(() => {
+      if (key !== this.explained) return;
+      this.help.hidden = description === "" && troubles.length === 0;
+      const said = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), troubleText(row)));
+      this.help.replaceChildren(h("strong", {}, name), ...said, h("p", {}, description));
+    });
+  }
+
+  /** What a display is, and before that what is wrong with it. */
+  private explainDisplay(display: DisplayState): void {
+    this.explain(display.name, describe(display), display.troubles);
+  }
+
+  private selectLink(key: string): void {
+    const found = linkOfKey(this.session, key);
+    const { selected } = this.session.selection;
+    // A row that was revealed because its link is selected must not end the selection of others.
+    if (found && selected?.display === found.display.id && selected.link.name === found.link) return;
+    const link = found && this.session.robots.get(found.display.id)?.links.find((each) => each.name === found.link);
+    if (found && link) this.session.selection.select({ display: found.display.id, link });
+  }
+
+  private showSelection(): void {
+    const { selected } = this.session.selection;
+    const display = selected && this.session.displays.find(selected.display);
+    const path = display && linkPath(display, this.session, selected.link.name);
+    if (path) this.tree.reveal(path);
+  }
+}
+
+/** The keys of the rows from the outermost group to a display. */
+function pathTo(display: DisplayState): string[] {
+  return [...(display.group ? pathTo(display.group) : []), display.id];
+}

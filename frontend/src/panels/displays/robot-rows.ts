@@ -1,0 +1,180 @@
+import type { JointScene, PropertyValue, RobotScene } from "../../protocol";
+import type { DisplayState } from "../../state/displays";
+import type { PropertyNode } from "../../state/properties";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { propertyItem } from "../../tree/property-item";
+import type { TreeItem } from "../../tree/tree-item";
+import { detailRows } from "./detail-rows";
+
+type SetValue = (id: string, value: PropertyValue) => void;
+
+const STYLE = "Link Tree Style";
+const TREE = "Expand Tree";
+const LINK_DETAILS = "Expand Link Details";
+const JOINT_DETAILS = "Expand Joint Details";
+
+/** RViz's styles: what the row above all is called, whether it is a tree, and what it has rows for. */
+const STYLES: Readonly<Record<string, { title: string; tree: boolean; links: boolean; joints: boolean }>> = {
+  "Links in Alphabetic Order": { title: "Links", tree: false, links: true, joints: false },
+  "Joints in Alphabetic Order": { title: "Joints", tree: false, links: false, joints: true },
+  "Tree of links": { title: "Link Tree", tree: true, links: true, joints: false },
+  "Tree of links and joints": { title: "Link/Joint Tree", tree: true, links: true, joints: true },
+};
+
+/**
+ * The rows of a display. Most stand as they were sent; those of a RobotModel's links and joints come in two lists and
+ * are arranged by its Link Tree Style.
+ */
+export function displayRows(display: DisplayState, session: Session, set: SetValue): TreeItem[] {
+  const robot = session.robots.get(display.id);
+  return display.rows.nodes.flatMap((node) => {
+    if (!robot || !isRobotRow(node)) return [withDetails(node, display, session, set)];
+    return node.name === "Links" ? [new RobotTree(display, session, robot, set).top] : [];
+  });
+}
+
+/** The keys of a link's row, or of the joint's that it hangs on, and of those above it; null when it has none. */
+export function linkPath(display: DisplayState, session: Session, link: string): string[] | null {
+  const robot = session.robots.get(display.id);
+  if (!robot || !display.rows.find("Links")) return null;
+  return new RobotTree(display, session, robot, () => undefined).pathTo(link);
+}
+
+/** The display and link whose row has this key. */
+export function linkOfKey(session: Session, key: string): { display: DisplayState; link: string } | null {
+  for (const display of session.displays.displays) {
+    const node = display.rows.find("Links")?.children.find((each) => each.id === key && each.details === "link");
+    if (node) return { display, link: node.name };
+  }
+  return null;
+}
+
+/** Whether editing this row opens or closes the rows of links and joints. */
+export function isExpansion(node: PropertyNode): boolean {
+  return [STYLE, TREE, LINK_DETAILS, JOINT_DETAILS].includes(node.name) && node.id.includes("/Links/");
+}
+
+function isRobotRow(node: PropertyNode): boolean {
+  return (node.name === "Links" || node.name === "Joints") && node.kind === "group";
+}
+
+function withDetails(node: PropertyNode, display: DisplayState, session: Session, set: SetValue): TreeItem {
+  if (node.children.length === 0 && node.details === null) return propertyItem(node, set);
+  return {
+    ...propertyItem(node, set),
+    children: () => [
+      ...node.children.map((child) => withDetails(child, display, session, set)),
+      ...detailRows(node, display, session),
+    ],
+  };
+}
+
+/** The rows of one robot, arranged. */
+class RobotTree {
+  private readonly options: PropertyNode | undefined;
+  private readonly style: { title: string; tree: boolean; links: boolean; joints: boolean };
+  private readonly links: ReadonlyMap<string, PropertyNode>;
+  private readonly joints: ReadonlyMap<string, PropertyNode>;
+  private readonly below = new Map<string, JointScene[]>();
+
+  constructor(
+    private readonly display: DisplayState,
+    private readonly session: Session,
+    private readonly robot: RobotScene,
+    private readonly set: SetValue,
+  ) {
+    this.options = display.rows.find("Links");
+    const standard = { title: "Links", tree: false, links: true, joints: false };
+    this.style = STYLES[display.rows.text("", "Links", STYLE)] ?? standard;
+    const byName = (group: string): ReadonlyMap<string, PropertyNode> =>
+      new Map(display.rows.find(group)?.children.filter((row) => row.details).map((row) => [row.name, row]));
+    this.links = byName("Links");
+    this.joints = byName("Joints");
+    for (const joint of robot.joints) {
+      const siblings = this.below.get(joint.parent);
+      if (siblings) siblings.push(joint);
+      else this.below.set(joint.parent, [joint]);
+    }
+  }
+
+  /** The row above all. */
+  get top(): TreeItem {
+    const { options, style } = this;
+    const shown = (node: PropertyNode): boolean =>
+      node.details === null &&
+      (node.name !== TREE || style.tree) &&
+      (node.name !== LINK_DETAILS || style.links) &&
+      (node.name !== JOINT_DETAILS || style.joints);
+    return {
+      key: options?.id ?? "",
+      name: style.title,
+      kind: "group",
+      value: null,
+      description: options?.description ?? "",
+      children: () => [
+        ...(options?.children.filter(shown).map((node) => propertyItem(node, this.set)) ?? []),
+        ...this.rows(),
+      ],
+    };
+  }
+
+  pathTo(link: string): string[] | null {
+    const parents = new Map(this.robot.joints.map((joint) => [joint.child, joint]));
+    const path: string[] = [];
+    for (let name: string | undefined = link; name !== undefined; ) {
+      const joint: JointScene | undefined = parents.get(name);
+      const rows = [this.style.joints && joint ? this.joints.get(joint.name) : undefined];
+      if (this.style.links) rows.push(this.links.get(name));
+      path.unshift(...rows.flatMap((row) => (row ? [row.id] : [])));
+      name = this.style.tree ? joint?.parent : undefined;
+    }
+    return path.length > 0 && this.options ? [this.display.id, this.options.id, ...path] : null;
+  }
+
+  private rows(): TreeItem[] {
+    if (!this.style.tree) {
+      const nodes = this.style.links ? this.links : this.joints;
+      return [...nodes.values()].map((node) => this.row(node, () => []));
+    }
+    const children = new Set(this.robot.joints.map((joint) => joint.child));
+    return this.robot.links.filter((link) => !children.has(link.name)).flatMap((link) => this.linkRow(link.name));
+  }
+
+  private linkRow(link: string): TreeItem[] {
+    const node = this.links.get(link);
+    const below = (): TreeItem[] => (this.below.get(link) ?? []).flatMap((joint) => this.jointRow(joint));
+    return node ? [this.row(node, below)] : below();
+  }
+
+  private jointRow(joint: JointScene): TreeItem[] {
+    const node = this.style.joints ? this.joints.get(joint.name) : undefined;
+    if (!node) return this.linkRow(joint.child);
+    return [this.row(node, () => this.linkRow(joint.child))];
+  }
+
+  /** In a tree, what is known of a link or joint is below a row of its own. */
+  private row(node: PropertyNode, below: () => TreeItem[]): TreeItem {
+    const { rows } = this.display;
+    const { tree } = this.style;
+    const open = rows.bool(false, "Links", node.details === "link" ? LINK_DETAILS : JOINT_DETAILS);
+    const details = (): TreeItem[] => [
+      ...node.children.map((child) => propertyItem(child, this.set)),
+      ...detailRows(node, this.display, this.session),
+    ];
+    const group: TreeItem = {
+      key: `${node.id}#Details`,
+      name: "Details",
+      kind: "group",
+      value: null,
+      description: strings.details.Details,
+      expanded: open,
+      children: details,
+    };
+    return {
+      ...propertyItem(node, this.set),
+      expanded: tree ? rows.bool(false, "Links", TREE) : open,
+      children: () => (tree ? [group, ...below()] : details()),
+    };
+  }
+}

@@ -1,0 +1,186 @@
+import type { AddPanelOptions, Direction, DockviewApi } from "dockview";
+import { strings } from "../../strings";
+import type { PanelId } from "../panel";
+
+interface Home {
+  /** Where the panel goes: beside the first of these that is open. */
+  beside: readonly (readonly [PanelId, Direction])[];
+  width?: number;
+  height?: number;
+  inactive?: boolean;
+}
+
+/** Right of the scene, above what stands there. */
+const RIGHT: Home["beside"] = [
+  ["joints", "above"],
+  ["diagnostics", "above"],
+  ["scene", "right"],
+];
+
+/** What is wide and read line by line shares one place below the scene. */
+const BOTTOM: readonly PanelId[] = ["source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
+const BELOW: Home = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
+/** The part of the dock's height that a panel asks for at most. */
+const MOST_HEIGHT = 0.4;
+
+/** Pixels: one line, without a tab. */
+export const TIME_HEIGHT = 32;
+
+/** RViz's places: Displays left, the scene in the middle, everything else right. */
+const HOMES: Readonly<Record<PanelId, Home>> = {
+  scene: { beside: [] },
+  displays: { beside: [["links", "within"], ["scene", "left"]], width: 320 },
+  views: {
+    beside: [["tool-properties", "within"], ["selection", "within"], ...RIGHT],
+    width: 290,
+    height: 290,
+  },
+  joints: {
+    beside: [
+      ["diagnostics", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 290,
+  },
+  "tool-properties": {
+    beside: [["views", "within"], ["selection", "within"], ...RIGHT],
+    width: 290,
+    height: 290,
+    inactive: true,
+  },
+  selection: {
+    beside: [["views", "within"], ["tool-properties", "within"], ...RIGHT],
+    width: 290,
+    height: 290,
+    inactive: true,
+  },
+  time: { beside: [["scene", "below"]], height: TIME_HEIGHT },
+  transformation: {
+    beside: [
+      ["views", "within"],
+      ["displays", "below"],
+    ],
+    width: 290,
+  },
+  links: { beside: [["displays", "within"], ["scene", "left"]], width: 320, inactive: true },
+  comparison: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
+  world: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
+  source: BELOW,
+  diagram: BELOW,
+  "joint-table": BELOW,
+  editing: BELOW,
+  plot: BELOW,
+  topics: BELOW,
+  graph: BELOW,
+  parameters: BELOW,
+  log: BELOW,
+  voice: {
+    beside: [
+      ["teleop", "within"],
+      ["joints", "within"],
+      ["diagnostics", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 290,
+  },
+  teleop: {
+    beside: [
+      ["voice", "within"],
+      ["joints", "within"],
+      ["diagnostics", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 290,
+  },
+  navigation: {
+    beside: [
+      ["teleop", "within"],
+      ["voice", "within"],
+      ["joints", "within"],
+      ["diagnostics", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 290,
+  },
+  diagnostics: {
+    beside: [
+      ["joints", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 290,
+    inactive: true,
+  },
+};
+
+/** Up to this width, in pixels, there is no room for panels beside the scene. */
+const NARROW = 900;
+/** As wide as this panels have the widths that they would like; below it somewhat less. */
+const ROOMY = 1280;
+const LEAST_SHARE = 0.7;
+
+/** Of all that share a group there, what comes to the front when it comes: the displays, and what the page was opened for. */
+const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison"];
+
+/** A phone that is held across, where the status bar is left out, too. */
+const LOW = "(max-height: 480px) and (max-width: 1000px) and (min-aspect-ratio: 3/2)";
+/** The part of such a window that panels have, and its least and most in pixels. */
+const [LOW_SHARE, LOW_LEAST, LOW_MOST] = [0.4, 270, 340];
+
+/** How a window is arranged: with room beside the scene, with all panels below it, or, where it is low, with all beside it. */
+export type Form = "wide" | "narrow" | "low";
+
+export function formOf(api: DockviewApi): Form {
+  return matchMedia(LOW).matches ? "low" : api.width <= NARROW ? "narrow" : "wide";
+}
+
+/** Of all the window the scene has at least this much there, besides the line of its tools and the timeline that comes later. */
+const SCENE_SHARE = 0.5;
+const LINES_HEIGHT = 54;
+const MOST_BELOW = 0.45;
+
+/** On a phone: the scene, and below it one group with everything else. */
+function narrowHome(api: DockviewApi, id: PanelId): Home {
+  if (id === "scene") return HOMES.scene;
+  const others = (Object.keys(HOMES) as PanelId[]).filter((each) => each !== "scene" && each !== id);
+  const beside: Home["beside"] = [...others.map((each) => [each, "within"] as const), ["scene", "below"]];
+  const left = api.height - LINES_HEIGHT - SCENE_SHARE * window.innerHeight;
+  return { beside, height: Math.round(Math.min(left, api.height * MOST_BELOW)), inactive: !IN_FRONT.includes(id) };
+}
+
+/** On a phone that is held across: the scene, and beside it one group with everything else. */
+function lowHome(api: DockviewApi, id: PanelId): Home {
+  const { beside: near, inactive = false } = narrowHome(api, id);
+  const beside: Home["beside"] = near.map(([other, where]) => [other, where === "below" ? "right" : where]);
+  return { beside, inactive, width: Math.round(Math.min(LOW_MOST, Math.max(LOW_LEAST, api.width * LOW_SHARE))) };
+}
+
+function wideHome(api: DockviewApi, id: PanelId): Home {
+  const home = { ...HOMES[id] };
+  if (home.width !== undefined) home.width = Math.round(home.width * Math.max(LEAST_SHARE, Math.min(1, api.width / ROOMY)));
+  if (home.height !== undefined) home.height = Math.min(home.height, Math.round(api.height * MOST_HEIGHT));
+  return home;
+}
+
+/** The order in which panels that are open come to their usual places. */
+export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
+
+/** Adds panels at their usual places. */
+export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
+  const homeIn = { wide: wideHome, narrow: narrowHome, low: lowHome }[formOf(api)];
+  for (const id of ids) {
+    const { beside, height, width, inactive } = homeIn(api, id);
+    const found = beside.find(([other]) => api.getPanel(other) !== undefined);
+    const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
+    if (width !== undefined) options.initialWidth = width;
+    if (height !== undefined) options.initialHeight = height;
+    // Alone in its group a panel must be active, or the group stays empty.
+    if (inactive !== undefined && found?.[1] === "within") options.inactive = inactive;
+    const position = found && { referencePanel: found[0], direction: found[1] };
+    api.addPanel(position ? { ...options, floating: false, position } : options);
+  }
+}

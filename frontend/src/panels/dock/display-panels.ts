@@ -1,0 +1,129 @@
+import type { AddPanelOptions, Direction, DockviewApi, IContentRenderer } from "dockview";
+import { h } from "../../dom";
+import type { DisplayPanel, PanelHost } from "../../scene/displays/display-panel";
+import { formOf } from "./default-layout";
+import { PanelTab } from "./panel-tab";
+
+const PREFIX = "display:";
+const HEIGHT = 220;
+/** The part of the window's height that is a panel's at most. */
+const SHARE = 0.3;
+/** So many panels are put below the Displays panel; the next ones become tabs of these. */
+const MOST_BESIDE = 2;
+/** In a narrow window of this width, in pixels, the first of them stands beside the scene and has this part of the width. */
+const LEAST_SPLIT = 600;
+const SPLIT = 0.42;
+/** In a window lower than this, in pixels, only one of them. */
+const LOW = 700;
+
+interface Home {
+  beside: string | undefined;
+  direction: Direction;
+  width?: number;
+  height?: number;
+  inactive?: boolean;
+}
+
+/** The panels of displays within the dock. A restored arrangement keeps their places until their displays come. */
+export class DisplayPanels implements PanelHost {
+  private readonly hosts = new Map<string, HTMLElement>();
+  private readonly offered = new Map<string, DisplayPanel>();
+
+  /** `api` is asked for when it is needed: the dock makes contents while it is being made. */
+  constructor(private readonly api: () => DockviewApi) {}
+
+  offer(panel: DisplayPanel): void {
+    this.offered.set(panel.key, panel);
+    if (this.api().getPanel(panel.key)) {
+      this.host(panel.key).replaceChildren(panel.element);
+      this.retitle(panel.key, panel.title);
+    } else {
+      this.add(panel);
+    }
+  }
+
+  withdraw(key: string): void {
+    this.offered.delete(key);
+    this.remove(key);
+  }
+
+  retitle(key: string, title: string): void {
+    this.api().getPanel(key)?.api.setTitle(title);
+  }
+
+  /** The displays are these: panels of others go. */
+  keep(displays: readonly string[]): void {
+    const keys = new Set(displays.map((id) => PREFIX + id));
+    for (const { id } of [...this.api().panels]) if (id.startsWith(PREFIX) && !keys.has(id)) this.withdraw(id);
+  }
+
+  /** Puts all panels back after the arrangement was cleared. */
+  restore(): void {
+    for (const panel of this.offered.values()) if (!this.api().getPanel(panel.key)) this.add(panel);
+  }
+
+  /** What the dock shows of a panel; null for one that is no display's. */
+  content(name: string): IContentRenderer | null {
+    if (!name.startsWith(PREFIX)) return null;
+    return { element: this.host(name), init: () => undefined };
+  }
+
+  /** Its tab; null for one that is no display's. */
+  tab(key: string): PanelTab | null {
+    if (!key.startsWith(PREFIX)) return null;
+    const close = (): void => {
+      const panel = this.offered.get(key);
+      if (panel) panel.closed();
+      else this.remove(key);
+    };
+    return new PanelTab(this.offered.get(key)?.icon ?? "image", true, close);
+  }
+
+  private add(panel: DisplayPanel): void {
+    const { key, title, element } = panel;
+    this.host(key).replaceChildren(element);
+    const others = this.api().panels.filter(({ id }) => id.startsWith(PREFIX));
+    const home = this.home(panel, others.at(-1)?.id, others.length);
+    const { width, height, inactive } = home;
+    const options: AddPanelOptions = { id: key, component: key, tabComponent: key, title };
+    if (width !== undefined) options.initialWidth = width;
+    if (height !== undefined) options.initialHeight = height;
+    if (inactive !== undefined) options.inactive = inactive;
+    const position = home.beside === undefined ? undefined : { referencePanel: home.beside, direction: home.direction };
+    const before = others.map(({ group }) => ({ group, height: group.height }));
+    const { group } = this.api().addPanel(position ? { ...options, floating: false, position } : options);
+    if (height === undefined) return;
+    // The dock takes the room from the others.
+    for (const each of [...before, { group, height }]) each.group.api.setSize({ height: each.height });
+  }
+
+  /** Where a panel goes, of which there are some before it. */
+  private home({ instead }: DisplayPanel, last: string | undefined, count: number): Home {
+    const api = this.api();
+    const form = formOf(api);
+    const narrow = form !== "wide";
+    // Where one group has everything, a picture that comes does not hide what the user works with.
+    const shares = form === "low" || (narrow && api.width < LEAST_SPLIT);
+    const most = narrow || api.height < LOW ? 1 : MOST_BESIDE;
+    if (last !== undefined && instead && count < MOST_BESIDE) return { beside: last, direction: "right" };
+    if (last !== undefined && count >= most) return { beside: last, direction: "within", inactive: shares && !instead };
+    const scene = api.getPanel("scene") && "scene";
+    if (instead && scene) return { beside: scene, direction: "within" };
+    if (narrow && !shares && scene) return { beside: scene, direction: "right", width: Math.round(api.width * SPLIT) };
+    const beside = api.getPanel("displays") ? "displays" : scene;
+    if (shares) return { beside, direction: "within", inactive: beside !== undefined };
+    return { beside, direction: "below", height: Math.min(HEIGHT, Math.round(api.height * SHARE)) };
+  }
+
+  private remove(key: string): void {
+    const panel = this.api().getPanel(key);
+    if (panel) this.api().removePanel(panel);
+    this.hosts.delete(key);
+  }
+
+  private host(key: string): HTMLElement {
+    let host = this.hosts.get(key);
+    if (!host) this.hosts.set(key, (host = h("div", { class: "display-panel-host" })));
+    return host;
+  }
+}

@@ -1,0 +1,216 @@
+import { createDockview, type DockviewApi, type IContentRenderer } from "dockview";
+import type { PanelName } from "../../protocol";
+import { Signal } from "../../signal";
+import { strings } from "../../strings";
+import type { Panel, PanelId } from "../panel";
+import { ColumnWidths } from "./column-widths";
+import { addPanels, formOf, USUAL, type Form } from "./default-layout";
+import { DisplayPanels } from "./display-panels";
+import { FILE_PANELS } from "./file-panels";
+import { FrontTabs } from "./front-tabs";
+import type { Layout, Layouts } from "./layouts";
+import { PanelTab } from "./panel-tab";
+import { SceneTab } from "./scene-tab";
+import { takeTabKeys } from "./tab-keys";
+import { TimeStrip } from "./time-strip";
+
+/** The dockable panels; their arrangement is remembered by the browser, for each file. */
+export class Dock {
+  /** A panel was opened, closed, moved or brought to the front. */
+  readonly changed = new Signal();
+  /** Another arrangement is there: panels must be titled, and those that depend on something opened or closed. */
+  readonly rearranged = new Signal();
+  /** Which of its panels the file shows, for `reset`; null when it does not say. */
+  listed: readonly PanelName[] | null = null;
+  /** The file that the arrangement is kept for; null until one is known. */
+  file: string | null = null;
+  /** The panels of displays. */
+  readonly displayPanels = new DisplayPanels(() => this.api);
+  private readonly api: DockviewApi;
+  private readonly widths: ColumnWidths;
+  private readonly strip: TimeStrip;
+  private readonly sceneTab: SceneTab;
+  private readonly frontTabs: FrontTabs;
+  private readonly panels: ReadonlyMap<string, Panel>;
+  private readonly tabs = new Map<string, PanelTab>();
+  /** The numbers behind titles, of panels that are closed, too. */
+  private readonly counts = new Map<PanelId, number>();
+  private form: Form;
+
+  constructor(
+    parent: HTMLElement,
+    panels: readonly Panel[],
+    private readonly layouts: Layouts,
+  ) {
+    this.panels = new Map(panels.map((panel) => [panel.id, panel]));
+    this.api = createDockview(parent, {
+      createComponent: ({ name }) => this.displayPanels.content(name) ?? this.content(name),
+      createTabComponent: ({ id }) => this.tab(id),
+      theme: { name: "linkwright", className: "dockview-theme-linkwright" },
+      disableFloatingGroups: true,
+      noPanelsOverlay: "emptyGroup",
+      messages: { panelOpened: strings.shell.panelOpened, panelClosed: strings.shell.panelClosed },
+    });
+    this.widths = new ColumnWidths(this.api);
+    this.strip = new TimeStrip(this.api);
+    this.sceneTab = new SceneTab(this.api);
+    this.frontTabs = new FrontTabs(this.api);
+    takeTabKeys(parent, (id) => this.tabs.get(id));
+    // Panels get their sizes when they are added; the dock's own observer would tell its size only later.
+    this.api.layout(parent.clientWidth, parent.clientHeight);
+    this.form = formOf(this.api);
+    // Most often the file is the one of the last time: then nothing moves when that is known.
+    const latest = layouts.latest(this.form);
+    if (latest && this.restore(latest)) this.file = latest.file;
+    else this.reset();
+    this.followLone();
+    this.widths.take();
+    this.api.onDidLayoutChange(() => {
+      this.followLone();
+      this.widths.follow();
+      this.remember();
+      this.changed.emit();
+    });
+    new ResizeObserver(() => {
+      this.api.layout(parent.clientWidth, parent.clientHeight);
+      if (parent.clientWidth > 0 && formOf(this.api) !== this.form) this.changeForm();
+    }).observe(parent);
+  }
+
+  /** The panels that can be opened and closed. */
+  get ids(): PanelId[] {
+    return [...this.panels.values()].map((panel) => panel.id).filter((id) => id !== "scene");
+  }
+
+  isOpen(id: PanelId): boolean {
+    return this.api.getPanel(id) !== undefined;
+  }
+
+  /** Opens a panel where it belongs, or brings it to the front. */
+  open(id: PanelId): void {
+    this.add(id);
+    this.api.getPanel(id)?.api.setActive();
+  }
+
+  close(id: PanelId): void {
+    const panel = this.api.getPanel(id);
+    if (panel) this.api.removePanel(panel);
+  }
+
+  /** A number behind a panel's title; 0 takes it away. */
+  setCount(id: PanelId, count: number): void {
+    this.counts.set(id, count);
+    this.retitle();
+  }
+
+  private retitle(): void {
+    const wrong = this.api.panels.filter(({ id, title }) => this.panels.has(id) && title !== this.titleOf(id));
+    for (const { id, api } of wrong) api.setTitle(this.titleOf(id));
+    if (wrong.length > 0) this.frontTabs.follow();
+  }
+
+  private titleOf(id: string): string {
+    const count = this.counts.get(id as PanelId) ?? 0;
+    return count > 0 ? `${title(id)} (${count})` : title(id);
+  }
+
+  /** The arrangement of the first visit. */
+  reset(): void {
+    const joints = this.api.getPanel("joints") !== undefined;
+    this.build(["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
+    if (this.listed) this.showOnly(this.listed);
+    this.rearranged.emit();
+  }
+
+  /** Shows the arrangement that the browser keeps for a file; false when it keeps none. */
+  arrange(file: string): boolean {
+    const layout = this.layouts.find(file, this.form);
+    if (!layout) return false;
+    if (!this.restore(layout)) {
+      this.reset();
+      return false;
+    }
+    this.followLone();
+    this.displayPanels.restore();
+    this.widths.take();
+    this.rearranged.emit();
+    return true;
+  }
+
+  /** Keeps the arrangement for a file from now on. */
+  keepFor(file: string): void {
+    this.file = file;
+    this.remember();
+  }
+
+  /** Of the panels that files know of, opens these and closes the others. */
+  showOnly(panels: readonly PanelName[]): void {
+    for (const id of FILE_PANELS) {
+      if (panels.includes(id)) this.add(id);
+      else this.close(id);
+    }
+    this.widths.follow();
+  }
+
+  private add(id: PanelId): void {
+    if (this.isOpen(id)) return;
+    addPanels(this.api, [id]);
+    this.retitle();
+  }
+
+  private build(ids: readonly PanelId[]): void {
+    this.api.clear();
+    addPanels(this.api, this.form !== "wide" ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids);
+    this.retitle();
+    this.followLone();
+    this.displayPanels.restore();
+    this.widths.take();
+  }
+
+  /** What is alone in its place may need no tab. */
+  private followLone(): void {
+    this.strip.follow();
+    this.sceneTab.follow(this.form !== "wide");
+    this.frontTabs.follow();
+  }
+
+  /** The window has another form: the same panels, as they were in such a window or where they belong. */
+  private changeForm(): void {
+    this.form = formOf(this.api);
+    if (this.file !== null && this.arrange(this.file)) return;
+    this.build(USUAL.filter((id) => this.isOpen(id)));
+    this.rearranged.emit();
+  }
+
+  private tab(id: string): PanelTab {
+    const tab = this.displayPanels.tab(id) ?? new PanelTab(this.panels.get(id)?.icon ?? "panels", id !== "scene");
+    this.tabs.set(id, tab);
+    return tab;
+  }
+
+  private content(name: string): IContentRenderer {
+    const panel = this.panels.get(name);
+    if (!panel) throw new Error(`no panel '${name}'`);
+    return { element: panel.element, init: () => panel.opened?.(), dispose: () => panel.closed?.() };
+  }
+
+  private restore({ arrangement }: Layout): boolean {
+    try {
+      this.api.fromJSON(arrangement);
+      this.retitle();
+      return this.isOpen("scene");
+    } catch {
+      // A layout of another version of the page: start over.
+      this.api.clear();
+      return false;
+    }
+  }
+
+  private remember(): void {
+    if (this.file !== null) this.layouts.keep({ file: this.file, form: this.form, arrangement: this.api.toJSON() });
+  }
+}
+
+function title(id: string): string {
+  return strings.panels[id as PanelId];
+}

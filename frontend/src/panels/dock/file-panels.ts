@@ -1,0 +1,109 @@
+import type { Connection } from "../../connection/connection";
+import type { Configuration, PanelName, Panels } from "../../protocol";
+import type { Signal } from "../../signal";
+import type { PanelId } from "../panel";
+
+/** The panels that files know of. */
+export const FILE_PANELS: readonly PanelName[] = [
+  "displays",
+  "selection",
+  "tool-properties",
+  "views",
+  "time",
+  "transformation",
+  "navigation",
+];
+
+/** What of the dock this needs. */
+export interface Arrangement {
+  readonly changed: Signal;
+  readonly file: string | null;
+  listed: readonly PanelName[] | null;
+  isOpen(id: PanelId): boolean;
+  /** Shows what the browser keeps for a file; false when that is nothing. */
+  arrange(file: string): boolean;
+  keepFor(file: string): void;
+  open(id: PanelId): void;
+  showOnly(panels: readonly PanelName[]): void;
+}
+
+/**
+ * Which panels are open, between the file and the browser.
+ *
+ * A page that opens has the arrangement that the browser keeps for the file. Where there is none, and whenever another
+ * configuration takes the place of the one before, the file says which of its panels are open. What the user opens and
+ * closes from then on is the browser's, and told to the server, which writes it into the file.
+ */
+export class FilePanels {
+  private told: Panels | null = null;
+  private configuration: Configuration | null = null;
+  /** The number of the configuration that is shown; null after a connection was made, before anything is known. */
+  private shown: number | null = null;
+  /** Which of the file's panels were open when last looked at. */
+  private open: readonly PanelName[] | null = null;
+  /** Neither a file nor the browser says how this page's panels are arranged. */
+  private unarranged = false;
+  private drivable = false;
+
+  constructor(
+    private readonly connection: Connection,
+    private readonly dock: Arrangement,
+  ) {
+    connection.on("hello", () => {
+      this.told = this.configuration = this.shown = null;
+      this.drivable = false;
+    });
+    connection.on("panels", (message) => {
+      this.told = message;
+      this.settle();
+    });
+    connection.on("configuration", (message) => {
+      this.configuration = message;
+      this.settle();
+    });
+    connection.on("simulation_status", ({ drivable }) => {
+      this.drivable = drivable;
+      this.openPad();
+    });
+    dock.changed.on(() => this.compare());
+  }
+
+  /** A simulated robot is there to be driven: the pad is open unless it is known how the panels should be. */
+  private openPad(): void {
+    if (!this.drivable || !this.unarranged) return;
+    this.unarranged = false;
+    this.dock.open("teleop");
+  }
+
+  /** Follows the configuration as soon as both messages about it are there. */
+  private settle(): void {
+    const { told, configuration, dock } = this;
+    if (!told || told.opened !== configuration?.opened) return;
+    const { opened } = told;
+    const file = configuration.path ?? told.origin;
+    if (this.shown === opened) {
+      if (file !== dock.file) dock.keepFor(file); // it was saved under another name
+      return;
+    }
+    const isNews = this.shown !== null;
+    this.shown = opened;
+    dock.listed = told.shown;
+    const isKept = file === dock.file || dock.arrange(file);
+    dock.keepFor(file);
+    if (told.shown && (isNews || !isKept)) dock.showOnly(told.shown);
+    this.open = this.openNow;
+    this.unarranged = configuration.path === null && !isKept;
+    this.openPad();
+  }
+
+  private compare(): void {
+    const open = this.openNow;
+    if (this.open === null || String(open) === String(this.open)) return;
+    this.open = open;
+    this.connection.send({ type: "show_panels", shown: open });
+  }
+
+  private get openNow(): PanelName[] {
+    return FILE_PANELS.filter((id) => this.dock.isOpen(id));
+  }
+}

@@ -1,0 +1,37 @@
+import type { ITabRenderer, TabPartInitParameters } from "dockview";
+import { h } from "../../dom";
+import { icon, type IconName } from "../../icons";
+import { strings } from "../../strings";
+
+/** A panel's tab: icon, title and, unless the panel must stay, a cross that closes it. */
+export class PanelTab implements ITabRenderer {
+  readonly element = h("div", { class: "panel-tab" });
+  private readonly title = h("span", { class: "tab-title" });
+
+  constructor(
+    private readonly iconName: IconName,
+    private readonly closable: boolean,
+    private readonly onClose: (() => void) | null = null,
+  ) {}
+
+  /** Closes the panel, unless it must stay; false then. */
+  close: () => boolean = () => false;
+
+  init({ title, api }: TabPartInitParameters): void {
+    this.title.textContent = title;
+    api.onDidTitleChange((event) => (this.title.textContent = event.title));
+    this.element.append(icon(this.iconName), this.title);
+    if (!this.closable) return;
+    this.close = () => {
+      if (this.onClose) this.onClose();
+      else api.close();
+      return true;
+    };
+    // Within a tab nothing else can take the focus: keyboards close with Delete.
+    const cross = h("span", { class: "tab-close", title: strings.closeTab, aria: { hidden: "true" } }, icon("close"));
+    // Pressing it must not start to drag the tab.
+    cross.addEventListener("pointerdown", (event) => event.stopPropagation());
+    cross.addEventListener("click", () => this.close());
+    this.element.append(cross);
+  }
+}

@@ -1,0 +1,18 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { UnitSwitch } from "../../widgets/unit-switch";
+
+/** What concerns all joints: Randomize and Center as joint_state_publisher_gui has them, and their unit. */
+export function jointBar({ connection, angles }: Session): HTMLElement {
+  const words = strings.joints;
+  return h(
+    "div",
+    { class: "toolbar joint-tools" },
+    button(words.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", icon("shuffle"), words.randomize),
+    button(words.centerHint, () => connection.send({ type: "center_joints" }), "tool", icon("center"), words.center),
+    h("span", { class: "spacer" }),
+    new UnitSwitch(angles).element,
+  );
+}

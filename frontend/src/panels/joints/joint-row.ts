@@ -1,0 +1,153 @@
+import { h } from "../../dom";
+import { icon } from "../../icons";
+import type { JointControl } from "../../protocol";
+import type { AngleUnits } from "../../state/angle-unit";
+import { mimicText } from "../../state/joint-table";
+import { strings } from "../../strings";
+import { clamp, formatFixed, parseNumber } from "../../tree/numbers";
+
+/** After the user's last touch, how long the server's positions wait before they move the slider, ms. */
+const HANDS_OFF_MS = 250;
+
+/** So much of the end of a name stays in a narrow panel: names of joints that belong together begin alike, and often end in `_joint`. */
+const END = 14;
+/** A name so short is never cut. */
+const SHORT = 10;
+
+/** A name as what may be cut of it, and its end, which stays. */
+export function halvesOf(name: string): readonly [string, string] {
+  const cut = name.length > SHORT ? name.length - Math.min(END, Math.floor(name.length / 2)) : name.length;
+  return [name.slice(0, cut), name.slice(cut)];
+}
+
+/** A joint of the Joints panel: name, number, slider, limits. */
+export class JointRow {
+  readonly element: HTMLElement;
+  private readonly slider = h("input", { class: "slider" });
+  private readonly field = h("input", { class: "field numeric" });
+  private readonly unit = h("span", { class: "unit" });
+  private readonly limits = [h("span"), h("span")] as const;
+  private readonly relation = h("span");
+  private position = 0;
+  private touchedAt = -Infinity;
+  private dragging = false;
+
+  constructor(
+    readonly joint: JointControl,
+    private readonly angles: AngleUnits,
+    private readonly moved: (position: number) => void,
+  ) {
+    const follower = joint.mimic !== null;
+    const halves = halvesOf(joint.name).map((part) => h("span", {}, part));
+    // Screen readers have the whole name from slider and field.
+    const name = h("span", { class: "joint-name", title: joint.name, aria: { hidden: "true" } }, ...halves);
+    const mimic = follower
+      ? h("div", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), this.relation)
+      : null;
+    this.slider.type = "range";
+    this.slider.min = String(joint.lower);
+    this.slider.max = String(joint.upper);
+    this.slider.step = "any";
+    this.field.type = "text";
+    this.field.inputMode = "decimal";
+    this.slider.disabled = this.field.disabled = follower;
+    this.slider.setAttribute("aria-label", joint.name);
+    this.field.setAttribute("aria-label", strings.joints.position(joint.name));
+    this.listen();
+    this.element = h(
+      "div",
+      { class: follower ? "joint follower" : "joint", data: { joint: joint.name } },
+      h("div", { class: "joint-head" }, name, h("span", { class: "spacer" }), this.field, this.unit),
+      h("div", { class: "joint-slide" }, this.limits[0], this.slider, this.limits[1]),
+      mimic,
+    );
+    this.showUnit();
+  }
+
+  /** Angles are shown in another unit. */
+  showUnit(): void {
+    const { lower, upper } = this.joint;
+    this.unit.textContent = this.unitName;
+    this.limits[0].textContent = `${this.format(lower)} ${this.unitName}`;
+    this.limits[1].textContent = `${this.format(upper)} ${this.unitName}`;
+    this.relation.textContent = this.relationText;
+    this.show();
+  }
+
+  /** The server's position; it waits while the user's hand is on the row. */
+  setPosition(position: number): void {
+    if (this.dragging || performance.now() - this.touchedAt < HANDS_OFF_MS) return;
+    this.position = position;
+    this.show();
+  }
+
+  private listen(): void {
+    this.slider.addEventListener("input", () => this.take(Number(this.slider.value)));
+    this.slider.addEventListener("pointerdown", () => (this.dragging = true));
+    for (const end of ["pointerup", "pointercancel", "blur"]) {
+      this.slider.addEventListener(end, () => (this.dragging = false));
+    }
+    this.field.addEventListener("focus", () => this.field.select());
+    this.field.addEventListener("blur", () => this.readField());
+    this.field.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") this.readField();
+      else if (event.key === "Escape") this.show(true);
+      else if (event.key === "ArrowUp") this.take(this.position + this.step);
+      else if (event.key === "ArrowDown") this.take(this.position - this.step);
+      else return;
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  }
+
+  private readField(): void {
+    if (this.field.value === this.format(this.position)) return;
+    const value = parseNumber(this.field.value);
+    if (value === null) this.show(true);
+    else this.take(value / this.scale);
+  }
+
+  private take(position: number): void {
+    this.touchedAt = performance.now();
+    this.position = clamp(position, this.joint.lower, this.joint.upper);
+    this.show(true);
+    this.moved(this.position);
+  }
+
+  private show(force = false): void {
+    const { lower, upper } = this.joint;
+    const part = upper > lower ? (this.position - lower) / (upper - lower) : 0;
+    if (!this.dragging) this.slider.value = String(this.position);
+    this.slider.style.setProperty("--part", String(clamp(part, 0, 1)));
+    const zero = upper > lower ? (this.joint.zero - lower) / (upper - lower) : 0;
+    this.slider.style.setProperty("--zero", String(clamp(zero, 0, 1)));
+    this.slider.setAttribute("aria-valuetext", `${this.format(this.position)} ${this.unit.textContent}`);
+    if (force || document.activeElement !== this.field) this.field.value = this.format(this.position);
+  }
+
+  private get scale(): number {
+    return this.angles.scale(this.joint.kind);
+  }
+
+  private get unitName(): string {
+    const words = strings.joints;
+    if (this.joint.kind === "prismatic") return words.metres;
+    return this.angles.current === "deg" ? words.degrees : words.radians;
+  }
+
+  /** How a joint follows another: `2 × elbow + 0.1 rad`. */
+  private get relationText(): string {
+    const { mimic, multiplier, offset } = this.joint;
+    return mimic === null ? "" : mimicText(mimic, multiplier, offset * this.scale, this.unitName);
+  }
+
+  /** What an arrow key in the number field moves: 1 degree, 0.01 rad, 1 mm. */
+  private get step(): number {
+    if (this.joint.kind === "prismatic") return 0.001;
+    return this.angles.current === "deg" ? Math.PI / 180 : 0.01;
+  }
+
+  private format(position: number): string {
+    return formatFixed(position * this.scale, this.scale !== 1 ? 1 : 3);
+  }
+}

@@ -1,0 +1,104 @@
+import { button, coalesced, h } from "../../dom";
+import type { JointDetails } from "../../protocol";
+import type { DescriptionModel } from "../../state/description-model";
+import { cells, COLUMNS, sorted, type Column } from "../../state/joint-table";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { UnitSwitch } from "../../widgets/unit-switch";
+import { holdWhileSeen } from "../../widgets/when-seen";
+import { currentModel } from "../description/current-model";
+import type { Panel } from "../panel";
+
+/** All joints of the robot with what the description says of them. */
+export class JointTablePanel implements Panel {
+  readonly id = "joint-table";
+  readonly icon = "table";
+  readonly element: HTMLElement;
+  private readonly head = h("tr", {});
+  private readonly body = h("tbody", {});
+  private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
+  private readonly box: HTMLElement;
+  private readonly count = h("span", { class: "toolbar-label" });
+  private readonly rows = new Map<string, HTMLElement>();
+  private order: { column: Column; descending: boolean } | null = null;
+  private model: DescriptionModel | undefined;
+
+  constructor(private readonly session: Session) {
+    const table = h("table", { class: "joint-table" }, h("thead", {}, this.head), this.body);
+    this.box = h("div", { class: "table-box" }, table);
+    const units = new UnitSwitch(session.angles);
+    const bar = h("div", { class: "toolbar" }, this.count, h("span", { class: "spacer" }), units.element);
+    this.element = h("div", { class: "panel" }, bar, this.empty, this.box);
+    const { description, focus, angles } = session;
+    const update = coalesced(() => this.update());
+    holdWhileSeen(this.element, () => description.hold(), update);
+    description.arrived.on(update);
+    session.robotChanged.on(update);
+    angles.changed.on(update);
+    focus.changed.on(coalesced(() => this.mark(true)));
+    this.update();
+  }
+
+  private update(): void {
+    this.model = currentModel(this.session);
+    const joints = this.model?.description.joints ?? [];
+    this.empty.hidden = this.model !== undefined;
+    this.box.hidden = this.model === undefined;
+    this.count.textContent = this.model ? strings.description.count(this.model.links.size, joints.length) : "";
+    this.head.replaceChildren(...COLUMNS.map((column) => this.heading(column)));
+    this.rows.clear();
+    const { order } = this;
+    const shown = order ? sorted(joints, order.column, order.descending) : joints;
+    this.body.replaceChildren(...shown.map((joint) => this.row(joint)));
+    this.mark(false);
+  }
+
+  private heading(column: Column): HTMLElement {
+    const words = strings.description.table;
+    const mine = this.order?.column === column;
+    const sign = mine ? (this.order?.descending ? " ▾" : " ▴") : "";
+    const cell = h("th", {}, button(words.hints[column], () => this.sortBy(column), "", words[column] + sign));
+    cell.scope = "col";
+    cell.setAttribute("aria-sort", mine ? (this.order?.descending ? "descending" : "ascending") : "none");
+    return cell;
+  }
+
+  private row(joint: JointDetails): HTMLElement {
+    const texts = cells(joint, this.session.angles, strings.description);
+    const row = h(
+      "tr",
+      { tabIndex: 0, data: { joint: joint.name } },
+      ...COLUMNS.map((column) => h("td", { class: `column-${column}`, title: texts[column] }, texts[column])),
+    );
+    const element = { display: this.model?.display ?? "", kind: "joint" as const, name: joint.name };
+    row.addEventListener("click", () => this.session.focus.select(element));
+    row.addEventListener("pointerenter", () => this.session.focus.setHovered(element));
+    row.addEventListener("pointerleave", () => this.session.focus.setHovered(null));
+    row.addEventListener("keydown", (event) => {
+      const other = { ArrowDown: row.nextElementSibling, ArrowUp: row.previousElementSibling }[event.key];
+      if (other instanceof HTMLElement) other.focus();
+      else if (event.key === "Enter" || event.key === " ") this.session.focus.select(element);
+      else return;
+      event.preventDefault();
+    });
+    this.rows.set(joint.name, row);
+    return row;
+  }
+
+  /** Three clicks: up, down, the order of the file. */
+  private sortBy(column: Column): void {
+    if (this.order?.column !== column) this.order = { column, descending: false };
+    else this.order = this.order.descending ? null : { column, descending: true };
+    this.update();
+  }
+
+  private mark(scroll: boolean): void {
+    const { current } = this.session.focus;
+    for (const [name, row] of this.rows) {
+      const mine = current?.display === this.model?.display && current?.kind === "joint" && current.name === name;
+      row.classList.toggle("selected", mine);
+      row.setAttribute("aria-selected", String(mine));
+      if (mine && scroll && !row.matches(":hover")) row.scrollIntoView({ block: "nearest" });
+    }
+  }
+}

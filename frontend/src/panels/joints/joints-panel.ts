@@ -1,0 +1,65 @@
+import { h } from "../../dom";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import type { Panel } from "../panel";
+import { jointBar } from "./joint-bar";
+import { JointRow } from "./joint-row";
+import { PoseBar } from "./pose-bar";
+import { SweepBar } from "./sweep-bar";
+
+/** From this many joints on a filter helps. */
+const FILTER_FROM = 10;
+
+/** joint_state_publisher_gui's sliders, with named poses and a sweep. */
+export class JointsPanel implements Panel {
+  readonly id = "joints";
+  readonly icon = "joints";
+  readonly element: HTMLElement;
+  private readonly list = h("div", { class: "joints" });
+  private readonly filter = h("input", { class: "field filter" });
+  private readonly bars: HTMLElement;
+  private rows: JointRow[] = [];
+
+  constructor(private readonly session: Session) {
+    const words = strings.joints;
+    const { joints, angles } = session;
+    this.filter.placeholder = words.filter;
+    this.filter.setAttribute("aria-label", words.filter);
+    this.filter.addEventListener("input", () => this.applyFilter());
+    const bar = jointBar(session);
+    this.bars = h("div", { class: "joint-bars" }, new PoseBar(session).element, new SweepBar(joints).element);
+    this.element = h("div", { class: "panel joints-panel" }, bar, this.bars, this.filter, this.list);
+    joints.controlsChanged.on(() => this.build());
+    joints.positionsChanged.on(() => this.update());
+    angles.changed.on(() => this.rows.forEach((row) => row.showUnit()));
+    this.build();
+  }
+
+  private build(): void {
+    const { joints, angles } = this.session;
+    this.rows = (joints.controls ?? []).map(
+      (joint) => new JointRow(joint, angles, (position) => joints.move({ [joint.name]: position })),
+    );
+    this.list.replaceChildren(...this.rows.map((row) => row.element));
+    const none = this.rows.length === 0;
+    if (none) this.list.append(h("p", { class: "empty" }, strings.joints.none));
+    this.bars.hidden = none;
+    this.filter.hidden = this.rows.length < FILTER_FROM;
+    if (this.filter.hidden) this.filter.value = "";
+    this.applyFilter();
+    this.update();
+  }
+
+  private update(): void {
+    const { positions } = this.session.joints;
+    for (const row of this.rows) {
+      const position = positions[row.joint.name];
+      if (position !== undefined) row.setPosition(position);
+    }
+  }
+
+  private applyFilter(): void {
+    const wanted = this.filter.value.trim().toLowerCase();
+    for (const row of this.rows) row.element.hidden = !row.joint.name.toLowerCase().includes(wanted);
+  }
+}

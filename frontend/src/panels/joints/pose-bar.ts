@@ -1,0 +1,113 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import { posesOf, srdfOf, standsAs, type NamedPose } from "../../state/named-poses";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { openMenu } from "../../widgets/menu";
+import { saveText } from "../../widgets/save-file";
+
+/** Named poses of the robot: recalled with a click, saved under a name, taken elsewhere as SRDF. */
+export class PoseBar {
+  readonly element: HTMLElement;
+  private readonly chips = h("div", { class: "pose-chips" });
+  private readonly name = h("input", { class: "field pose-name" });
+  private readonly notice = h("p", { class: "hint pose-notice", role: "status" });
+  private readonly picker = h("input");
+
+  constructor(private readonly session: Session) {
+    const words = strings.description.poses;
+    this.name.placeholder = words.nameShort;
+    this.name.setAttribute("aria-label", words.name);
+    this.name.maxLength = 60;
+    this.name.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") this.save();
+      event.stopPropagation();
+    });
+    this.picker.type = "file";
+    this.picker.accept = ".srdf,.xml,.xacro";
+    this.picker.hidden = true;
+    this.picker.addEventListener("change", () => void this.take());
+    const more = button(words.more, () => this.openMore(more), "tool bare", icon("more"));
+    more.setAttribute("aria-haspopup", "menu");
+    const entry = h(
+      "div",
+      { class: "bar-row" },
+      h("span", { class: "bar-label", title: words.kept }, words.label),
+      this.name,
+      button(words.saveHint, () => this.save(), "tool", words.save),
+      more,
+    );
+    this.notice.hidden = true;
+    this.element = h("div", { class: "joint-bar poses", role: "group", aria: { label: words.label } }, entry, this.chips, this.notice, this.picker);
+    const { poses, joints, robotChanged } = session;
+    poses.changed.on(() => this.show());
+    robotChanged.on(() => this.show());
+    joints.positionsChanged.on(() => this.mark());
+    this.show();
+  }
+
+  private get robot(): string {
+    return this.session.robot?.name ?? "";
+  }
+
+  private show(): void {
+    this.chips.replaceChildren(...this.session.poses.of(this.robot).map((pose) => this.chip(pose)));
+    this.mark();
+  }
+
+  private chip(pose: NamedPose): HTMLElement {
+    const words = strings.description.poses;
+    return h(
+      "span",
+      { class: "chip", data: { pose: pose.name } },
+      button(words.recall(pose.name), () => this.session.joints.move(pose.positions), "chip-name", pose.name),
+      button(words.remove(pose.name), () => this.session.poses.remove(this.robot, pose.name), "chip-remove", icon("close")),
+    );
+  }
+
+  /** The poses that the robot is in. */
+  private mark(): void {
+    const { poses, joints } = this.session;
+    const known = poses.of(this.robot);
+    this.chips.querySelectorAll<HTMLElement>(".chip").forEach((chip) => {
+      const pose = known.find((each) => each.name === chip.dataset["pose"]);
+      chip.classList.toggle("on", pose !== undefined && standsAs(pose, joints.positions));
+    });
+  }
+
+  private save(): void {
+    const name = this.name.value.trim();
+    const { controls, positions } = this.session.joints;
+    if (name === "" || !controls) {
+      this.name.focus();
+      return;
+    }
+    const free = controls.filter((joint) => joint.mimic === null);
+    const taken = free.map((joint) => [joint.name, positions[joint.name] ?? joint.zero] as const);
+    this.session.poses.save(this.robot, { name, positions: Object.fromEntries(taken) });
+    this.name.value = "";
+    this.notice.hidden = true;
+  }
+
+  private openMore(anchor: HTMLElement): void {
+    const words = strings.description.poses;
+    openMenu(anchor, [
+      { label: words.export, run: () => this.export() },
+      { label: words.import, run: () => this.picker.click() },
+    ]);
+  }
+
+  private export(): void {
+    saveText(`${this.robot || "robot"}.srdf`, srdfOf(this.robot, this.session.poses.of(this.robot)), "application/xml");
+  }
+
+  private async take(): Promise<void> {
+    const file = this.picker.files?.[0];
+    if (!file) return;
+    const poses = posesOf(await file.text());
+    this.picker.value = "";
+    this.notice.hidden = poses.length > 0;
+    this.notice.textContent = strings.description.poses.nothingFound;
+    if (poses.length > 0) this.session.poses.save(this.robot, ...poses);
+  }
+}

@@ -1,0 +1,102 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { JointsState } from "../../state/joints";
+import { Sweep, type SweepOrder } from "../../state/sweep";
+import { strings } from "../../strings";
+
+const SPEEDS = [0.25, 0.5, 1, 2, 4] as const;
+/** A page that was away for longer goes on where it was. */
+const LONGEST_STEP_S = 0.1;
+
+/** Moves the joints through their ranges until it is stopped, or the user moves them elsewhere. */
+export class SweepBar {
+  readonly element: HTMLElement;
+  private readonly order = h("select", { class: "choice" });
+  private readonly speed = h("select", { class: "choice" });
+  private readonly start: HTMLButtonElement;
+  private sweep: Sweep | null = null;
+  private seconds = 0;
+  private lastMs = 0;
+  private sent: Readonly<Record<string, number>> = {};
+
+  constructor(private readonly joints: JointsState) {
+    const words = strings.description.sweep;
+    fill(this.order, words.order, [
+      ["one", words.one],
+      ["all", words.all],
+    ]);
+    fill(this.speed, words.speed, SPEEDS.map((speed) => [String(speed), `${speed}×`]));
+    this.speed.value = "1";
+    this.order.addEventListener("change", () => this.sweep && this.begin());
+    this.start = button(words.start, () => (this.sweep ? this.end() : this.begin()), "tool bare", icon("play"));
+    const row = h(
+      "div",
+      { class: "bar-row" },
+      h("span", { class: "bar-label", title: words.hint }, words.label),
+      this.order,
+      this.speed,
+      h("span", { class: "bar-buttons" }, handsOnSwitch(joints), this.start),
+    );
+    this.element = h("div", { class: "joint-bar sweep", role: "group", aria: { label: words.label } }, row);
+    joints.controlsChanged.on(() => this.end());
+  }
+
+  private begin(): void {
+    this.sweep = new Sweep(this.joints.controls ?? [], this.joints.positions, this.order.value as SweepOrder);
+    this.seconds = 0;
+    this.sent = this.joints.positions;
+    this.lastMs = performance.now();
+    this.showState();
+    requestAnimationFrame(this.tick);
+  }
+
+  private end(): void {
+    this.sweep = null;
+    this.showState();
+  }
+
+  private readonly tick = (): void => {
+    if (!this.sweep) return;
+    const now = performance.now();
+    this.seconds += Math.min((now - this.lastMs) / 1000, LONGEST_STEP_S) * Number(this.speed.value);
+    this.lastMs = now;
+    const positions = this.sweep.positionsAt(this.seconds);
+    const moved = Object.entries(positions).filter(([name, position]) => this.sent[name] !== position);
+    this.sent = positions;
+    this.joints.move(Object.fromEntries(moved));
+    requestAnimationFrame(this.tick);
+  };
+
+  private showState(): void {
+    const words = strings.description.sweep;
+    const running = this.sweep !== null;
+    this.start.replaceChildren(icon(running ? "stop" : "play"));
+    this.start.title = running ? words.stop : words.start;
+    this.start.setAttribute("aria-label", this.start.title);
+    this.start.classList.toggle("on", running);
+  }
+}
+
+/** Links follow the mouse without Alt; for touch screens, and for those who move a lot. */
+function handsOnSwitch(joints: JointsState): HTMLElement {
+  const toggle = (): void => {
+    joints.handsOn = !joints.handsOn;
+    element.classList.toggle("on", joints.handsOn);
+    element.setAttribute("aria-pressed", String(joints.handsOn));
+  };
+  const element = button(strings.description.handsOn, toggle, "tool bare", icon("hand"));
+  element.setAttribute("aria-pressed", "false");
+  return element;
+}
+
+function fill(select: HTMLSelectElement, label: string, options: readonly (readonly [string, string])[]): void {
+  select.setAttribute("aria-label", label);
+  select.title = label;
+  select.append(
+    ...options.map(([value, text]) => {
+      const option = h("option", {}, text);
+      option.value = value;
+      return option;
+    }),
+  );
+}

@@ -1,0 +1,27 @@
+import type { MonitorState } from "../../state/monitor/monitor";
+import type { Panel, PanelId } from "../panel";
+import { LogPanel } from "./log-panel";
+import { NavigationPanel } from "./navigation-panel";
+import { NodeGraphPanel } from "./node-graph-panel";
+import { ParametersPanel } from "./parameters-panel";
+import { PlotPanel } from "./plot-panel";
+import { TeleopPanel } from "./teleop-panel";
+import { TopicsPanel } from "./topics-panel";
+
+/** The panels that show what runs; `open` brings one to the front, `showTopic` adds the display of a topic. */
+export function livePanels(monitor: MonitorState, open: (id: PanelId) => void, showTopic: (topic: string) => void): Panel[] {
+  const { plots, topics } = monitor;
+  const plot = (topic: string, path: string): void => {
+    open("plot");
+    plots.addSeries(plots.plots[0] ?? plots.addPlot(), { topic, path });
+  };
+  return [
+    new PlotPanel(plots, topics),
+    new TopicsPanel(topics, plot, showTopic),
+    new NodeGraphPanel(monitor.graph),
+    new ParametersPanel(monitor.parameters),
+    new LogPanel(monitor.log),
+    new TeleopPanel(monitor.teleop),
+    new NavigationPanel(monitor.navigation),
+  ];
+}

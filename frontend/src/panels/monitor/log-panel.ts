@@ -1,0 +1,169 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { LogLine } from "../../protocol";
+import { clockText } from "../../state/monitor/figure-text";
+import { LEVELS, levelOf, lineText, type LogState } from "../../state/monitor/log";
+import { strings } from "../../strings";
+import { textField } from "../../widgets/controls";
+import { copyText } from "../../widgets/copy-text";
+import { VirtualList } from "../../widgets/virtual-list";
+import type { Panel } from "../panel";
+
+const ROW_PX = 21;
+
+/** What rqt_console shows of /rosout. */
+export class LogPanel implements Panel {
+  readonly id = "log";
+  readonly icon = "log";
+  readonly element: HTMLElement;
+  private readonly list: VirtualList<LogLine>;
+  private readonly node = h("select", { class: "choice", title: strings.monitor.log.node, aria: { label: strings.monitor.log.node } });
+  private readonly pause: HTMLButtonElement;
+  private readonly newest: HTMLButtonElement;
+  private readonly count = h("span", { class: "note" });
+  private readonly details = h("div", { class: "log-details" });
+  private chosen: LogLine | null = null;
+  private nodes = "";
+
+  constructor(private readonly state: LogState) {
+    const words = strings.monitor.log;
+    this.list = new VirtualList<LogLine>(ROW_PX, (line) => this.row(line), () => this.showFollowing());
+    this.list.element.setAttribute("role", "region");
+    this.list.element.setAttribute("aria-label", words.list);
+    this.list.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.pause = button(words.pauseHint, () => state.setPaused(!state.paused), "tool", strings.monitor.pause);
+    this.newest = button(words.newestHint, () => this.list.follow(), "tool", icon("follow"), words.newest);
+    const copy = button(words.copyHint, () => this.copy(copy), "tool", icon("copy"), words.copy);
+    this.node.addEventListener("change", () => state.setNode(this.node.value));
+    const filters = h(
+      "div",
+      { class: "toolbar" },
+      this.levels(),
+      this.node,
+      textField(strings.monitor.filter, (text) => state.setText(text)),
+      h("span", { class: "spacer" }),
+      this.count,
+    );
+    const bar = h(
+      "div",
+      { class: "toolbar" },
+      this.pause,
+      button(words.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
+      copy,
+      h("span", { class: "spacer" }),
+      this.newest,
+    );
+    const head = h("div", { class: "log-row log-head" });
+    for (const text of [words.level, words.time, words.node, words.message, words.location]) head.append(h("span", {}, text));
+    this.details.hidden = true;
+    this.element = h("div", { class: "panel monitor log" }, bar, filters, head, this.list.element, this.details);
+    state.changed.on(coalesced(() => this.show()));
+    this.show();
+    this.showFollowing();
+  }
+
+  opened(): void {
+    this.state.setOpen(true);
+  }
+
+  closed(): void {
+    this.state.setOpen(false);
+  }
+
+  private levels(): HTMLElement {
+    const group = h("div", { class: "segmented", role: "group", aria: { label: strings.monitor.log.level } });
+    for (const level of LEVELS) {
+      const name = strings.monitor.log.levels[level];
+      const toggle = button(
+        name,
+        () => {
+          this.state.setLevel(level, !this.state.levels.has(level));
+          mark();
+        },
+        `log-level-${level}`,
+        name,
+      );
+      const mark = (): void => {
+        const on = this.state.levels.has(level);
+        toggle.classList.toggle("on", on);
+        toggle.setAttribute("aria-pressed", String(on));
+      };
+      mark();
+      group.append(toggle);
+    }
+    return group;
+  }
+
+  private show(): void {
+    const words = strings.monitor.log;
+    const { lines, shown, missed, paused } = this.state;
+    this.list.show(shown);
+    const counted = words.shown(shown.length, lines.length);
+    this.count.textContent = missed > 0 ? `${counted}, ${words.missed(missed)}` : counted;
+    this.pause.replaceChildren(icon(paused ? "play" : "pause"), paused ? strings.monitor.resume : strings.monitor.pause);
+    this.pause.classList.toggle("on", paused);
+    const { nodes } = this.state;
+    if (nodes.join("\n") === this.nodes) return;
+    this.nodes = nodes.join("\n");
+    const chosen = this.node.value;
+    this.node.replaceChildren(new Option(words.allNodes, ""), ...nodes.map((name) => new Option(name)));
+    this.node.value = nodes.includes(chosen) ? chosen : "";
+  }
+
+  private showFollowing(): void {
+    this.newest.classList.toggle("on", this.list.following);
+    this.newest.setAttribute("aria-pressed", String(this.list.following));
+  }
+
+  private row(line: LogLine): HTMLElement {
+    const level = levelOf(line);
+    const row = h(
+      "div",
+      { class: `log-row log-level-${level}`, title: line.message },
+      h("span", { class: "log-level" }, strings.monitor.log.names[level]),
+      h("span", { class: "note" }, clockText(line.time)),
+      h("span", {}, line.node),
+      h("span", { class: "log-message" }, line.message),
+      h("span", { class: "note" }, placeOf(line)),
+    );
+    row.classList.toggle("chosen", line === this.chosen);
+    row.addEventListener("click", () => this.choose(line === this.chosen ? null : line));
+    return row;
+  }
+
+  /** Up and down go from record to record. */
+  private keyed(event: KeyboardEvent): void {
+    const { shown } = this.state;
+    const at = this.chosen ? shown.indexOf(this.chosen) : shown.length;
+    if (event.key === "ArrowUp") this.choose(shown[Math.max(0, at - 1)] ?? null);
+    else if (event.key === "ArrowDown") this.choose(shown[Math.min(shown.length - 1, at + 1)] ?? null);
+    else if (event.key === "Escape") this.choose(null);
+    else if (event.key === "End") this.list.follow();
+    else return;
+    event.preventDefault();
+    const row = this.list.element.querySelector(".chosen");
+    row?.scrollIntoView({ block: "nearest" });
+  }
+
+  /** Shows a record in full below the list. */
+  private choose(line: LogLine | null): void {
+    this.chosen = line;
+    this.list.show(this.state.shown);
+    this.details.hidden = line === null;
+    if (!line) return;
+    const place = line.file === "" ? "" : `${line.file}:${line.line} ${line.function}`;
+    this.details.replaceChildren(h("pre", {}, line.message), h("div", { class: "note" }, place));
+  }
+
+  private copy(from: HTMLButtonElement): void {
+    const text = this.state.shown.map((line) => lineText(line, strings.monitor.log.names[levelOf(line)])).join("\n");
+    void copyText(text).then((copied) => {
+      from.classList.toggle("done", copied);
+      from.title = copied ? strings.monitor.log.copied : strings.monitor.log.copyHint;
+    });
+  }
+}
+
+function placeOf({ file, line }: LogLine): string {
+  return file === "" ? "" : `${file.split("/").at(-1) ?? ""}:${line}`;
+}

@@ -1,0 +1,85 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { MessageField } from "../../protocol";
+import { strings } from "../../strings";
+
+interface Row {
+  readonly element: HTMLElement;
+  readonly value: HTMLElement;
+  readonly children: HTMLElement;
+  readonly toggle: HTMLButtonElement | null;
+  /** Tells how many elements are left out. */
+  readonly omitted: HTMLElement;
+}
+
+/** A message as a tree that is opened row by row; new messages change the texts and leave it as open as it is. */
+export class MessageTree {
+  readonly element = h("div", { class: "message-tree" });
+  private readonly rows = new Map<string, Row>();
+  private readonly opened = new Set<string>();
+  private fields: readonly MessageField[] = [];
+
+  /** `plot` is offered for numbers, with the path of the field. */
+  constructor(private readonly plot: (path: string) => void) {}
+
+  show(fields: readonly MessageField[]): void {
+    // What is not much is open from the start.
+    if (this.fields.length === 0 && fields.length <= 3) for (const { name } of fields) this.opened.add(name);
+    this.fields = fields;
+    this.fill(this.element, fields, "", null);
+  }
+
+  private fill(box: HTMLElement, fields: readonly MessageField[], prefix: string, end: HTMLElement | null): void {
+    const rows = fields.map((field) => {
+      const path = field.name.startsWith("[") ? `${prefix}${field.name}` : prefix === "" ? field.name : `${prefix}.${field.name}`;
+      const row = this.row(path, field);
+      if (row.value.textContent !== field.value) row.value.textContent = field.value;
+      const open = this.opened.has(path);
+      row.toggle?.setAttribute("aria-expanded", String(open));
+      row.children.hidden = !open;
+      if (open) {
+        const omitted = field.omitted > 0 ? strings.monitor.topics.omitted(field.omitted) : "";
+        if (row.omitted.textContent !== omitted) row.omitted.textContent = omitted;
+        this.fill(row.children, field.children, path, row.omitted);
+      }
+      return row.element;
+    });
+    if (end) rows.push(end);
+    const same = rows.length === box.childElementCount && rows.every((row, index) => row === box.children[index]);
+    if (!same) box.replaceChildren(...rows);
+  }
+
+  private row(path: string, field: MessageField): Row {
+    const known = this.rows.get(path);
+    const nests = field.children.length > 0;
+    if (known && (known.toggle !== null) === nests) return known;
+    const value = h("span", { class: "message-value" });
+    const children = h("div", { class: "message-children" });
+    const toggle = nests ? button(field.name, () => this.toggle(path), "expander", icon("chevron")) : null;
+    const numeric = !nests && isNumeric(field);
+    const head = h(
+      "div",
+      { class: "message-row", title: field.kind },
+      toggle ?? h("span", { class: "expander" }),
+      h("span", { class: "message-name" }, field.name),
+      value,
+      h("span", { class: "note kind" }, field.kind),
+      numeric ? button(strings.monitor.topics.plot, () => this.plot(path), "tool bare", icon("plot")) : null,
+    );
+    const omitted = h("div", { class: "note" });
+    const made = { element: h("div", {}, head, children), value, children, toggle, omitted };
+    this.rows.set(path, made);
+    return made;
+  }
+
+  private toggle(path: string): void {
+    if (!this.opened.delete(path)) this.opened.add(path);
+    this.fill(this.element, this.fields, "", null);
+  }
+}
+
+const NUMERIC = /^(u?int(8|16|32|64)|float|double|boolean|octet)$/;
+
+function isNumeric({ kind }: MessageField): boolean {
+  return NUMERIC.test(kind);
+}

@@ -1,0 +1,97 @@
+import { button, h } from "../../dom";
+import type { NavigationCommand } from "../../protocol";
+import type { NavigationState } from "../../state/monitor/navigation";
+import { strings } from "../../strings";
+import { whenSeen } from "../../widgets/when-seen";
+import type { Panel } from "../panel";
+
+type Row = "navigation" | "localization" | "goal" | "eta" | "distance" | "taken" | "recoveries";
+
+const ROWS: readonly Row[] = ["navigation", "localization", "goal", "eta", "distance", "taken", "recoveries"];
+
+/** nav2's panel "Navigation 2": states of the nodes, progress of the goal, and commands. */
+export class NavigationPanel implements Panel {
+  readonly id = "navigation";
+  readonly icon = "navigation";
+  readonly element: HTMLElement;
+  private readonly values: Record<Row, HTMLElement>;
+  private readonly buttons: Record<NavigationCommand, HTMLButtonElement>;
+  private readonly problem = h("p", { class: "note wrong", aria: { live: "polite" } });
+
+  constructor(private readonly state: NavigationState) {
+    const words = strings.monitor.navigation;
+    const value = (): HTMLElement => h("output", { class: "navigation-value numeric" });
+    this.values = {
+      navigation: value(),
+      localization: value(),
+      goal: value(),
+      eta: value(),
+      distance: value(),
+      taken: value(),
+      recoveries: value(),
+    };
+    const make = (command: NavigationCommand): HTMLButtonElement =>
+      button(words.hints[command], () => state.command(command), "tool", words.commands[command]);
+    this.buttons = {
+      startup: make("startup"),
+      pause: make("pause"),
+      resume: make("resume"),
+      reset: make("reset"),
+      cancel: make("cancel"),
+    };
+    this.element = h(
+      "div",
+      { class: "panel monitor" },
+      h(
+        "div",
+        { class: "scroll navigation" },
+        h("div", { class: "toolbar navigation-buttons" }, ...Object.values(this.buttons)),
+        h("dl", { class: "navigation-rows" }, ...ROWS.flatMap((row) => [h("dt", { class: "toolbar-label" }, words.rows[row]), h("dd", {}, this.values[row])])),
+        this.problem,
+      ),
+    );
+    state.changed.on(() => this.show());
+    whenSeen(this.element, (seen) => state.setOpen(seen));
+    this.show();
+  }
+
+  private show(): void {
+    const words = strings.monitor.navigation;
+    const { told } = this.state;
+    const put = (row: Row, text: string, kind = ""): void => {
+      this.values[row].textContent = text;
+      this.values[row].dataset["state"] = kind;
+    };
+    const seconds = (value: number | null | undefined): string => (value === null || value === undefined ? words.none : words.duration(value));
+    for (const manager of ["navigation", "localization"] as const) {
+      const state = told?.[manager] ?? "unknown";
+      put(manager, words.states[state], state);
+    }
+    const goal = told?.goal ?? "none";
+    put("goal", words.goals[goal], goal);
+    put("eta", seconds(told?.eta));
+    put("taken", seconds(told?.taken));
+    put("distance", told?.distance === null || told?.distance === undefined ? words.none : `${told.distance.toFixed(2)} m`);
+    put("recoveries", told?.recoveries === null || told?.recoveries === undefined ? words.none : String(told.recoveries));
+    this.problem.textContent = told?.problem ?? "";
+    this.enable();
+  }
+
+  /** A button can be pressed when what it does can be done now. */
+  private enable(): void {
+    const { told } = this.state;
+    const managers = told ? [told.navigation, told.localization].filter((state) => state !== "unknown") : [];
+    const active = managers.includes("active");
+    const idle = managers.includes("inactive");
+    const can: Record<NavigationCommand, boolean> = {
+      startup: idle,
+      pause: active,
+      resume: idle,
+      reset: active || idle,
+      cancel: told?.goal === "active",
+    };
+    for (const [command, element] of Object.entries(this.buttons) as [NavigationCommand, HTMLButtonElement][]) {
+      element.disabled = !can[command] || told?.busy === true;
+    }
+  }
+}

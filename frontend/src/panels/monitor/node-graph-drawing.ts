@@ -1,0 +1,184 @@
+import { h } from "../../dom";
+import { layered, type PlacedBox, type Route } from "../../state/monitor/graph-layout";
+import type { DrawnGraph, GraphVertex } from "../../state/monitor/graph-model";
+import { PanZoom } from "../../widgets/pan-zoom";
+
+const SVG = "http://www.w3.org/2000/svg";
+const BOX_HEIGHT = 28;
+const PADDING = 24;
+const TEXT_PX = 12;
+
+/** The graph as SVG: dragged, zoomed with the wheel, with one vertex chosen by a click or by keyboard. */
+export class NodeGraphDrawing {
+  readonly element = h("div", { class: "graph-drawing", tabIndex: 0, role: "group" });
+  private readonly scene = make("g", {});
+  private readonly measure = document.createElement("canvas").getContext("2d");
+  private graph: DrawnGraph = { vertices: [], edges: [] };
+  private size: readonly [number, number] = [1, 1];
+  private readonly pan: PanZoom;
+  /** What is shown, also when the graph or the panel changes: what can be read, all of it, or what the user moved to. */
+  private shows: "legible" | "all" | "chosen" = "legible";
+  private boxes: ReadonlyMap<string, PlacedBox> = new Map();
+  private marked: string | null = null;
+
+  constructor(
+    label: string,
+    private readonly chosen: (vertex: GraphVertex | null) => void,
+  ) {
+    this.element.setAttribute("aria-label", label);
+    const svg = make("svg", {});
+    svg.append(arrowHeads(), this.scene);
+    this.element.append(svg);
+    this.pan = new PanZoom(this.element, (x, y, scale) => this.moved(x, y, scale), () => this.fit());
+    this.element.addEventListener("click", (event) => this.clicked(event.target as Element));
+    this.element.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") chosen(null);
+    });
+    new ResizeObserver(() => {
+      this.place();
+    }).observe(this.element);
+  }
+
+  /** Draws a graph; the view stays where the user moved it. */
+  show(graph: DrawnGraph): void {
+    this.graph = graph;
+    if (this.measure) this.measure.font = `12px ${getComputedStyle(document.body).fontFamily}`;
+    const boxes = graph.vertices.map((vertex) => ({ id: vertex.id, width: this.widthOf(vertex), height: BOX_HEIGHT }));
+    const layout = layered(boxes, graph.edges);
+    this.size = [layout.width, layout.height];
+    this.boxes = layout.boxes;
+    const vertices = new Map(graph.vertices.map((vertex) => [vertex.id, vertex]));
+    const edges = layout.routes.map((route) => drawRoute(route, this.topicsOf(route)));
+    const shapes = [...layout.boxes.values()].map((box) => this.drawBox(box, vertices.get(box.id)));
+    this.scene.replaceChildren(...edges, ...shapes);
+    this.place();
+  }
+
+  /** Marks a vertex, what it is connected with, and the edges between; null marks nothing. */
+  mark(id: string | null): void {
+    this.marked = id;
+    const { edges } = this.graph;
+    const near = new Set(edges.flatMap(({ from, to }) => (from === id ? [to] : to === id ? [from] : [])));
+    this.element.classList.toggle("marked", id !== null);
+    for (const shape of this.scene.querySelectorAll<SVGElement>("[data-id]")) {
+      const own = shape.dataset["id"] ?? "";
+      shape.classList.toggle("chosen", own === id);
+      shape.classList.toggle("near", near.has(own));
+      shape.setAttribute("aria-pressed", String(own === id));
+    }
+    for (const edge of this.scene.querySelectorAll<SVGElement>("[data-from]")) {
+      edge.classList.toggle("near", id !== null && (edge.dataset["from"] === id || edge.dataset["to"] === id));
+    }
+  }
+
+  /** Shows all of it. */
+  fit(): void {
+    if (this.element.clientWidth === 0) return;
+    this.pan.show(...this.size);
+    this.shows = "all";
+  }
+
+  private place(): void {
+    if (this.shows === "all") this.fit();
+    if (this.shows !== "legible" || this.element.clientWidth === 0) return;
+    const box = this.boxes.get(this.marked ?? "") ?? this.busiest();
+    this.pan.open(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
+    this.shows = "legible";
+  }
+
+  /** The vertex with the most edges. */
+  private busiest(): PlacedBox | undefined {
+    const degrees = new Map<string, number>();
+    for (const id of this.graph.edges.flatMap(({ from, to }) => [from, to])) degrees.set(id, (degrees.get(id) ?? 0) + 1);
+    const [first] = [...degrees].sort(([, a], [, b]) => b - a);
+    return this.boxes.get(first?.[0] ?? "");
+  }
+
+  private drawBox(box: PlacedBox, vertex: GraphVertex | undefined): SVGElement {
+    const shape = make("g", {
+      class: "vertex",
+      "data-kind": vertex?.kind ?? "node",
+      transform: `translate(${box.x - box.width / 2} ${box.y - box.height / 2})`,
+      tabindex: "0",
+      role: "button",
+      "data-id": box.id,
+    });
+    const round = vertex?.kind === "topic" || vertex?.kind === "action" ? "3" : String(box.height / 2);
+    const text = make("text", { x: String(box.width / 2), y: String(box.height / 2), dy: "0.34em" });
+    text.textContent = labelOf(vertex);
+    shape.append(make("rect", { width: String(box.width), height: String(box.height), rx: round }), text);
+    shape.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      event.stopPropagation();
+      this.chosen(vertex ?? null);
+    });
+    return shape;
+  }
+
+  private topicsOf({ from, to }: Route): string {
+    const edge = this.graph.edges.find((each) => each.from === from && each.to === to);
+    return edge?.topics.join("\n") ?? "";
+  }
+
+  private widthOf(vertex: GraphVertex): number {
+    const text = labelOf(vertex);
+    return Math.ceil(this.measure?.measureText(text).width ?? text.length * 7) + PADDING;
+  }
+
+  private clicked(target: Element): void {
+    if (this.pan.dragged) return;
+    const id = target.closest<SVGElement>("[data-id]")?.dataset["id"];
+    this.chosen(this.graph.vertices.find((vertex) => vertex.id === id) ?? null);
+  }
+
+  private moved(x: number, y: number, scale: number): void {
+    this.shows = "chosen";
+    this.scene.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
+  }
+}
+
+function labelOf(vertex: GraphVertex | undefined): string {
+  if (!vertex) return "";
+  return vertex.kind === "group" ? `${vertex.label} (${vertex.count})` : vertex.label;
+}
+
+function drawRoute({ from, to, points }: Route, topics: string): SVGElement {
+  const [first, ...rest] = points;
+  let [x, y] = first ?? [0, 0];
+  let path = `M${x} ${y}`;
+  for (const [nextX, nextY] of rest) {
+    const bend = (nextX - x) / 2;
+    path += `C${x + bend} ${y} ${nextX - bend} ${nextY} ${nextX} ${nextY}`;
+    [x, y] = [nextX, nextY];
+  }
+  const edge = make("path", { class: "edge", d: path, "data-from": from, "data-to": to, "marker-end": "url(#graph-arrow)" });
+  if (topics !== "") {
+    const title = make("title", {});
+    title.textContent = topics;
+    edge.append(title);
+  }
+  return edge;
+}
+
+function arrowHeads(): SVGElement {
+  const marker = make("marker", {
+    id: "graph-arrow",
+    viewBox: "0 0 8 8",
+    refX: "7.5",
+    refY: "4",
+    markerWidth: "7",
+    markerHeight: "7",
+    orient: "auto",
+  });
+  marker.append(make("path", { d: "M0 1L8 4L0 7z", class: "arrow-head" }));
+  const defs = make("defs", {});
+  defs.append(marker);
+  return defs;
+}
+
+function make<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Readonly<Record<string, string>>): SVGElementTagNameMap[K] {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  return element;
+}

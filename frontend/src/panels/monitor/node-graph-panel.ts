@@ -1,0 +1,130 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import { drawnGraph, type GraphMode, type GraphOptions, type GraphVertex } from "../../state/monitor/graph-model";
+import type { NodeGraphState } from "../../state/monitor/node-graph";
+import { strings } from "../../strings";
+import { choice, tickBox } from "../../widgets/controls";
+import { whenSeen } from "../../widgets/when-seen";
+import type { Panel } from "../panel";
+import { NodeGraphDrawing } from "./node-graph-drawing";
+
+/** What rqt_graph shows: who publishes what, and who subscribes to it. */
+export class NodeGraphPanel implements Panel {
+  readonly id = "graph";
+  readonly icon = "graph";
+  readonly element: HTMLElement;
+  private readonly drawing: NodeGraphDrawing;
+  private readonly details = h("div", { class: "graph-details", aria: { live: "polite" } });
+  private readonly empty = h("p", { class: "empty" }, strings.monitor.graph.none);
+  private readonly options: GraphOptions & { openGroups: Set<string> } = {
+    mode: "active",
+    debug: false,
+    tf: true,
+    grouped: false,
+    openGroups: new Set<string>(),
+  };
+  private chosen: string | null = null;
+
+  constructor(private readonly state: NodeGraphState) {
+    const words = strings.monitor.graph;
+    this.drawing = new NodeGraphDrawing(words.label, (vertex) => this.choose(vertex));
+    const modes: [GraphMode, string][] = [
+      ["nodes", words.modes.nodes],
+      ["active", words.modes.active],
+      ["all", words.modes.all],
+    ];
+    const mode = choice(words.mode, modes, (value) => {
+      this.options.mode = value;
+      this.show();
+    });
+    mode.value = this.options.mode;
+    const tick = (name: "debug" | "tf" | "grouped", text: string, hint: string): HTMLElement => {
+      const label = tickBox(text, hint, (ticked) => {
+        this.options[name] = ticked;
+        this.options.openGroups.clear();
+        this.show();
+      });
+      label.box.checked = this.options[name];
+      return label;
+    };
+    const bar = h(
+      "div",
+      { class: "toolbar" },
+      mode,
+      tick("tf", words.tf, words.tfHint),
+      tick("debug", words.debug, words.debugHint),
+      tick("grouped", words.groups, words.groupsHint),
+      h("span", { class: "spacer" }),
+      button(words.fitHint, () => this.drawing.fit(), "tool", icon("center"), words.fit),
+    );
+    const stage = h("div", { class: "graph-stage" }, this.empty);
+    stage.append(this.drawing.element);
+    this.element = h("div", { class: "panel monitor" }, bar, stage, this.details);
+    state.changed.on(() => this.show());
+    whenSeen(this.element, (seen) => state.watch(seen));
+    this.show();
+  }
+
+  private show(): void {
+    const graph = drawnGraph(this.state.graph, this.options);
+    this.empty.hidden = graph.vertices.length > 0;
+    this.drawing.show(graph);
+    if (!graph.vertices.some(({ id }) => id === this.chosen)) this.chosen = null;
+    this.drawing.mark(this.chosen);
+    this.showDetails();
+  }
+
+  private choose(vertex: GraphVertex | null): void {
+    if (vertex?.kind === "group") {
+      this.options.openGroups.add(vertex.label.slice(0, -1));
+      this.show();
+      return;
+    }
+    this.chosen = vertex?.id === this.chosen ? null : (vertex?.id ?? null);
+    this.drawing.mark(this.chosen);
+    this.showDetails();
+  }
+
+  private showDetails(): void {
+    const words = strings.monitor.graph;
+    const [kind, name] = split(this.chosen);
+    const { topics } = this.state.graph;
+    const list = (text: string, names: readonly string[]): HTMLElement | null =>
+      names.length === 0
+        ? null
+        : h("div", { class: "graph-list" }, h("span", { class: "note" }, text), h("span", {}, names.join(", ")));
+    if (kind === "node") {
+      const publishes = topics.filter((topic) => topic.publishers.includes(name)).map((topic) => topic.name);
+      const subscribes = topics.filter((topic) => topic.subscribers.includes(name)).map((topic) => topic.name);
+      this.fill(h("strong", {}, name), list(words.publishes, publishes), list(words.subscribes, subscribes));
+    } else if (kind === "topic") {
+      const topic = topics.find((each) => each.name === name);
+      const types = h("code", { class: "code" }, topic?.types.join(", ") ?? "");
+      const title = h("strong", {}, name, " ", types);
+      const ends = [
+        list(words.publishedBy, topic?.publishers ?? []),
+        list(words.subscribedBy, topic?.subscribers ?? []),
+      ] as const;
+      this.fill(title, ...ends);
+    } else this.fill(h("span", { class: "note" }, words.hint));
+  }
+
+  private fill(...children: readonly (HTMLElement | null)[]): void {
+    const close = button(
+      strings.monitor.graph.closeGroups,
+      () => {
+        this.options.openGroups.clear();
+        this.show();
+      },
+      "tool",
+      strings.monitor.graph.closeGroups,
+    );
+    const opened = this.options.openGroups.size > 0 ? close : null;
+    this.details.replaceChildren(...[...children, opened].filter((child) => child !== null));
+  }
+}
+
+function split(id: string | null): [string, string] {
+  const at = id?.indexOf(":") ?? -1;
+  return id === null ? ["", ""] : [id.slice(0, at), id.slice(at + 1)];
+}

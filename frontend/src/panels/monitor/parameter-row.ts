@@ -1,0 +1,118 @@
+import { h } from "../../dom";
+import type { ParameterKind, ParameterRow } from "../../protocol";
+import { parameterText, parameterValues } from "../../state/monitor/parameter-text";
+import { strings } from "../../strings";
+
+/** A parameter with the editor that suits its type. A value is sent when it is done, and stands when the node says so. */
+export class ParameterLine {
+  readonly element: HTMLElement;
+  private readonly editor: HTMLInputElement;
+  private readonly slider: HTMLInputElement | null;
+  private readonly problem = h("div", { class: "parameter-problem", role: "alert" });
+  private row: ParameterRow;
+
+  constructor(
+    row: ParameterRow,
+    private readonly set: (name: string, kind: ParameterKind, values: string[]) => void,
+  ) {
+    const words = strings.monitor.parameters;
+    this.row = row;
+    this.editor = row.kind === "bool" ? h("input", { class: "check" }) : h("input", { class: "field" });
+    this.editor.type = row.kind === "bool" ? "checkbox" : "text";
+    this.editor.spellcheck = false;
+    this.editor.setAttribute("aria-label", row.name);
+    this.editor.disabled = row.read_only || row.kind === "not_set";
+    if (row.kind === "integer" || row.kind === "double") {
+      this.editor.inputMode = "decimal";
+      this.editor.classList.add("numeric");
+    }
+    this.slider = this.makeSlider();
+    this.listen();
+    const range = row.minimum === "" ? "" : words.range(row.minimum, row.maximum, row.step);
+    const hint = [row.description, row.constraints].filter((text) => text !== "").join(" ");
+    const notes = [words.kinds[row.kind], row.read_only ? words.readOnly : "", range].filter((text) => text !== "");
+    this.element = h(
+      "div",
+      { class: "parameter", data: { parameter: row.name }, title: hint },
+      h("div", { class: "parameter-name" }, row.name),
+      h("div", { class: "parameter-value" }, this.editor, this.slider),
+      h("div", { class: "parameter-notes note" }, notes.join(" · "), hint === "" ? "" : h("div", {}, hint)),
+      this.problem,
+    );
+    this.problem.hidden = true;
+    this.show(row);
+  }
+
+  /** Whether this line can show a row: an editor is made for one type. */
+  suits(row: ParameterRow): boolean {
+    const facts = ({ kind, read_only, minimum, maximum, description }: ParameterRow): string =>
+      JSON.stringify([kind, read_only, minimum, maximum, description]);
+    return facts(row) === facts(this.row);
+  }
+
+  /** The value that the node has; what the user is just writing stays. */
+  show(row: ParameterRow): void {
+    this.row = row;
+    if (row.kind === "bool") this.editor.checked = row.values[0] === "true";
+    else if (document.activeElement !== this.editor) this.editor.value = this.text();
+    if (this.slider && document.activeElement !== this.slider) this.slider.value = row.values[0] ?? "0";
+  }
+
+  /** What came of setting it: the value that stands is shown, and the reason of a refusal. */
+  settled(successful: boolean, reason: string): void {
+    this.problem.hidden = successful;
+    this.problem.textContent = successful ? "" : reason || strings.monitor.parameters.refused;
+    this.element.classList.toggle("wrong", !successful);
+    if (successful) return;
+    if (this.row.kind === "bool") this.editor.checked = this.row.values[0] === "true";
+    if (this.slider) this.slider.value = this.row.values[0] ?? "0";
+  }
+
+  private text(): string {
+    return this.row.kind === "not_set" ? strings.monitor.parameters.notSet : parameterText(this.row.kind, this.row.values);
+  }
+
+  private makeSlider(): HTMLInputElement | null {
+    const { kind, minimum, maximum, step, read_only, name } = this.row;
+    const [low, high] = [Number(minimum), Number(maximum)];
+    if (minimum === "" || read_only || !Number.isFinite(high - low) || high <= low) return null;
+    const slider = h("input", { class: "parameter-slider", aria: { label: name } });
+    slider.type = "range";
+    slider.min = minimum;
+    slider.max = maximum;
+    slider.step = step !== "" ? step : kind === "integer" ? "1" : String((high - low) / 200);
+    slider.addEventListener("input", () => (this.editor.value = shortNumber(slider.value)));
+    slider.addEventListener("change", () => this.send([shortNumber(slider.value)]));
+    return slider;
+  }
+
+  private listen(): void {
+    if (this.row.kind === "bool") {
+      this.editor.addEventListener("change", () => this.send([String(this.editor.checked)]));
+      return;
+    }
+    this.editor.addEventListener("change", () => this.take());
+    this.editor.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") {
+        this.editor.value = this.text();
+        this.settled(true, "");
+        this.editor.blur();
+      } else if (event.key === "Enter") this.take();
+    });
+  }
+
+  private take(): void {
+    if (this.editor.value === this.text()) return;
+    const values = parameterValues(this.row.kind, this.editor.value);
+    if (values === null) this.settled(false, strings.monitor.parameters.unreadable);
+    else this.send(values);
+  }
+
+  private send(values: string[]): void {
+    this.set(this.row.name, this.row.kind, values);
+  }
+}
+
+function shortNumber(text: string): string {
+  return String(Number(Number(text).toPrecision(10)));
+}

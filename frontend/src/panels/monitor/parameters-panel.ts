@@ -1,0 +1,109 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { ParametersState } from "../../state/monitor/parameters";
+import { strings } from "../../strings";
+import { textField } from "../../widgets/controls";
+import { saveText } from "../../widgets/save-file";
+import { whenSeen } from "../../widgets/when-seen";
+import type { Panel } from "../panel";
+import { ParameterLine } from "./parameter-row";
+
+/** What rqt_reconfigure shows: the parameters of a node, to be edited. */
+export class ParametersPanel implements Panel {
+  readonly id = "parameters";
+  readonly icon = "parameters";
+  readonly element: HTMLElement;
+  private readonly nodes = h("ul", { class: "node-list", role: "listbox", aria: { label: strings.monitor.parameters.nodes } });
+  private readonly rows = h("div", { class: "parameter-rows" });
+  private readonly note = h("p", { class: "empty" });
+  private readonly dump: HTMLButtonElement;
+  private readonly lines = new Map<string, ParameterLine>();
+  private shownNode: string | null = null;
+  private filter = "";
+
+  constructor(private readonly state: ParametersState) {
+    const words = strings.monitor.parameters;
+    this.dump = button(words.dumpHint, () => state.dump(), "tool", icon("download"), words.dump);
+    const filter = textField(strings.monitor.filter, (text) => {
+      this.filter = text.trim().toLowerCase();
+      this.show();
+    });
+    const bar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), this.dump);
+    const right = h("div", { class: "scroll" }, this.note, this.rows);
+    this.element = h("div", { class: "panel monitor" }, bar, h("div", { class: "parameters" }, this.nodes, right));
+    this.nodes.addEventListener("keydown", (event) => this.keyed(event));
+    state.nodesChanged.on(() => this.showNodes());
+    state.changed.on(() => this.show());
+    state.resultCame.on(({ name, successful, reason }) => this.lines.get(name)?.settled(successful, reason));
+    state.dumpCame.on(({ file, text, error }) => {
+      if (error === null) saveText(file, text, "application/yaml");
+      else this.say(error);
+    });
+    whenSeen(this.element, (seen) => state.watch(seen));
+    this.showNodes();
+    this.show();
+  }
+
+  private showNodes(): void {
+    const { nodes, node } = this.state;
+    const focused = this.nodes.contains(document.activeElement);
+    const items = nodes.map((name) => {
+      const item = h("li", { role: "option", title: name, tabIndex: name === (node ?? nodes[0]) ? 0 : -1 }, name);
+      item.setAttribute("aria-selected", String(name === node));
+      item.addEventListener("click", () => this.choose(name));
+      return item;
+    });
+    const nothing = h("li", { class: "note" }, strings.monitor.parameters.noNodes);
+    this.nodes.replaceChildren(...(items.length > 0 ? items : [nothing]));
+    if (focused) items[nodes.indexOf(node ?? "")]?.focus();
+  }
+
+  private choose(name: string): void {
+    this.state.choose(name);
+    this.showNodes();
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const { nodes } = this.state;
+    const items = [...this.nodes.children] as HTMLElement[];
+    const at = items.indexOf(document.activeElement as HTMLElement);
+    const next = event.key === "ArrowDown" ? at + 1 : event.key === "ArrowUp" ? at - 1 : at;
+    const name = nodes[next];
+    if (name === undefined || at < 0) return;
+    if (next !== at) {
+      this.choose(name);
+      (this.nodes.children[next] as HTMLElement).focus();
+    } else if (event.key === "Enter" || event.key === " ") this.choose(name);
+    else return;
+    event.preventDefault();
+  }
+
+  private show(): void {
+    const words = strings.monitor.parameters;
+    const { node, parameters } = this.state;
+    this.dump.disabled = node === null;
+    if (node !== this.shownNode) {
+      this.lines.clear();
+      this.shownNode = node;
+    }
+    const shown = (parameters?.parameters ?? []).filter(({ name }) => name.toLowerCase().includes(this.filter));
+    const elements = shown.map((row) => {
+      let line = this.lines.get(row.name);
+      if (line?.suits(row) !== true) {
+        line = new ParameterLine(row, (name, kind, values) => this.state.set(name, kind, values));
+        this.lines.set(row.name, line);
+      } else line.show(row);
+      return line.element;
+    });
+    const same = elements.length === this.rows.childElementCount && elements.every((each, at) => each === this.rows.children[at]);
+    if (!same) this.rows.replaceChildren(...elements);
+    if (node === null) this.say(words.choose);
+    else if (parameters === null) this.say(words.asking);
+    else this.say(parameters.error ?? (shown.length === 0 ? words.none : ""));
+  }
+
+  private say(text: string): void {
+    this.note.textContent = text;
+    this.note.hidden = text === "";
+  }
+}

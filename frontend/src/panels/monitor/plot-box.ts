@@ -1,0 +1,145 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import { fieldText, valueText } from "../../state/monitor/field-text";
+import { csvText } from "../../state/monitor/plot-table";
+import type { Plot, PlotsState, Series } from "../../state/monitor/plots";
+import type { TopicsState } from "../../state/monitor/topics";
+import { strings } from "../../strings";
+import { numberField } from "../../widgets/controls";
+import { saveText } from "../../widgets/save-file";
+import { PlotChart, seriesColor } from "./plot-chart";
+import { PlotPicker } from "./plot-picker";
+
+/** One diagram with its series and their values. */
+export class PlotBox {
+  readonly element: HTMLElement;
+  private readonly legend = h("div", { class: "plot-legend" });
+  private readonly pickerBox = h("div", { class: "picker-box" });
+  private readonly range = h("span", { class: "plot-range" });
+  private readonly chart: PlotChart;
+  private readonly values = new Map<Series, HTMLElement>();
+  private picker: PlotPicker | null = null;
+
+  constructor(
+    private readonly state: PlotsState,
+    private readonly topics: TopicsState,
+    readonly plot: Plot,
+  ) {
+    const words = strings.monitor.plot;
+    this.chart = new PlotChart(state, plot, () => this.showValues());
+    const head = h(
+      "header",
+      { class: "plot-head" },
+      this.legend,
+      h("span", { class: "spacer" }),
+      this.range,
+      button(words.addSeries, () => this.pick(), "tool bare", icon("plus")),
+      button(words.csvHintOf, () => this.save(), "tool bare", icon("download")),
+      button(words.removePlot, () => state.removePlot(plot), "tool bare", icon("close")),
+    );
+    const label = { label: words.diagram };
+    this.element = h("section", { class: "plot", aria: label }, head, this.pickerBox, this.chart.element);
+    this.element.addEventListener("dblclick", (event) => {
+      if (this.chart.element.contains(event.target as Node)) state.setPaused(false);
+    });
+    this.show();
+  }
+
+  /** Series, errors or settings changed. */
+  show(): void {
+    const words = strings.monitor.plot;
+    this.values.clear();
+    const chips = this.plot.series.map((series, index) => {
+      const value = h("output", { class: "plot-value" });
+      this.values.set(series, value);
+      const name = fieldText(series);
+      const mark = h("span", { class: "plot-mark" });
+      mark.style.background = seriesColor(index);
+      const remove = button(words.removeSeries(name), () => this.state.removeSeries(this.plot, series), "tool bare", icon("close"));
+      const hint = series.error ?? name;
+      return h("span", { class: series.error === null ? "chip" : "chip wrong", title: hint }, mark, name, value, remove);
+    });
+    if (!this.picker && chips.length === 0) chips.push(h("span", { class: "note" }, words.empty));
+    this.legend.replaceChildren(...chips);
+    this.showRange();
+    this.draw();
+  }
+
+  draw(): void {
+    this.chart.draw();
+    this.showValues();
+  }
+
+  /** Opens the line to write a series into. */
+  pick(): void {
+    if (!this.picker) {
+      this.picker = new PlotPicker(
+        this.state,
+        this.topics,
+        (field) => this.state.addSeries(this.plot, field),
+        () => {
+          this.picker = null;
+          this.show();
+        },
+      );
+      this.pickerBox.replaceChildren(this.picker.element);
+      this.show();
+    }
+    this.picker.focus();
+  }
+
+  dispose(): void {
+    this.picker?.close();
+    this.chart.dispose();
+  }
+
+  private showValues(): void {
+    this.plot.series.forEach((series, index) => {
+      const output = this.values.get(series);
+      const { atCursor } = this.chart;
+      const value = atCursor ? (atCursor[index] ?? null) : series.buffer.lastValue;
+      const text = series.error ?? valueText(value);
+      if (output && output.textContent !== text) output.textContent = text;
+    });
+  }
+
+  private showRange(): void {
+    const words = strings.monitor.plot;
+    const { range } = this.plot;
+    const toggle = button(
+      words.rangeHint,
+      () => this.state.setRange(this.plot, range ? null : this.shownRange()),
+      range ? "tool on" : "tool",
+      range ? words.fixed : words.auto,
+    );
+    toggle.setAttribute("aria-pressed", String(range !== null));
+    this.range.replaceChildren(toggle);
+    if (!range) return;
+    const [low, high] = range;
+    this.range.append(
+      numberField(words.lowest, low, [-Infinity, high], (value) => this.state.setRange(this.plot, [value, high])),
+      numberField(words.highest, high, [low, Infinity], (value) => this.state.setRange(this.plot, [low, value])),
+    );
+  }
+
+  /** The values shown, rounded outwards, to begin a fixed range with. */
+  private shownRange(): [number, number] {
+    const [from, to] = this.state.window ?? [0, 0];
+    const shown = this.plot.series.flatMap(({ buffer }) => {
+      const start = buffer.indexFrom(this.state.source, from);
+      return [...buffer.values.subarray(start, buffer.indexFrom(this.state.source, to) + 1)].filter(Number.isFinite);
+    });
+    if (shown.length === 0) return [-1, 1];
+    const low = shown.reduce((a, b) => Math.min(a, b));
+    const high = shown.reduce((a, b) => Math.max(a, b));
+    return high > low ? [Number(low.toPrecision(3)), Number(high.toPrecision(3))] : [low - 1, high + 1];
+  }
+
+  private save(): void {
+    const { window: shown, source } = this.state;
+    const { series } = this.plot;
+    if (!shown) return;
+    const text = csvText(series.map(fieldText), series.map((each) => each.buffer), source, ...shown);
+    saveText("plot.csv", text, "text/csv");
+  }
+}

@@ -1,0 +1,171 @@
+import type uPlot from "uplot";
+import { h } from "../../dom";
+import { valueText } from "../../state/monitor/field-text";
+import { plotTable } from "../../state/monitor/plot-table";
+import type { Plot, PlotsState } from "../../state/monitor/plots";
+
+const COLORS = 8;
+const AXIS_FONT = "10.5px system-ui, sans-serif";
+const Y_AXIS_PX = 58;
+/** From here on times are points in time, not seconds since a simulation began. */
+const CALENDAR_FROM = 1e8;
+
+/** The colour of the series at a place of a plot, as a CSS variable. */
+export function seriesColor(index: number): string {
+  return `var(--plot-${(index % COLORS) + 1})`;
+}
+
+/** One diagram, drawn by uPlot, which is fetched when the first one is to be seen. */
+export class PlotChart {
+  readonly element = h("div", { class: "plot-canvas" });
+  /** Values under the pointer, by series; null where the pointer is elsewhere. */
+  atCursor: readonly (number | null)[] | null = null;
+  private library: typeof uPlot | null = null;
+  private fetching = false;
+  private chart: uPlot | null = null;
+  private count = -1;
+
+  constructor(
+    private readonly state: PlotsState,
+    private readonly plot: Plot,
+    private readonly cursorMoved: () => void,
+  ) {
+    new ResizeObserver(() => this.resize()).observe(this.element);
+  }
+
+  /** Draws what is in the window now. */
+  draw(): void {
+    const { plot, state } = this;
+    const [width, height] = [this.element.clientWidth, this.element.clientHeight];
+    if (width === 0 || height === 0) return;
+    if (!this.library) {
+      this.fetch();
+      return;
+    }
+    if (this.count !== plot.series.length) this.rebuild(this.library, width, height);
+    const { chart } = this;
+    if (!chart) return;
+    const [from, to] = state.window ?? [0, state.seconds];
+    const columns = Math.max(16, Math.round(width - Y_AXIS_PX));
+    const table = plotTable(plot.series.map((each) => each.buffer), state.source, from, to, columns);
+    chart.batch(() => {
+      chart.setData(table, false);
+      chart.setScale("x", { min: from, max: to });
+      const [low, high] = plot.range ?? rangeOf(table);
+      chart.setScale("y", { min: low, max: high });
+    });
+  }
+
+  dispose(): void {
+    this.chart?.destroy();
+    this.chart = null;
+    this.count = -1;
+  }
+
+  private resize(): void {
+    const [width, height] = [this.element.clientWidth, this.element.clientHeight];
+    if (width === 0 || height === 0) return;
+    this.chart?.setSize({ width, height });
+    this.draw();
+  }
+
+  private fetch(): void {
+    if (this.fetching) return;
+    this.fetching = true;
+    import("./plot-library").then(
+      ({ UPlot }) => {
+        this.library = UPlot;
+        this.draw();
+      },
+      // The program has ended: when it is there again, the next values ask once more.
+      () => (this.fetching = false),
+    );
+  }
+
+  private rebuild(Chart: typeof uPlot, width: number, height: number): void {
+    this.dispose();
+    this.count = this.plot.series.length;
+    const color = (name: string) => () => getComputedStyle(this.element).getPropertyValue(name).trim();
+    const axis: uPlot.Axis = {
+      stroke: color("--text-faint"),
+      font: AXIS_FONT,
+      grid: { stroke: color("--line"), width: 1 },
+      ticks: { show: false },
+    };
+    this.chart = new Chart(
+      {
+        width,
+        height,
+        legend: { show: false },
+        padding: [8, 28, 0, 0],
+        cursor: { sync: { key: "plots" }, drag: { x: true, y: false, setScale: false }, points: { size: 5 } },
+        scales: { x: { time: false, auto: false }, y: { auto: false } },
+        series: [
+          {},
+          ...this.plot.series.map((_, index) => ({
+            stroke: color(`--plot-${(index % COLORS) + 1}`),
+            width: 1.4,
+            points: { show: false },
+            // A value for each column is not missing because another series has times in between.
+            spanGaps: false,
+          })),
+        ],
+        axes: [
+          { ...axis, size: 24, space: 70, values: (_, times) => times.map(timeText) },
+          { ...axis, size: Y_AXIS_PX, values: (_, values) => values.map((value) => valueText(value)) },
+        ],
+        hooks: {
+          setCursor: [(chart) => this.read(chart)],
+          setSelect: [(chart) => this.select(chart)],
+        },
+      },
+      undefined,
+      this.element,
+    );
+  }
+
+  private read(chart: uPlot): void {
+    const { left } = chart.cursor;
+    if (left === undefined || left < 0) {
+      this.atCursor = null;
+    } else {
+      const time = chart.posToVal(left, "x");
+      this.atCursor = this.plot.series.map(({ buffer }) => {
+        const index = buffer.indexFrom(this.state.source, time);
+        return buffer.values[Math.max(0, index - 1)] ?? null;
+      });
+    }
+    this.cursorMoved();
+  }
+
+  private select(chart: uPlot): void {
+    const { left, width } = chart.select;
+    if (width < 4) return;
+    this.state.hold(chart.posToVal(left, "x"), chart.posToVal(left + width, "x"));
+    chart.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+  }
+}
+
+/** Least and greatest value of a table, with some room; values that are all equal stand in the middle. */
+function rangeOf([, ...columns]: ReturnType<typeof plotTable>): [number, number] {
+  let [low, high] = [Infinity, -Infinity];
+  for (const column of columns) {
+    for (const value of column) {
+      if (value === null || value === undefined) continue;
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  if (low > high) return [-1, 1];
+  const room = high > low ? (high - low) * 0.06 : Math.max(1e-3, Math.abs(low) * 0.1);
+  return [low - room, high + room];
+}
+
+/** A time on the axis: the time of day, or seconds where it is no date. */
+function timeText(time: number): string {
+  if (time < CALENDAR_FROM) return `${Number(time.toFixed(3))} s`;
+  const whole = new Date(time * 1000);
+  const parts = [whole.getHours(), whole.getMinutes(), whole.getSeconds()].map((each) => String(each).padStart(2, "0"));
+  const rest = Math.round((time % 1) * 1000) / 1000;
+  return parts.join(":") + (rest > 0 && rest < 1 ? String(rest).slice(1) : "");
+}

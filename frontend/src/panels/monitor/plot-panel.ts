@@ -1,0 +1,98 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { Plot, PlotsState } from "../../state/monitor/plots";
+import type { TimeSource } from "../../state/monitor/series-buffer";
+import type { TopicsState } from "../../state/monitor/topics";
+import { strings } from "../../strings";
+import { choice } from "../../widgets/controls";
+import type { Panel } from "../panel";
+import { PlotBox } from "./plot-box";
+
+const WINDOWS = [5, 10, 30, 60, 120, 300, 600];
+
+/** Diagrams of numbers of any topic. */
+export class PlotPanel implements Panel {
+  readonly id = "plot";
+  readonly icon = "plot";
+  readonly element: HTMLElement;
+  private readonly list = h("div", { class: "plots" });
+  private readonly boxes = new Map<Plot, PlotBox>();
+  private readonly pause: HTMLButtonElement;
+  private readonly seconds: HTMLSelectElement;
+  private readonly source: HTMLSelectElement;
+
+  constructor(
+    private readonly state: PlotsState,
+    private readonly topics: TopicsState,
+  ) {
+    const words = strings.monitor.plot;
+    this.pause = button(words.pauseHint, () => state.setPaused(!state.paused), "tool", strings.monitor.pause);
+    const seconds = WINDOWS.map((count) => [String(count), words.seconds(count)] as const);
+    this.seconds = choice(words.windowHint, seconds, (count) => state.setSeconds(Number(count)));
+    const sources: [TimeSource, string][] = [
+      ["received", words.sources.received],
+      ["stamp", words.sources.stamp],
+    ];
+    this.source = choice(words.sourceHint, sources, (source) => state.setSource(source));
+    const bar = h(
+      "div",
+      { class: "toolbar" },
+      button(words.addPlotHint, () => this.add(), "tool", icon("plus"), words.addPlot),
+      this.pause,
+      button(words.clearHint, () => state.clear(), "tool", icon("clear"), strings.monitor.clear),
+      h("span", { class: "spacer" }),
+      h("label", { class: "named" }, words.window, this.seconds),
+      h("label", { class: "named" }, words.source, this.source),
+    );
+    this.element = h("div", { class: "panel monitor" }, bar, this.list);
+    state.changed.on(() => this.show());
+    const draw = coalesced(() => this.draw());
+    state.moved.on(draw);
+    // The colours of a picture that stands still change with the theme too.
+    new MutationObserver(draw).observe(document.documentElement, { attributeFilter: ["data-theme"] });
+    this.show();
+  }
+
+  opened(): void {
+    if (this.state.plots.length === 0) this.state.addPlot();
+    this.state.setOpen(true);
+  }
+
+  closed(): void {
+    this.state.setOpen(false);
+  }
+
+  private add(): void {
+    const plot = this.state.addPlot();
+    this.boxes.get(plot)?.pick();
+  }
+
+  private show(): void {
+    const { plots, paused } = this.state;
+    for (const [plot, box] of this.boxes) {
+      if (plots.includes(plot)) {
+        box.show();
+        continue;
+      }
+      box.dispose();
+      box.element.remove();
+      this.boxes.delete(plot);
+    }
+    for (const plot of plots) {
+      if (this.boxes.has(plot)) continue;
+      const box = new PlotBox(this.state, this.topics, plot);
+      this.boxes.set(plot, box);
+      this.list.append(box.element);
+    }
+    const words = strings.monitor;
+    this.pause.replaceChildren(icon(paused ? "play" : "pause"), paused ? words.resume : words.pause);
+    this.pause.title = paused ? words.plot.resumeHint : words.plot.pauseHint;
+    this.pause.classList.toggle("on", paused);
+    this.seconds.value = String(this.state.seconds);
+    this.source.value = this.state.source;
+  }
+
+  private draw(): void {
+    for (const box of this.boxes.values()) box.draw();
+  }
+}

@@ -1,0 +1,160 @@
+import { h } from "../../dom";
+import type { TopicFields } from "../../protocol";
+import { fieldText, parseField, type FieldName } from "../../state/monitor/field-text";
+import type { PlotsState } from "../../state/monitor/plots";
+import type { TopicsState } from "../../state/monitor/topics";
+import { strings } from "../../strings";
+
+const MOST_OFFERED = 200;
+
+interface Offer {
+  text: string;
+  note: string;
+  /** Whether choosing it ends the choice: it is a field, not a topic. */
+  final: boolean;
+}
+
+/** A line to write a topic and its field into, with all that fit offered below. */
+export class PlotPicker {
+  readonly element: HTMLElement;
+  private readonly input = h("input", { class: "field", role: "combobox", aria: { autocomplete: "list" } });
+  private readonly list = h("ul", { class: "picker-list", role: "listbox" });
+  private offers: Offer[] = [];
+  private active = 0;
+  private fields: TopicFields | null = null;
+  private asked: string | null = null;
+  private readonly forget: (() => void)[];
+
+  constructor(
+    private readonly plots: PlotsState,
+    private readonly topics: TopicsState,
+    private readonly chosen: (field: FieldName) => void,
+    private readonly closed: () => void,
+  ) {
+    const words = strings.monitor.plot;
+    this.input.placeholder = words.choose;
+    for (const each of [this.input, this.list]) each.setAttribute("aria-label", words.choose);
+    this.list.id = "picker-list";
+    this.input.setAttribute("aria-controls", this.list.id);
+    this.input.setAttribute("aria-expanded", "true");
+    this.input.spellcheck = false;
+    this.input.addEventListener("input", () => this.typed());
+    this.input.addEventListener("keydown", (event) => this.keyed(event));
+    this.input.addEventListener("blur", () => this.close());
+    // The list must not take the focus from the line.
+    this.list.addEventListener("pointerdown", (event) => event.preventDefault());
+    this.element = h("div", { class: "picker" }, this.input, this.list);
+    topics.list(this, true);
+    this.forget = [
+      topics.listChanged.on(() => this.offer()),
+      plots.fieldsTold.on((fields) => {
+        if (fields.topic !== this.asked) return;
+        this.fields = fields;
+        this.offer();
+      }),
+    ];
+    this.offer();
+  }
+
+  focus(): void {
+    this.input.focus();
+  }
+
+  close(): void {
+    if (this.forget.length === 0) return;
+    for (const forget of this.forget.splice(0)) forget();
+    this.topics.list(this, false);
+    this.plots.askFields(null);
+    this.element.remove();
+    this.closed();
+  }
+
+  private typed(): void {
+    const topic = this.topicWritten();
+    if (topic !== this.asked) {
+      this.asked = topic;
+      this.fields = null;
+      this.plots.askFields(topic);
+    }
+    this.active = 0;
+    this.offer();
+  }
+
+  /** The topic whose fields are to be offered: the one before the dot. */
+  private topicWritten(): string | null {
+    const at = this.input.value.indexOf(".");
+    return at > 0 ? this.input.value.slice(0, at).trim() : null;
+  }
+
+  private offer(): void {
+    const written = this.input.value.trim().toLowerCase();
+    this.offers =
+      this.asked === null
+        ? this.topics.topics.map(({ name, types }) => ({ text: name, note: types.join(", "), final: false }))
+        : (this.fields?.fields ?? []).map(({ path, kind }) => ({
+            text: fieldText({ topic: this.asked ?? "", path }),
+            note: kind,
+            final: true,
+          }));
+    this.offers = this.offers.filter(({ text }) => text.toLowerCase().includes(written)).slice(0, MOST_OFFERED);
+    this.active = Math.min(this.active, Math.max(0, this.offers.length - 1));
+    this.show();
+  }
+
+  private show(): void {
+    const words = strings.monitor.plot;
+    const rows = this.offers.map((offer, index) => {
+      const row = h("li", { role: "option" }, h("span", {}, offer.text), h("span", { class: "note" }, offer.note));
+      row.id = `picker-${index}`;
+      row.setAttribute("aria-selected", String(index === this.active));
+      row.addEventListener("click", () => this.choose(offer));
+      return row;
+    });
+    const nothing = this.asked === null ? (this.topics.known ? words.noTopics : words.asking) : this.fields ? (this.fields.error ?? words.noFields) : words.waiting;
+    this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, nothing)]));
+    this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.active}` : "");
+    rows[this.active]?.scrollIntoView({ block: "nearest" });
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const last = this.offers.length - 1;
+    if (event.key === "ArrowDown") this.active = Math.min(last, this.active + 1);
+    else if (event.key === "ArrowUp") this.active = Math.max(0, this.active - 1);
+    else if (event.key === "Enter") this.enter();
+    else if (event.key === "Tab" && this.offers[this.active]?.final === false) this.choose(this.offers[this.active]);
+    else if (event.key === "Escape") this.close();
+    else {
+      event.stopPropagation();
+      return;
+    }
+    event.preventDefault();
+    event.stopPropagation();
+    if (this.forget.length > 0) this.show();
+  }
+
+  /** A field that is written out counts, offered or not: arrays have more elements than are offered. */
+  private enter(): void {
+    const field = parseField(this.input.value);
+    const offer = this.offers[this.active];
+    const written = this.offers.find(({ text }) => text === this.input.value.trim());
+    if (offer && !written) this.choose(offer);
+    else if (field) this.take(field);
+    else if (offer) this.choose(offer);
+  }
+
+  private choose(offer: Offer | undefined): void {
+    if (!offer) return;
+    const field = offer.final ? parseField(offer.text) : null;
+    if (field) {
+      this.take(field);
+      return;
+    }
+    this.input.value = `${offer.text}.`;
+    this.typed();
+  }
+
+  private take(field: FieldName): void {
+    this.chosen(field);
+    this.close();
+  }
+}

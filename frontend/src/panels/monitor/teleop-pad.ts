@@ -1,0 +1,114 @@
+import { h } from "../../dom";
+import type { TeleopState } from "../../state/monitor/teleop";
+import { motionOfKey, STILL, together, type Motion } from "../../state/monitor/teleop-keys";
+import { strings } from "../../strings";
+
+const FASTER = 1.1;
+
+/** The square that drives: up is forward, left turns to the left. Keys drive while it has the focus. */
+export class TeleopPad {
+  readonly element: HTMLElement;
+  private readonly knob = h("div", { class: "pad-knob" });
+  private readonly held = new Map<string, Motion>();
+  private pointer: number | null = null;
+
+  constructor(private readonly state: TeleopState) {
+    const words = strings.monitor.teleop;
+    this.element = h(
+      "div",
+      { class: "pad", tabIndex: 0, role: "application", title: words.keys, aria: { label: words.pad } },
+      h("div", { class: "pad-cross" }),
+      this.knob,
+    );
+    const { element } = this;
+    element.addEventListener("pointerdown", (event) => this.grabbed(event));
+    element.addEventListener("pointermove", (event) => this.dragged(event));
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+      element.addEventListener(end, () => this.released());
+    }
+    element.addEventListener("keydown", (event) => this.pressed(event));
+    element.addEventListener("keyup", (event) => {
+      if (this.held.delete(event.code)) this.moveKeys();
+    });
+    // Whoever looks elsewhere lets go of everything.
+    element.addEventListener("blur", () => this.letGo());
+    window.addEventListener("blur", () => this.letGo());
+    window.addEventListener("pagehide", () => this.letGo());
+    document.addEventListener("visibilitychange", () => {
+      if (document.hidden) this.letGo();
+    });
+    state.changed.on(() => this.show());
+    this.show();
+  }
+
+  letGo(): void {
+    this.held.clear();
+    this.pointer = null;
+    this.state.stop();
+  }
+
+  private show(): void {
+    const { x, turn, y } = this.state.motion;
+    const side = turn !== 0 ? turn : y;
+    this.knob.style.left = `${50 - 42 * side}%`;
+    this.knob.style.top = `${50 - 42 * x}%`;
+    this.element.classList.toggle("driving", x !== 0 || side !== 0);
+  }
+
+  private grabbed(event: PointerEvent): void {
+    if (event.button !== 0 || this.pointer !== null) return;
+    this.element.focus();
+    this.element.setPointerCapture(event.pointerId);
+    this.pointer = event.pointerId;
+    this.dragged(event);
+    event.preventDefault();
+  }
+
+  private dragged(event: PointerEvent): void {
+    if (event.pointerId !== this.pointer) return;
+    const box = this.element.getBoundingClientRect();
+    const part = (value: number, start: number, length: number): number =>
+      Math.min(1, Math.max(-1, (1 - (2 * (value - start)) / length) / 0.84));
+    const forward = part(event.clientY, box.top, box.height);
+    const left = part(event.clientX, box.left, box.width);
+    // Pressing the middle means nothing yet: a hand rests there.
+    const motion = { ...STILL, x: dead(forward), [event.shiftKey ? "y" : "turn"]: dead(left) };
+    this.state.move("pad", motion);
+  }
+
+  private released(): void {
+    if (this.pointer === null) return;
+    this.pointer = null;
+    this.state.move("pad", STILL);
+  }
+
+  private pressed(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const motion = motionOfKey(event.key, event.shiftKey);
+    if (motion) {
+      if (!event.repeat) {
+        this.held.set(event.code, motion);
+        this.moveKeys();
+      }
+    } else if (event.key === " " || event.key === "k" || event.key === "K") this.letGo();
+    else if (event.key === "q" || event.key === "Q") this.scale(FASTER);
+    else if (event.key === "z" || event.key === "Z") this.scale(1 / FASTER);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  private moveKeys(): void {
+    this.state.move("keys", together(this.held.values()));
+  }
+
+  private scale(factor: number): void {
+    const { linear, angular } = this.state.settings;
+    const scaled = (value: number): number => Number((value * factor).toPrecision(3));
+    this.state.configure({ linear: scaled(linear), angular: scaled(angular) });
+  }
+}
+
+function dead(value: number): number {
+  return Math.abs(value) < 0.06 ? 0 : value;
+}

@@ -1,0 +1,118 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { TwistKind } from "../../protocol";
+import { valueText } from "../../state/monitor/field-text";
+import type { TeleopState } from "../../state/monitor/teleop";
+import { strings } from "../../strings";
+import { choice, numberField, tickBox } from "../../widgets/controls";
+import { whenSeen } from "../../widgets/when-seen";
+import type { Panel } from "../panel";
+import { TeleopGamepad } from "./teleop-gamepad";
+import { TeleopPad } from "./teleop-pad";
+
+const RATES = [10, 15, 20];
+const FASTEST = 1000;
+
+/** Drives a robot by keyboard, touch or gamepad. */
+export class TeleopPanel implements Panel {
+  readonly id = "teleop";
+  readonly icon = "teleop";
+  readonly element: HTMLElement;
+  private readonly pad: TeleopPad;
+  private readonly gamepad: TeleopGamepad;
+  private readonly aim = h("div", { class: "teleop-aim", aria: { live: "polite" } });
+  private readonly velocity = h("output", { class: "teleop-velocity numeric" });
+  /** Both are laid out and one is seen: a click must not move what is clicked. */
+  private readonly focus = {
+    active: h("span", {}, strings.monitor.teleop.active),
+    inactive: h("span", {}, strings.monitor.teleop.inactive),
+  };
+  private readonly gamepadName = h("span", { class: "note" });
+  private readonly limits: Record<"linear" | "angular", HTMLInputElement>;
+  private seen = false;
+
+  constructor(private readonly state: TeleopState) {
+    const words = strings.monitor.teleop;
+    const { settings } = state;
+    this.pad = new TeleopPad(state);
+    this.gamepad = new TeleopGamepad(state, (name) => (this.gamepadName.textContent = name ?? words.noGamepad));
+    this.limits = {
+      linear: numberField(words.linearHint, settings.linear, [0, FASTEST], (linear) => state.configure({ linear })),
+      angular: numberField(words.angularHint, settings.angular, [0, FASTEST], (angular) => state.configure({ angular })),
+    };
+    const stop = button(words.stopHint, () => this.pad.letGo(), "tool stop", icon("stop"), words.stop);
+    const focus = h("div", { class: "note teleop-focus" }, this.focus.active, this.focus.inactive);
+    const side = h("div", { class: "teleop-side" }, this.velocity, stop, focus, h("p", { class: "note" }, words.keys));
+    this.element = h(
+      "div",
+      { class: "panel monitor" },
+      h("div", { class: "scroll teleop" }, h("div", { class: "teleop-main" }, this.pad.element, side), this.aim, this.form()),
+    );
+    for (const event of ["focus", "blur"]) this.pad.element.addEventListener(event, () => this.showFocus());
+    state.changed.on(() => this.show());
+    whenSeen(this.element, (seen) => {
+      this.seen = seen;
+      if (!seen) this.pad.letGo();
+      state.setOpen(seen);
+      this.gamepad.run(seen && state.settings.gamepad);
+    });
+    this.show();
+    this.showFocus();
+  }
+
+  private form(): HTMLElement {
+    const words = strings.monitor.teleop;
+    const { settings } = this.state;
+    const topic = h("input", { class: "field", aria: { label: words.topic } });
+    const frame = h("input", { class: "field", title: words.frameHint, aria: { label: words.frameHint } });
+    topic.value = settings.topic;
+    frame.value = settings.frameId;
+    topic.addEventListener("change", () => this.state.configure({ topic: topic.value.trim() }));
+    frame.addEventListener("change", () => this.state.configure({ frameId: frame.value.trim() }));
+    const kinds = (["auto", "Twist", "TwistStamped"] as const).map((kind) => [kind, words.types[kind]] as const);
+    const kind = choice<TwistKind>(words.type, kinds, (chosen) => this.state.configure({ kind: chosen }));
+    kind.value = settings.kind;
+    const rates = RATES.map((rate) => [String(rate), words.hertz(rate)] as const);
+    const rate = choice(words.rateHint, rates, (chosen) => this.state.configure({ rate: Number(chosen) }));
+    rate.value = String(settings.rate);
+    const gamepad = tickBox(words.gamepad, words.gamepadHint, (ticked) => {
+      this.state.configure({ gamepad: ticked });
+      this.gamepad.run(ticked && this.seen);
+      if (!ticked) this.gamepadName.textContent = "";
+    });
+    gamepad.box.checked = settings.gamepad;
+    const row = (text: string, ...parts: readonly (HTMLElement | string)[]): HTMLElement =>
+      h("label", { class: "teleop-row" }, h("span", { class: "toolbar-label" }, text), h("span", {}, ...parts));
+    return h(
+      "div",
+      { class: "teleop-form" },
+      row(words.linear, this.limits.linear, h("span", { class: "unit" }, words.linearUnit)),
+      row(words.angular, this.limits.angular, h("span", { class: "unit" }, words.angularUnit)),
+      row(words.topic, topic),
+      row(words.type, kind),
+      row(words.frame, frame),
+      row(words.rate, rate),
+      h("div", { class: "teleop-row" }, gamepad, this.gamepadName),
+    );
+  }
+
+  private show(): void {
+    const words = strings.monitor.teleop;
+    const { aim, settings, motion } = this.state;
+    const { linear, angular } = settings;
+    if (document.activeElement !== this.limits.linear) this.limits.linear.value = String(linear);
+    if (document.activeElement !== this.limits.angular) this.limits.angular.value = String(angular);
+    this.aim.textContent = aim === null ? "" : (aim.error ?? `${aim.topic}: ${words.listeners(aim.subscribers, aim.kind)}`);
+    this.aim.classList.toggle("wrong", (aim?.error ?? null) !== null);
+    const parts = [`${valueText(motion.x * linear)} m/s`];
+    if (motion.y !== 0) parts.push(`y ${valueText(motion.y * linear)} m/s`);
+    if (motion.z !== 0) parts.push(`z ${valueText(motion.z * linear)} m/s`);
+    this.velocity.replaceChildren(...[...parts, `${valueText(motion.turn * angular)} rad/s`].map((text) => h("div", {}, text)));
+  }
+
+  private showFocus(): void {
+    const active = document.activeElement === this.pad.element;
+    this.focus.active.classList.toggle("unseen", !active);
+    this.focus.inactive.classList.toggle("unseen", active);
+  }
+}

@@ -1,0 +1,81 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
+import { bandwidthText, clockText, rateText } from "../../state/monitor/figure-text";
+import { strings } from "../../strings";
+import { MessageTree } from "./message-tree";
+
+/** What a row of the topic monitor tells of the user. */
+export interface TopicRowEvents {
+  measured(topic: string, ticked: boolean): void;
+  opened(topic: string, open: boolean): void;
+  plotted(topic: string, path: string): void;
+  /** It is to be seen in the scene. */
+  shown(topic: string): void;
+}
+
+/** A topic of the monitor, and below it its last message while it is opened. */
+export class TopicLine {
+  readonly head: HTMLTableRowElement;
+  readonly body: HTMLTableRowElement;
+  private readonly box = h("input", { class: "check" });
+  private readonly expander: HTMLButtonElement;
+  private readonly cells: Record<"type" | "publishers" | "subscribers" | "rate" | "bandwidth", HTMLElement>;
+  private readonly received = h("div", { class: "note" }, strings.monitor.topics.waiting);
+  private readonly tree: MessageTree;
+
+  constructor(
+    readonly name: string,
+    events: TopicRowEvents,
+  ) {
+    const words = strings.monitor.topics;
+    this.box.type = "checkbox";
+    this.box.setAttribute("aria-label", words.measure(name));
+    this.box.addEventListener("change", () => events.measured(name, this.box.checked));
+    this.expander = button(words.open(name), () => events.opened(name, this.body.hidden === true), "expander", icon("chevron"));
+    this.tree = new MessageTree((path) => events.plotted(name, path));
+    this.cells = {
+      type: h("td", { class: "note" }),
+      publishers: h("td", { class: "numeric" }),
+      subscribers: h("td", { class: "numeric" }),
+      rate: h("td", { class: "numeric" }),
+      bandwidth: h("td", { class: "numeric" }),
+    };
+    const label = button(words.show, () => events.shown(name), "text-link", name);
+    const title = h("span", { class: "topic-title" }, this.box, this.expander, label);
+    this.head = h("tr", { data: { topic: name } }, h("td", { title: name }, title), ...Object.values(this.cells));
+    const inside = h("td", {}, this.received, this.tree.element);
+    inside.colSpan = 6;
+    this.body = h("tr", { class: "topic-message" }, inside);
+    this.body.hidden = true;
+  }
+
+  show({ types, publishers, subscribers }: TopicRow): void {
+    this.cells.type.textContent = types.map((type) => type.replace("/msg/", "/")).join(", ");
+    this.cells.type.title = types.join("\n");
+    this.cells.type.classList.toggle("wrong", types.length > 1);
+    this.cells.publishers.textContent = String(publishers);
+    this.cells.subscribers.textContent = String(subscribers);
+  }
+
+  /** The state of tick and arrow. */
+  set(measured: boolean, opened: boolean): void {
+    this.box.checked = measured || opened;
+    this.expander.setAttribute("aria-expanded", String(opened));
+    this.body.hidden = !opened;
+  }
+
+  showTraffic(traffic: TopicTraffic | undefined): void {
+    const { rate, bandwidth } = this.cells;
+    const error = traffic?.error ?? null;
+    rate.textContent = typeof traffic?.rate !== "number" ? "" : strings.monitor.topics.hertz(rateText(traffic.rate));
+    bandwidth.textContent = typeof traffic?.bandwidth !== "number" ? "" : bandwidthText(traffic.bandwidth);
+    this.head.classList.toggle("wrong", error !== null);
+    if (error !== null) this.received.textContent = error;
+  }
+
+  showMessage({ received, fields }: TopicMessage): void {
+    this.received.textContent = strings.monitor.topics.ago(clockText(received));
+    this.tree.show(fields);
+  }
+}

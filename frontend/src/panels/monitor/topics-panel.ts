@@ -1,0 +1,131 @@
+import { h } from "../../dom";
+import type { TopicRow } from "../../protocol";
+import type { TopicsState } from "../../state/monitor/topics";
+import { strings } from "../../strings";
+import { textField, tickBox } from "../../widgets/controls";
+import { whenSeen } from "../../widgets/when-seen";
+import type { Panel } from "../panel";
+import { TopicLine } from "./topic-row";
+
+/** What rqt_topic shows: all topics, figures of those that are ticked, the last message of those that are opened. */
+export class TopicsPanel implements Panel {
+  readonly id = "topics";
+  readonly icon = "topics";
+  readonly element: HTMLElement;
+  private readonly body = h("tbody");
+  private readonly empty = h("p", { class: "empty" }, strings.monitor.topics.none);
+  private readonly lines = new Map<string, TopicLine>();
+  private readonly measured = new Set<string>();
+  private readonly unfolded = new Set<string>();
+  private filter = "";
+  private hidden = false;
+
+  constructor(
+    private readonly state: TopicsState,
+    private readonly plot: (topic: string, path: string) => void,
+    private readonly showInScene: (topic: string) => void,
+  ) {
+    const words = strings.monitor.topics;
+    const filter = textField(strings.monitor.filter, (text) => {
+      this.filter = text.trim().toLowerCase();
+      this.show();
+    });
+    const hidden = tickBox(words.hidden, words.hiddenHint, (ticked) => {
+      this.hidden = ticked;
+      this.show();
+    });
+    const bar = h("div", { class: "toolbar" }, filter, h("span", { class: "spacer" }), hidden);
+    const head = (text: string, hint = text, numeric = true): HTMLElement =>
+      h("th", { class: numeric ? "numeric" : "", title: hint }, text);
+    const table = h(
+      "table",
+      { class: "topic-table" },
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          head(words.name, words.measureHint, false),
+          head(words.type, words.type, false),
+          head(words.publishers, words.publishersHint),
+          head(words.subscribers, words.subscribersHint),
+          head(words.rate),
+          head(words.bandwidth),
+        ),
+      ),
+      this.body,
+    );
+    this.element = h("div", { class: "panel monitor" }, bar, h("div", { class: "scroll" }, table, this.empty));
+    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    state.listChanged.on(() => this.show());
+    state.figuresChanged.on(() => this.showFigures());
+    state.messageCame.on((message) => this.lines.get(message.topic)?.showMessage(message));
+    whenSeen(this.element, (seen) => {
+      state.list(this, seen);
+      state.watch(seen ? this.measured : [], seen ? this.unfolded : []);
+    });
+  }
+
+  private show(): void {
+    const shown = this.state.topics.filter((topic) => this.isShown(topic));
+    const rows = shown.flatMap((topic) => {
+      const line = this.line(topic.name);
+      line.show(topic);
+      line.set(this.measured.has(topic.name), this.unfolded.has(topic.name));
+      return [line.head, line.body];
+    });
+    const same = rows.length === this.body.childElementCount && rows.every((row, at) => row === this.body.children[at]);
+    if (!same) this.body.replaceChildren(...rows);
+    this.empty.hidden = rows.length > 0;
+  }
+
+  private isShown({ name }: TopicRow): boolean {
+    if (!name.toLowerCase().includes(this.filter)) return false;
+    return this.hidden || !name.split("/").some((part) => part.startsWith("_"));
+  }
+
+  private line(name: string): TopicLine {
+    const known = this.lines.get(name);
+    if (known) return known;
+    const made = new TopicLine(name, {
+      measured: (topic, ticked) => {
+        flip(this.measured, topic, ticked);
+        if (!ticked) this.unfolded.delete(topic);
+        this.watch();
+      },
+      opened: (topic, open) => {
+        flip(this.unfolded, topic, open);
+        this.watch();
+      },
+      plotted: (topic, path) => this.plot(topic, path),
+      shown: (topic) => this.showInScene(topic),
+    });
+    this.lines.set(name, made);
+    return made;
+  }
+
+  private watch(): void {
+    this.state.watch(this.measured, this.unfolded);
+    this.show();
+  }
+
+  private showFigures(): void {
+    for (const [name, line] of this.lines) line.showTraffic(this.state.traffic.get(name));
+  }
+
+  /** Up and down go from topic to topic. */
+  private keyed(event: KeyboardEvent): void {
+    if (event.key !== "ArrowDown" && event.key !== "ArrowUp") return;
+    const stops = [...this.body.querySelectorAll<HTMLElement>(":scope > tr[data-topic] .expander")];
+    const at = stops.indexOf(document.activeElement as HTMLElement);
+    if (at < 0) return;
+    stops[at + (event.key === "ArrowDown" ? 1 : -1)]?.focus();
+    event.preventDefault();
+  }
+}
+
+function flip(set: Set<string>, member: string, wanted: boolean): void {
+  if (wanted) set.add(member);
+  else set.delete(member);
+}

@@ -1,0 +1,26 @@
+import type { Connection } from "../../connection/connection";
+import { h } from "../../dom";
+import { strings } from "../../strings";
+
+/** Over the scene while there is no server: what is seen is no longer true. */
+export class ConnectionNotice {
+  readonly element = h("div", { class: "notice", role: "alert" });
+
+  constructor(private readonly connection: Connection) {
+    connection.stateChanged.on(() => this.update());
+    this.update();
+  }
+
+  private update(): void {
+    const { state } = this.connection;
+    const words = strings.connection;
+    this.element.hidden = state === "connecting" || state === "connected";
+    this.element.dataset["state"] = state;
+    this.element.replaceChildren(
+      h("span", { class: "pulse" }),
+      h("strong", {}, words[state]),
+      state === "ended" ? h("span", {}, words.endedHint) : "",
+      state === "refused" ? h("span", {}, words.refusedHint) : "",
+    );
+  }
+}

@@ -1,0 +1,64 @@
+import { button, h } from "../../dom";
+import { icon, LEVEL_ICONS } from "../../icons";
+import type { DiagnosticItem } from "../../protocol";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { placeText, shortPath } from "../place";
+
+/** Codes of findings about files of the viewer: the robot is shown in spite of them. */
+const NOT_OF_DESCRIPTIONS = /^(RVIZ|VIEW)/;
+/** Codes of warnings without which nobody understands the scene: the robot has fallen out of the world, or none of its meshes is there. */
+const TELLING = new Set(["SIM143", "VIEW207"]);
+
+/**
+ * Over the scene while the description has an error: its cause, its hint, and whether the robot seen is the last good one.
+ * Where there is none, a warning that tells why the scene is as it is, until it is closed.
+ */
+export class DiagnosticsBanner {
+  readonly element = h("div", { class: "banner", role: "alert" });
+
+  private readonly closed = new Set<string>();
+
+  constructor(
+    private readonly session: Session,
+    private readonly showAll: () => void,
+  ) {
+    session.diagnosticsChanged.on(() => this.update());
+    this.update();
+  }
+
+  private update(): void {
+    const all = this.session.diagnostics;
+    const errors = all.filter((item) => item.severity === "error");
+    const first = errors[0] ?? all.find(({ code, message }) => TELLING.has(code) && !this.closed.has(message));
+    this.element.hidden = !first;
+    if (!first) return;
+    const words = strings.diagnostics;
+    const isError = first.severity === "error";
+    this.element.classList.toggle("warning", !isError);
+    const place = first.file === null ? "" : placeText(shortPath(first.file, 2), first.line, first.column);
+    const more = errors.length > 1 ? ` ${words.more(errors.length - 1)}` : "";
+    this.element.replaceChildren(
+      icon(LEVEL_ICONS[first.severity], `level-${first.severity}`),
+      h(
+        "div",
+        { class: "banner-text" },
+        h("strong", {}, first.message + more),
+        h("span", {}, place ? h("span", { class: "place" }, place) : null, first.hints[0] ?? ""),
+        isError && this.keepsRobot(first) ? h("span", {}, words.lastGood) : null,
+      ),
+      button(words.show, this.showAll, "tool", words.show),
+      ...(isError ? [] : [button(words.close, () => this.close(first), "tool", icon("close"))]),
+    );
+  }
+
+  private close({ message }: DiagnosticItem): void {
+    this.closed.add(message);
+    this.update();
+  }
+
+  /** A description with an error changes nothing: what is there when the error comes was there before. */
+  private keepsRobot(error: DiagnosticItem): boolean {
+    return this.session.robot !== null && !NOT_OF_DESCRIPTIONS.test(error.code);
+  }
+}

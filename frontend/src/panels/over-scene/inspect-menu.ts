@@ -1,0 +1,132 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { Inspected } from "../../state/inspect";
+import { general } from "../../state/number-text";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { currentModel } from "../description/current-model";
+
+const CHOICES = ["centers", "boxes", "ellipsoids", "joints", "contrast", "frames"] as const;
+/** The slider's ends are a quarter and four times the size. */
+const SCALE_STEPS = 2;
+
+/** A menu over the scene: what is to be shown of the invisible, and what is odd about it. */
+export class InspectMenu {
+  readonly element = h("div", { class: "inspect" });
+  private readonly card = h("div", { class: "inspect-card", role: "group", aria: { label: strings.description.inspect.button } });
+  private readonly facts = h("div", { class: "inspect-facts" });
+  private readonly boxes = new Map<keyof Inspected, HTMLInputElement>();
+  private readonly depth = h("input", { class: "slider" });
+  private readonly depthText = h("output");
+  private readonly scale = h("input", { class: "slider" });
+  private readonly open: HTMLButtonElement;
+
+  /** @param resized called when it needs another part of the scene than before. */
+  constructor(
+    private readonly session: Session,
+    private readonly resized: () => void,
+  ) {
+    const words = strings.description.inspect;
+    this.open = button(words.hint, () => this.toggle(this.card.hidden !== false), "tool", icon("inspect"), words.button);
+    this.card.append(...CHOICES.map((choice) => this.choice(choice)), this.depthRow(), this.scaleRow(), this.facts);
+    this.element.append(this.open, this.card);
+    this.element.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape" || this.card.hidden) return;
+      this.toggle(false);
+      this.open.focus();
+      event.stopPropagation();
+    });
+    const { inspect, description, robotChanged } = session;
+    const show = coalesced(() => this.show());
+    inspect.changed.on(show);
+    description.arrived.on(show);
+    description.findingsArrived.on(show);
+    robotChanged.on(show);
+    this.toggle(false);
+    this.show();
+  }
+
+  private toggle(open: boolean): void {
+    this.card.hidden = !open;
+    this.open.setAttribute("aria-expanded", String(open));
+    this.resized();
+  }
+
+  private choice(what: keyof Inspected): HTMLElement {
+    const words = strings.description.inspect;
+    const box = h("input", { class: "check" });
+    box.type = "checkbox";
+    box.addEventListener("change", () => this.session.inspect.set(what, box.checked));
+    this.boxes.set(what, box);
+    const label = h("label", { title: words[`${what}Hint`], data: { inspect: what } }, box, words[what]);
+    return label;
+  }
+
+  private depthRow(): HTMLElement {
+    const { inspect } = this.session;
+    this.depth.type = "range";
+    this.depth.min = "0";
+    this.depth.addEventListener("input", () => {
+      const level = Number(this.depth.value);
+      inspect.deepest = level >= Number(this.depth.max) ? null : level;
+    });
+    return h("label", { class: "inspect-depth" }, strings.description.inspect.depth, this.depth, this.depthText);
+  }
+
+  private scaleRow(): HTMLElement {
+    const { inspect } = this.session;
+    this.scale.type = "range";
+    this.scale.min = String(-SCALE_STEPS);
+    this.scale.max = String(SCALE_STEPS);
+    this.scale.step = "0.25";
+    this.scale.addEventListener("input", () => (inspect.scale = 2 ** Number(this.scale.value)));
+    return h("label", {}, strings.description.inspect.scale, this.scale);
+  }
+
+  private show(): void {
+    const { inspect } = this.session;
+    const model = currentModel(this.session);
+    for (const [what, box] of this.boxes) box.checked = inspect.current[what];
+    this.open.classList.toggle("on", inspect.any);
+    const deepest = model?.deepest ?? 0;
+    this.depth.parentElement?.toggleAttribute("hidden", !inspect.current.frames);
+    this.depth.max = String(deepest);
+    this.depth.value = String(inspect.deepest ?? deepest);
+    this.depthText.textContent = this.depth.value;
+    this.scale.value = String(Math.log2(inspect.scale));
+    for (const slider of [this.depth, this.scale]) {
+      const [min, max] = [Number(slider.min), Number(slider.max)];
+      const part = max > min ? (Number(slider.value) - min) / (max - min) : 1;
+      slider.style.setProperty("--part", String(part));
+      slider.style.setProperty("--zero", slider === this.scale ? "0.5" : "0");
+    }
+    this.showFacts();
+  }
+
+  /** The mass of the robot, and each link that is implausible: a click selects it. */
+  private showFacts(): void {
+    const words = strings.description.inspect;
+    const model = currentModel(this.session);
+    const { centers, boxes, ellipsoids } = this.session.inspect.current;
+    this.facts.hidden = !model || !(centers || boxes || ellipsoids);
+    if (!model || this.facts.hidden) return;
+    const mass = [...model.links.values()].reduce((sum, { inertia }) => sum + (inertia?.mass ?? 0), 0);
+    const findings = this.session.description.findingsOf(model.display);
+    const links = new Set(findings.map(({ link }) => link));
+    const weightless = links.size === 0 && [...model.links.values()].every(({ inertia }) => inertia === null);
+    if (weightless) {
+      this.facts.replaceChildren(h("div", {}, words.noInertials));
+      return;
+    }
+    const rows = findings.map(({ link, code, message, hint }) => {
+      const name = { display: model.display, kind: "link" as const, name: link };
+      const row = button(hint || message, () => this.session.focus.select(name), "finding", h("strong", {}, link), ` ${message} `, h("code", { class: "code" }, code));
+      return h("li", { data: { link } }, row);
+    });
+    this.facts.replaceChildren(
+      h("div", {}, words.mass(general(mass))),
+      h("div", {}, links.size > 0 ? words.implausible(links.size) : words.plausible),
+      h("ul", {}, ...rows),
+    );
+  }
+}

@@ -1,0 +1,33 @@
+import { coalesced, h } from "../../dom";
+import { bytesText } from "../../scene/meshes/mesh-error";
+import type { MeshLoad, MeshProgress } from "../../state/mesh-progress";
+import { strings } from "../../strings";
+
+/** More are counted. */
+const MOST_LINES = 4;
+
+/** Over the scene while mesh files take longer than a moment: which, and how far they are. */
+export class MeshNotice {
+  readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "meshes" } });
+
+  constructor(private readonly progress: MeshProgress) {
+    progress.changed.on(coalesced(() => this.update()));
+    this.update();
+  }
+
+  private update(): void {
+    const words = strings.meshes.progress;
+    const { loads } = this.progress;
+    this.element.hidden = loads.length === 0;
+    const lines = loads.slice(0, MOST_LINES).map((load) => h("div", {}, h("b", {}, load.name), ` ${progressText(load)}`));
+    const more = loads.length > MOST_LINES ? h("div", {}, words.more(String(loads.length - MOST_LINES))) : "";
+    this.element.replaceChildren(h("strong", {}, words.title), ...lines, more);
+  }
+}
+
+/** How far a file is: bytes of bytes, then that it is read. */
+export function progressText({ bytes, total, stage }: Readonly<MeshLoad>): string {
+  const words = strings.meshes.progress;
+  if (stage === "reading") return words.reading;
+  return total === null ? bytesText(bytes) : words.of(bytesText(bytes), bytesText(total));
+}

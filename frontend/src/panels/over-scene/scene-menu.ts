@@ -1,0 +1,27 @@
+import { h } from "../../dom";
+import type { Signal } from "../../signal";
+import type { MenuChoice, SceneMenu } from "../../state/scene-menu";
+import { openMenu } from "../../widgets/menu";
+
+/** Opens the menus of things in the scene where they are asked for; a choice with others below it opens those. */
+export function showSceneMenus(box: HTMLElement, asked: Signal<SceneMenu>): void {
+  const anchor = h("div", { class: "scene-menu-anchor" });
+  box.append(anchor);
+  const open = (choices: readonly MenuChoice[]): void => {
+    openMenu(
+      anchor,
+      choices.map(({ label, run, choices: below }) => ({
+        label: below ? `${label} ›` : label,
+        run: () => {
+          if (below) open(below);
+          else run?.();
+        },
+      })),
+    );
+  };
+  asked.on(({ x, y, choices }) => {
+    anchor.style.left = `${x}px`;
+    anchor.style.top = `${y}px`;
+    open(choices);
+  });
+}

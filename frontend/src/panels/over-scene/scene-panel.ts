@@ -1,0 +1,67 @@
+import { h } from "../../dom";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import type { WorldCommands } from "../modelling/world-commands";
+import type { Panel } from "../panel";
+import { talkButton } from "../voice/talk-button";
+import { VoiceNotice } from "../voice/voice-notice";
+import { CardColumn, type Below } from "./card-column";
+import { ConnectionNotice } from "./connection-notice";
+import { DiagnosticsBanner } from "./diagnostics-banner";
+import { InspectMenu } from "./inspect-menu";
+import { LineNotice } from "./line-notice";
+import { MeshNotice } from "./mesh-notice";
+import { OrientationSign } from "./orientation-sign";
+import { OwnerNotice } from "./owner-notice";
+import { showSceneMenus } from "./scene-menu";
+import { SelectionCard } from "./selection-card";
+import { SimulationBar } from "./simulation-bar";
+import { Toolbar } from "./toolbar";
+
+/** The 3-D view and what lies over it. */
+export class ScenePanel implements Panel {
+  readonly id = "scene";
+  readonly icon = "cube";
+  readonly element: HTMLElement;
+  /** Where the canvas goes. */
+  readonly container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
+  /** The scene and what lies over it: what full screen shows. */
+  readonly box: HTMLElement;
+  private readonly column = new CardColumn();
+  private readonly notices = h("div", { class: "notices" });
+  private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
+
+  constructor(session: Session, commands: WorldCommands, fit: () => void, showDiagnostics: () => void, showKeys: () => void) {
+    const toolbar = new Toolbar(session.tools, fit, showKeys, talkButton(session.voice, "scene-tool small talk"));
+    const banner = new DiagnosticsBanner(session, showDiagnostics);
+    const notice = new ConnectionNotice(session.connection);
+    const card = new SelectionCard(session, this.column, () => session.editing.wanted.emit());
+    const inspect = new InspectMenu(session, this.column.changed);
+    const sign = new OrientationSign(session);
+    const simulation = new SimulationBar(session.simulation, session.modelling, commands);
+    this.notices.append(simulation.element, notice.element, banner.element);
+    const told = [new LineNotice(session), new OwnerNotice(session), new MeshNotice(session.meshProgress), new VoiceNotice(session.voice)];
+    this.column.element.append(inspect.element, card.element, ...told.map((each) => each.element));
+    this.box = h(
+      "div",
+      { class: "scene-box" },
+      this.container,
+      h("div", { class: "overlay" }, this.notices, this.column.element, this.waiting, sign.element),
+    );
+    showSceneMenus(this.box, session.sceneMenu);
+    this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
+    const update = (): void => {
+      const awaited = session.displays.displays.some(({ cls, enabled }) => enabled && cls.endsWith("/RobotModel"));
+      this.waiting.hidden = session.robot !== null || !awaited;
+    };
+    session.robotChanged.on(update);
+    session.displays.treeChanged.on(update);
+    session.displays.enabledChanged.on(update);
+  }
+
+  /** What lies over a scene makes room there for itself. */
+  lieOver(scene: Below): void {
+    this.column.lieOver(scene);
+    new ResizeObserver(() => scene.makeRoomAbove(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);
+  }
+}

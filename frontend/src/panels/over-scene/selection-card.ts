@@ -1,0 +1,112 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { LinkScene, LinkProvenance } from "../../protocol";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { placeText, shortPath } from "../place";
+import type { CardColumn } from "./card-column";
+
+/** The selected link: where it is written, and through which macros it came. */
+export class SelectionCard {
+  readonly element = h("div", { class: "selection-card", role: "status" });
+
+  private folded = false;
+
+  /**
+   * @param column it is for; where it would lie over a robot, only its head is shown until the user unfolds it.
+   * @param edit what edits the link; null where nothing does.
+   */
+  constructor(
+    private readonly session: Session,
+    private readonly column: CardColumn,
+    private readonly edit: (() => void) | null = null,
+  ) {
+    session.selection.changed.on(() => this.update());
+    session.provenanceAnswered.on((provenance) => this.show(provenance));
+    session.editing.activeChanged.on(() => this.update());
+    this.update();
+  }
+
+  private update(): void {
+    const { selected } = this.session.selection;
+    const wasHidden = this.element.hidden;
+    // Whoever edits the link has it before him, and needs the room for the handles.
+    this.element.hidden = !selected || this.session.editing.active;
+    if (!selected || this.session.editing.active) {
+      if (!wasHidden && !this.folded) this.column.changed();
+      return;
+    }
+    if (wasHidden) this.folded = this.column.isOverRobots;
+    const { link } = selected;
+    const words = strings.selection;
+    const clear = button(words.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
+    const edit = this.edit && button(strings.editing.editHint, this.edit, "tool bare edit-link", icon("handles"));
+    this.element.replaceChildren(
+      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), edit, this.folder(), clear),
+      ...details(link),
+      place(link, (file, line) => this.session.description.placeAsked.emit({ file, line })),
+      ...trail(link),
+    );
+    if (link.place) this.session.connection.send({ type: "ask_provenance", display: selected.display, link: link.name });
+  }
+
+  /** The button that leaves only the link's name of the card, or shows all again. */
+  private folder(): HTMLButtonElement {
+    const words = strings.selection;
+    const turn = (): void => {
+      show(!this.folded);
+      this.column.changed();
+    };
+    const fold: HTMLButtonElement = button(words.fold, turn, "tool bare fold", icon("chevron"));
+    const show = (folded: boolean): void => {
+      this.folded = folded;
+      this.element.classList.toggle("folded", folded);
+      fold.setAttribute("aria-expanded", String(!folded));
+    };
+    show(this.folded);
+    return fold;
+  }
+
+  /** Calls and values take the server a moment; they come in the place of the bare trail. */
+  private show(provenance: LinkProvenance): void {
+    const selected = this.session.selection.selected;
+    if (selected?.display !== provenance.display || selected.link.name !== provenance.link) return;
+    for (const old of this.element.querySelectorAll(".trail, .provenance")) old.remove();
+    const [, ...lines] = provenance.lines; // the first is the place, which the card shows already
+    if (lines.length > 0) this.element.append(h("pre", { class: "provenance", tabIndex: 0 }, lines.join("\n")));
+  }
+}
+
+function details(link: LinkScene): HTMLElement[] {
+  const words = strings.selection;
+  const rows: [string, string][] = [];
+  if (link.parent_joint !== null) rows.push([words.joint, link.parent_joint]);
+  if (link.frame !== link.name) rows.push([words.frame, link.frame]);
+  return rows.map(([name, value]) => h("div", { class: "detail" }, h("span", {}, name), h("span", {}, value)));
+}
+
+function place(link: LinkScene, show: (file: string, line: number) => void): HTMLElement {
+  const words = strings.selection;
+  const at = link.place;
+  if (!at) return h("p", { class: "hint" }, words.noPlace);
+  const full = placeText(at.file, at.line, at.column);
+  const copy = button(
+    words.copy,
+    () => {
+      void navigator.clipboard.writeText(full).then(() => {
+        copy.classList.add("done");
+        copy.title = words.copied;
+      });
+    },
+    "tool bare",
+    icon("copy"),
+  );
+  const text = button(full, () => show(at.file, at.line), "place", icon("file"), placeText(shortPath(at.file), at.line, at.column));
+  return h("div", { class: "card-place" }, text, copy);
+}
+
+function trail(link: LinkScene): HTMLElement[] {
+  const steps = link.place?.trail ?? [];
+  if (steps.length === 0) return [];
+  return [h("ol", { class: "trail" }, ...steps.map((step) => h("li", {}, step)))];
+}

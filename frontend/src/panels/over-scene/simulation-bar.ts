@@ -1,0 +1,97 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { Modelling } from "../../state/modelling/modelling";
+import type { SimulationState } from "../../state/simulation";
+import { strings } from "../../strings";
+import { Dialog } from "../../widgets/dialog";
+import { ModellingBar } from "../modelling/modelling-bar";
+import type { WorldCommands } from "../modelling/world-commands";
+
+const NOTICE_MS = 8000;
+
+/** Play, pause, step, reset, and how fast time passes: over the scene while there is a simulation. */
+export class SimulationBar {
+  readonly element: HTMLElement;
+  private readonly play: HTMLButtonElement;
+  private readonly step: HTMLButtonElement;
+  private readonly factor = h("output", { class: "simulation-figure", title: strings.simulation.factorHint });
+  private readonly time = h("output", { class: "simulation-figure wide", title: strings.simulation.timeHint });
+  private readonly notice = h("div", { class: "simulation-notice", role: "status" });
+  private timer = 0;
+
+  private readonly model: HTMLButtonElement;
+
+  constructor(
+    private readonly simulation: SimulationState,
+    private readonly modelling: Modelling,
+    commands: WorldCommands,
+  ) {
+    const words = strings.simulation;
+    this.play = button(words.pause, () => simulation.control(simulation.paused ? "play" : "pause"), "scene-tool small", icon("pause"));
+    this.step = button(words.step, () => simulation.control("step"), "scene-tool small", icon("step"));
+    const reset = button(words.reset, () => simulation.control("reset"), "scene-tool small", icon("reset"));
+    const add = button(words.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
+    this.model = button(strings.modelling.begin, () => modelling.setActive(!modelling.active), "scene-tool small", icon("build"));
+    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: words.label } }, this.play, this.step, reset, add, this.model, this.factor, this.time);
+    this.element = h("div", { class: "simulation-bar" }, bar, new ModellingBar(modelling, commands).element, this.notice);
+    simulation.changed.on(() => this.show());
+    modelling.changed.on(() => this.show());
+    simulation.refused.on((text) => this.tell(text));
+    simulation.spawnAsked.on((position) => this.askSpawn(position));
+    this.show();
+  }
+
+  private show(): void {
+    const { present, paused, time, factor } = this.simulation;
+    const words = strings.simulation;
+    this.element.hidden = !present;
+    const label = paused ? words.play : words.pause;
+    if (this.play.title !== label) {
+      this.play.title = label;
+      this.play.setAttribute("aria-label", label);
+      this.play.replaceChildren(icon(paused ? "play" : "pause"));
+    }
+    this.step.disabled = !paused;
+    this.showModelling();
+    this.factor.textContent = factor === null ? "–" : `${factor.toFixed(2)}×`;
+    this.time.textContent = time === null ? "–" : `${time.toFixed(1)} s`;
+  }
+
+  private showModelling(): void {
+    const { available, active } = this.modelling;
+    const label = active ? strings.modelling.end : strings.modelling.begin;
+    this.model.hidden = !available;
+    this.model.title = label;
+    this.model.setAttribute("aria-label", label);
+    this.model.setAttribute("aria-pressed", String(active));
+    this.model.classList.toggle("active", active);
+  }
+
+  private tell(text: string): void {
+    clearTimeout(this.timer);
+    this.notice.textContent = text;
+    this.timer = window.setTimeout(() => (this.notice.textContent = ""), NOTICE_MS);
+  }
+
+  private askSpawn(position: readonly number[]): void {
+    const words = strings.simulation;
+    const address = h("input", { class: "field", aria: { label: words.address } });
+    address.placeholder = words.addressHint;
+    const places = position.map((value, axis) => {
+      const field = h("input", { class: "field number", aria: { label: "xyz"[axis] ?? "" } });
+      field.value = String(Math.round(value * 1000) / 1000);
+      return field;
+    });
+    const run = (): boolean => {
+      const numbers = places.map((field) => Number(field.value));
+      if (address.value.trim() === "" || numbers.some((number) => !Number.isFinite(number))) return false;
+      this.simulation.spawn(address.value.trim(), numbers);
+      return true;
+    };
+    const rows = [
+      h("label", { class: "spawn-row" }, h("span", {}, words.address), address),
+      h("div", { class: "spawn-row" }, h("span", {}, words.position), h("span", { class: "spawn-places" }, ...places)),
+    ];
+    new Dialog(words.spawnTitle, rows, [{ label: strings.shell.cancel }, { label: words.spawn, main: true, run }]).open(address);
+  }
+}

@@ -1,0 +1,91 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import { TOOLS } from "../../scene/tools/catalog";
+import type { ToolState, ToolsState } from "../../state/tools";
+import { strings } from "../../strings";
+import { openMenu } from "../../widgets/menu";
+
+/** Shows all of the robot, or of what is selected. */
+export const FIT_KEY = "Shift F";
+
+/** What a tool is called in the user's language. */
+export function toolName({ cls, name }: Pick<ToolState, "cls" | "name">): string {
+  const names: Readonly<Record<string, string>> = strings.tools.names;
+  return names[cls] ?? name;
+}
+
+/** RViz's toolbar above the scene: the tools of the file, in their order. */
+export class Toolbar {
+  readonly element = h("div", { class: "scene-tools", role: "toolbar", aria: { label: strings.tools.label } });
+  private readonly buttons = new Map<ToolState, HTMLButtonElement>();
+
+  constructor(
+    private readonly tools: ToolsState,
+    private readonly fit: () => void,
+    private readonly showKeys: () => void,
+    /** What stands right of the tools. */
+    private readonly talk: HTMLElement,
+  ) {
+    tools.listChanged.on(() => this.build());
+    tools.currentChanged.on(() => this.mark());
+    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.build();
+  }
+
+  private build(): void {
+    const { tools } = this;
+    const words = strings.tools;
+    this.buttons.clear();
+    for (const tool of tools.tools) this.buttons.set(tool, this.buttonOf(tool));
+    const add: HTMLButtonElement = button(
+      words.add,
+      () => openMenu(add, tools.classes.map((each) => ({ label: toolName(each), run: () => tools.add(each.cls) }))),
+      "scene-tool small",
+      icon("plus"),
+    );
+    const remove: HTMLButtonElement = button(
+      words.remove,
+      () => openMenu(remove, tools.tools.map((each) => ({ label: toolName(each), run: () => tools.remove(each.id) }))),
+      "scene-tool small",
+      icon("minus"),
+    );
+    remove.disabled = tools.tools.length === 0;
+    for (const each of [add, remove]) each.setAttribute("aria-haspopup", "menu");
+    const fit = button(words.withKey(words.fitHint, FIT_KEY), this.fit, "scene-tool small fit", icon("fit"), h("span", { class: "tool-name" }, words.fit));
+    fit.setAttribute("aria-label", words.fit);
+    const help = button(words.help, this.showKeys, "scene-tool small", icon("keys"));
+    this.element.replaceChildren(...this.buttons.values(), add, remove, h("span", { class: "spacer" }), fit, this.talk, help);
+    this.mark();
+  }
+
+  private buttonOf(tool: ToolState): HTMLButtonElement {
+    const entry = TOOLS.get(tool.cls);
+    const name = toolName(tool);
+    const words = strings.tools;
+    const label = tool.supported && entry ? words.withKey(name, entry.key) : words.unknown(tool.cls);
+    const sign = icon(entry?.icon ?? "unknown");
+    const made = button(label, () => this.tools.choose(tool), "scene-tool", sign, h("span", { class: "tool-name" }, name));
+    made.setAttribute("aria-label", name);
+    made.disabled = !tool.supported;
+    if (entry) made.setAttribute("aria-keyshortcuts", entry.key);
+    return made;
+  }
+
+  private mark(): void {
+    const { current } = this.tools;
+    for (const [tool, made] of this.buttons) {
+      made.setAttribute("aria-pressed", String(tool === current));
+      made.classList.toggle("active", tool === current);
+    }
+  }
+
+  /** Arrow keys go from button to button, as in any toolbar. */
+  private keyed(event: KeyboardEvent): void {
+    const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
+    if (step === 0) return;
+    const all = [...this.element.querySelectorAll<HTMLButtonElement>("button:not(:disabled)")];
+    const at = all.indexOf(document.activeElement as HTMLButtonElement);
+    all[(at + step + all.length) % all.length]?.focus();
+    event.preventDefault();
+  }
+}

@@ -1,0 +1,126 @@
+import { button, h } from "../../dom";
+import type { RecordedFile } from "../../protocol";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { Dialog, tell } from "../../widgets/dialog";
+import { openMenu, type MenuEntry } from "../../widgets/menu";
+import { saveFrom } from "../../widgets/save-file";
+import { chooseTopics } from "./record-dialog";
+import { amountText, lengthText } from "./timeline-text";
+
+/** Files that the menu offers. */
+const MOST_FILES = 5;
+
+/** In the timeline: begins and ends recordings, which the server writes, and saves the last minutes. */
+export class RecordButton {
+  readonly element: HTMLElement;
+  private readonly button: HTMLButtonElement;
+  private readonly problem = h("span", { class: "timeline-problem", role: "alert" });
+
+  constructor(private readonly session: Session) {
+    const { recording } = session;
+    this.button = button(strings.recording.record, () => this.click(), "timeline-live timeline-record", "");
+    this.element = h("span", { class: "timeline-recorder" }, this.problem, this.button);
+    recording.changed.on(() => this.show());
+    recording.made.on((file) => this.offer(file));
+    recording.refused.on((why) => tell(strings.recording.refused, why));
+    this.show();
+  }
+
+  private show(): void {
+    const { isRecording, length, size, saved, problem, path, possible } = this.session.recording;
+    const words = strings.recording;
+    this.element.hidden = !possible;
+    this.button.classList.toggle("on", isRecording);
+    const text = isRecording ? amountText(length, size) : saved === null ? words.record : words.saving(Math.floor(100 * saved));
+    if (this.button.textContent !== text) this.button.textContent = text;
+    const label = isRecording ? words.stopHint(path) : words.recordHint;
+    this.button.title = label;
+    this.button.setAttribute("aria-label", isRecording ? `${words.stop}: ${text}` : text);
+    if (isRecording) this.button.removeAttribute("aria-haspopup");
+    else this.button.setAttribute("aria-haspopup", "menu");
+    const shown = isRecording ? "" : problem;
+    if (this.problem.textContent !== shown) this.problem.textContent = this.problem.title = shown;
+  }
+
+  private click(): void {
+    const { recording } = this.session;
+    if (recording.isRecording) recording.stop();
+    else openMenu(this.button, this.entries());
+  }
+
+  private entries(): MenuEntry[] {
+    const { recording, timeline } = this.session;
+    const { kept, mark } = timeline;
+    const words = strings.recording;
+    const saving = recording.saved !== null;
+    const minutes: MenuEntry[] = [
+      {
+        label: words.saveMinutes(kept ? lengthText(kept.end - kept.start) : ""),
+        hint: words.saveHint,
+        separate: true,
+        disabled: saving || kept === null,
+        run: () => recording.save(null, null),
+      },
+      {
+        label: words.savePart(mark ? lengthText(mark.end - mark.start) : ""),
+        hint: mark ? words.saveHint : words.markHint,
+        disabled: saving || mark === null,
+        run: () => mark && recording.save(mark.start, mark.end),
+      },
+      { label: words.markStart, keys: "[", hint: words.markHint, run: () => timeline.markHere("start") },
+      { label: words.markEnd, keys: "]", hint: words.markHint, run: () => timeline.markHere("end") },
+      ...(mark ? [{ label: words.unmark, run: () => timeline.setMark(null) }] : []),
+    ];
+    return [
+      { label: words.all, icon: "record", hint: words.allHint, run: () => recording.record([]) },
+      { label: words.chosen, run: () => chooseTopics(this.session) },
+      ...(timeline.timeline?.live === true ? minutes : []),
+      ...recording.files.slice(0, MOST_FILES).map(
+        (file, number): MenuEntry => ({
+          label: words.fetch(file.name),
+          hint: `${file.path}\n${amountText(file.length, file.size)}`,
+          icon: "download",
+          separate: number === 0,
+          run: () => fetchFile(file),
+        }),
+      ),
+    ];
+  }
+
+  /** Says where it is, and has it shown or fetched if the user likes. */
+  private offer(file: RecordedFile): void {
+    const words = strings.recording;
+    new Dialog(
+      words.made,
+      [
+        h("p", {}, words.madeHint(amountText(file.length, file.size))),
+        h("pre", { class: "copyable" }, file.path),
+        h("p", {}, words.openHint),
+        h("pre", { class: "copyable" }, `linkwright view ${file.name}`),
+      ],
+      [
+        {
+          label: words.download,
+          run: () => {
+            fetchFile(file);
+            return undefined;
+          },
+        },
+        { label: strings.shell.ok },
+        {
+          label: words.openHere,
+          main: true,
+          run: () => {
+            this.session.recording.wanted.emit(file);
+            return undefined;
+          },
+        },
+      ],
+    ).open();
+  }
+}
+
+function fetchFile(file: RecordedFile): void {
+  saveFrom(`${file.name}.mcap`, new URL(file.url, document.baseURI).href);
+}

@@ -1,0 +1,55 @@
+import { h } from "../../dom";
+import type { TopicRow } from "../../protocol";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { Dialog } from "../../widgets/dialog";
+
+/** Lets the user choose the topics to record. */
+export function chooseTopics(session: Session): void {
+  const words = strings.recording;
+  const { topics } = session.monitor;
+  const chosen = new Set<string>();
+  const list = h("div", { class: "choices record-topics", role: "group", aria: { label: words.topics } });
+  const dialog = new Dialog(
+    words.chooseTitle,
+    [h("p", {}, words.chooseHint), list],
+    [
+      { label: strings.shell.cancel },
+      {
+        label: words.begin,
+        main: true,
+        run: () => {
+          session.recording.record([...chosen]);
+          return undefined;
+        },
+      },
+    ],
+    "add-dialog",
+  );
+  const fill = (): void => {
+    // What is listed stays where the mouse may be: only topics that are new are added.
+    const known = new Set([...list.querySelectorAll("input")].map(({ value }) => value));
+    list.append(...topics.topics.filter(({ name }) => !known.has(name)).map((topic) => row(topic, chosen, () => (dialog.ready = chosen.size > 0))));
+  };
+  topics.list(dialog, true);
+  const forget = topics.listChanged.on(fill);
+  dialog.element.addEventListener("close", () => {
+    forget();
+    topics.list(dialog, false);
+  });
+  fill();
+  dialog.ready = false;
+  dialog.open(list.querySelector("input") ?? undefined);
+}
+
+function row({ name, types }: TopicRow, chosen: Set<string>, changed: () => void): HTMLElement {
+  const box = h("input", { class: "check" });
+  box.type = "checkbox";
+  box.value = name;
+  box.addEventListener("change", () => {
+    if (box.checked) chosen.add(name);
+    else chosen.delete(name);
+    changed();
+  });
+  return h("label", { class: "check-label record-topic" }, box, h("span", {}, name), h("small", {}, types.join(", ")));
+}

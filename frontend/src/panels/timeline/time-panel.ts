@@ -1,0 +1,83 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { SyncMode, TimeControlState, Times } from "../../state/time";
+import { strings } from "../../strings";
+import { whenSeen } from "../../widgets/when-seen";
+import type { Panel } from "../panel";
+
+/** Of the figures. Without a GPU each change of any of them costs as much as half a frame of the scene. */
+const REFRESH_MS = 1000;
+const MODES: readonly SyncMode[] = ["Off", "Exact", "Approximate"];
+const FIGURES: readonly (keyof Times)[] = ["ros", "rosElapsed", "wall", "wallElapsed"];
+
+/** RViz's Time panel. */
+export class TimePanel implements Panel {
+  readonly id = "time";
+  readonly icon = "clock";
+  readonly element: HTMLElement;
+  private readonly pause: HTMLButtonElement;
+  private readonly mode = h("select", { class: "choice", title: strings.time.syncHint });
+  private readonly source = h("select", { class: "choice", title: strings.time.sourceHint });
+  private readonly figures = FIGURES.map((name) => ({ name, output: h("output", { class: "figure" }) }));
+
+  private timer = 0;
+
+  /** @param close for the strip without a tab that this is below the scene. */
+  constructor(
+    private readonly time: TimeControlState,
+    close: () => void,
+  ) {
+    const words = strings.time;
+    this.pause = button(words.pauseHint, () => time.set({ paused: !time.paused }), "tool", icon("pause"), words.pause);
+    this.mode.append(...MODES.map((mode) => new Option(words.modes[mode], mode)));
+    this.mode.setAttribute("aria-label", words.sync);
+    this.source.setAttribute("aria-label", words.source);
+    this.mode.addEventListener("change", () => time.set({ mode: this.mode.value as SyncMode }));
+    this.source.addEventListener("change", () => time.set({ source: this.source.value }));
+    this.element = h(
+      "div",
+      { class: "panel time-panel" },
+      this.pause,
+      labelled(words.sync, this.mode),
+      labelled(words.source, this.source),
+      ...this.figures.map(({ name, output }) => labelled(words[name], output, name)),
+      h("span", { class: "spacer" }),
+      button(words.resetHint, () => time.reset(), "tool", icon("reset"), words.reset),
+      button(strings.close, close, "tool bare strip-close", icon("close")),
+    );
+    time.changed.on(() => this.update());
+    this.update();
+    // Clocks are asked for only while they are to be seen.
+    whenSeen(this.element, (seen) => {
+      time.watch(seen);
+      clearInterval(this.timer);
+      if (seen) this.timer = window.setInterval(() => this.tick(), REFRESH_MS);
+      if (seen) this.tick();
+    });
+  }
+
+  private update(): void {
+    const { paused, mode, source, sources } = this.time;
+    this.pause.setAttribute("aria-pressed", String(paused));
+    this.pause.classList.toggle("active", paused);
+    this.mode.value = mode;
+    const names = source === "" || sources.includes(source) ? sources : [...sources, source];
+    this.source.replaceChildren(...["", ...names].map((name) => new Option(name)));
+    this.source.value = source;
+    this.source.disabled = mode === "Off";
+    this.tick();
+  }
+
+  private tick(): void {
+    const times = document.hidden ? null : this.time.times();
+    if (!times) return;
+    for (const { name, output } of this.figures) {
+      const text = times[name].toFixed(2);
+      if (output.textContent !== text) output.textContent = text;
+    }
+  }
+}
+
+function labelled(text: string, element: HTMLElement, name = ""): HTMLElement {
+  return h("label", { class: `labelled-row ${name}` }, h("span", {}, text), element);
+}

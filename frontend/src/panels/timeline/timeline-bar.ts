@@ -1,0 +1,258 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { Kept } from "../../protocol";
+import { TAKES_LETTERS } from "../../scene/keyboard";
+import type { RecordingControl } from "../../state/recording";
+import type { Session } from "../../state/session";
+import { SPEEDS, type TimelineState } from "../../state/timeline";
+import { strings } from "../../strings";
+import { RecordButton } from "./record-button";
+import { agoText, clockText, densities, keptText, momentText, passedText } from "./timeline-text";
+
+/** From this part of its room on, what is kept is as much as there can be. */
+const FULL = 0.9;
+
+/** How much is kept, and how more could be where there is no more room. */
+function keptTip(kept: Kept): string {
+  const text = strings.timeline.kept(keptText(kept), (kept.most / 1e6).toFixed(0));
+  return kept.size < FULL * kept.most ? text : `${text}\n${strings.timeline.more}`;
+}
+
+/** Parts of the whole that Page Up and Page Down go. */
+const PAGE = 0.1;
+
+/**
+ * Along the foot of the page while a recording is shown, or the last minutes are kept: play, step, speed, loop, and a line of its time to drag on.
+ * Where neither is, only what records.
+ */
+export class TimelineBar {
+  readonly element: HTMLElement;
+  private readonly play: HTMLButtonElement;
+  private readonly loop: HTMLButtonElement;
+  private readonly speed = h("select", { class: "choice", title: strings.timeline.speed, aria: { label: strings.timeline.speed } });
+  private readonly steps = h("select", { class: "choice timeline-steps", title: strings.timeline.steps, aria: { label: strings.timeline.steps } });
+  /** Whether what has the keyboard got it by a press, and not by Tab. */
+  private pressed = false;
+  private readonly time = h("output", { class: "timeline-time" });
+  private readonly marks = h("canvas", { class: "timeline-marks" });
+  private readonly head = h("div", { class: "timeline-head" });
+  private readonly part = h("div", { class: "timeline-part" });
+  /** Where the user has begun to mark a part, s since the epoch; null while none is being marked. */
+  private markFrom: number | null = null;
+  private readonly track: HTMLElement;
+  private readonly live: HTMLButtonElement;
+  private readonly back: HTMLButtonElement;
+  private readonly forward: HTMLButtonElement;
+  private readonly problem = h("span", { class: "timeline-problem", role: "alert" });
+
+  private readonly timeline: TimelineState;
+  private readonly recording: RecordingControl;
+
+  constructor(session: Session) {
+    const { timeline } = session;
+    this.timeline = timeline;
+    this.recording = session.recording;
+    const words = strings.timeline;
+    this.play = button(words.play, () => timeline.play(!timeline.playing), "tool bare", icon("play"));
+    this.loop = button(words.loop, () => timeline.setLoop(!timeline.loop), "tool bare", icon("loop"));
+    this.live = button(words.live, () => timeline.goLive(), "timeline-live");
+    this.live.textContent = words.liveShort;
+    this.back = button(words.back, () => timeline.step(false), "tool bare", icon("stepBack"));
+    this.forward = button(words.forward, () => timeline.step(true), "tool bare", icon("step"));
+    this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
+    this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
+    this.steps.addEventListener("change", () => (timeline.stepTopic = this.steps.value));
+    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.part, this.head);
+    this.track.addEventListener("pointerdown", (event) => this.drag(event));
+    this.track.addEventListener("pointermove", (event) => {
+      if (!this.track.hasPointerCapture(event.pointerId)) return;
+      if (this.markFrom === null) this.goTo(event);
+      else timeline.setMark({ start: this.markFrom, end: this.timeAt(event) });
+    });
+    this.track.addEventListener("keydown", (event) => this.key(event));
+    this.element = h(
+      "section",
+      { class: "timeline-bar", aria: { label: words.label } },
+      this.back,
+      this.play,
+      this.forward,
+      this.steps,
+      this.track,
+      this.problem,
+      this.time,
+      this.speed,
+      this.loop,
+      new RecordButton(session).element,
+      this.live,
+    );
+    timeline.changed.on(() => this.show());
+    session.recording.changed.on(() => this.showAtAll());
+    timeline.moved.on(coalesced(() => this.move()));
+    new ResizeObserver(() => this.drawMarks()).observe(this.track);
+    this.takeKeys();
+    this.takeKeysOfScene();
+    this.show();
+  }
+
+  private show(): void {
+    const { timeline, playing, speed, loop, problem } = this.timeline;
+    const words = strings.timeline;
+    const minutes = timeline?.live ?? false;
+    this.showAtAll();
+    this.element.classList.toggle("minutes", minutes);
+    this.live.hidden = !minutes;
+    this.live.setAttribute("aria-pressed", String(this.timeline.live));
+    this.forward.hidden = this.speed.hidden = minutes && this.timeline.live;
+    this.loop.hidden = minutes;
+    this.track.setAttribute("aria-label", minutes ? words.minutes : words.position);
+    this.offerSteps();
+    const label = playing ? words.pause : words.play;
+    if (this.play.title !== label) {
+      this.play.title = label;
+      this.play.setAttribute("aria-label", label);
+      this.play.replaceChildren(icon(playing ? "pause" : "play"));
+    }
+    this.loop.setAttribute("aria-pressed", String(loop));
+    this.loop.classList.toggle("on", loop);
+    this.speed.value = String(speed);
+    this.problem.textContent = problem;
+    this.problem.title = problem;
+    this.drawMarks();
+    this.move();
+  }
+
+  /** The topics that can be stepped by: those of a recording; of what comes now only what is shown is kept. */
+  private offerSteps(): void {
+    const topics = (this.timeline.timeline?.topics ?? []).filter(({ count }) => count > 0).map(({ name }) => name);
+    this.steps.hidden = topics.length < 2;
+    const offered = [new Option(strings.timeline.allSteps, ""), ...topics.map((name) => new Option(name, name))];
+    if (this.steps.options.length !== offered.length) this.steps.replaceChildren(...offered);
+    this.steps.value = this.timeline.stepTopic;
+  }
+
+  private showAtAll(): void {
+    const without = this.timeline.timeline === null;
+    this.element.hidden = without && !this.recording.possible;
+    this.element.classList.toggle("recorder-only", without);
+  }
+
+  private move(): void {
+    const { timeline, position, live, kept } = this.timeline;
+    if (!timeline) return;
+    const { start, end } = timeline;
+    const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
+    this.head.style.left = `${(part * 100).toFixed(3)}%`;
+    // How long ago it was goes on while time stands still: that is no name for what is shown.
+    const passed = kept ? (live ? keptText(kept) : momentText(position)) : passedText(position - start, end - start);
+    this.time.textContent = passed;
+    this.time.title = kept ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${keptTip(kept)}` : clockText(position);
+    this.showMark(start, end);
+    this.track.setAttribute("aria-valuemin", "0");
+    this.track.setAttribute("aria-valuemax", String(end - start));
+    this.track.setAttribute("aria-valuenow", (position - start).toFixed(3));
+    this.track.setAttribute("aria-valuetext", passed);
+  }
+
+  private drag(event: PointerEvent): void {
+    if (event.button !== 0) return;
+    this.track.setPointerCapture(event.pointerId);
+    this.markFrom = event.shiftKey && this.timeline.timeline?.live === true ? this.timeAt(event) : null;
+    if (this.markFrom === null) this.goTo(event);
+    else this.timeline.setMark(null);
+  }
+
+  private goTo(event: PointerEvent): void {
+    this.timeline.seek(this.timeAt(event));
+  }
+
+  /** The time under the pointer, s since the epoch. */
+  private timeAt(event: PointerEvent): number {
+    const { start, end } = this.timeline.timeline ?? { start: 0, end: 0 };
+    const box = this.track.getBoundingClientRect();
+    return Math.min(end, Math.max(start, start + ((event.clientX - box.left) / box.width) * (end - start)));
+  }
+
+  private showMark(start: number, end: number): void {
+    const { mark } = this.timeline;
+    this.part.hidden = mark === null;
+    if (!mark || end <= start) return;
+    this.part.style.left = `${((100 * (mark.start - start)) / (end - start)).toFixed(3)}%`;
+    this.part.style.width = `${((100 * (mark.end - mark.start)) / (end - start)).toFixed(3)}%`;
+  }
+
+  private key(event: KeyboardEvent): void {
+    const { timeline, position } = this.timeline;
+    if (!timeline || event.ctrlKey || event.metaKey || event.altKey) return;
+    const page = PAGE * (timeline.end - timeline.start);
+    const places: Record<string, number> = {
+      Home: timeline.start,
+      End: timeline.end,
+      PageUp: position - page,
+      PageDown: position + page,
+    };
+    const place = places[event.key];
+    if (place === undefined) return;
+    this.timeline.seek(place);
+    event.preventDefault();
+  }
+
+  /** Space plays and pauses, the arrows step, wherever nothing else has a use for them. */
+  private takeKeys(): void {
+    document.addEventListener("keydown", (event) => {
+      const { target } = event;
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.timeline.timeline) return;
+      if (!(target instanceof Element) || target.closest(TAKES_LETTERS)) return;
+      if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.play(!this.timeline.playing);
+      else if (event.key === "ArrowLeft" && this.isFree(target)) this.timeline.step(false);
+      else if (event.key === "ArrowRight" && this.isFree(target)) this.timeline.step(true);
+      else if (event.key === "[" && this.timeline.timeline.live) this.timeline.markHere("start");
+      else if (event.key === "]" && this.timeline.timeline.live) this.timeline.markHere("end");
+      else return;
+      event.preventDefault();
+    });
+  }
+
+  /** Who has pressed into the scene of another time steps on with the arrows; who came there by Tab turns the camera with them. */
+  private takeKeysOfScene(): void {
+    document.addEventListener("pointerdown", () => (this.pressed = true), true);
+    document.addEventListener(
+      "keydown",
+      (event) => {
+        if (event.key === "Tab") this.pressed = false;
+        const forward = event.key === "ArrowRight";
+        if (!forward && event.key !== "ArrowLeft") return;
+        if (event.shiftKey || event.ctrlKey || event.metaKey || event.altKey || !this.pressed) return;
+        if (!(event.target instanceof HTMLCanvasElement) || !this.timeline.timeline || this.timeline.live) return;
+        this.timeline.step(forward);
+        event.preventDefault();
+        event.stopPropagation();
+      },
+      true,
+    );
+  }
+
+  private isFree(target: Element): boolean {
+    return target === document.body || this.element.contains(target);
+  }
+
+  /** How dense messages are, a line for each topic that has any, the more the darker. */
+  private drawMarks(): void {
+    const rows = densities(this.timeline.timeline?.topics ?? []);
+    const { width, height } = this.track.getBoundingClientRect();
+    const scale = window.devicePixelRatio;
+    this.marks.width = Math.max(1, Math.round(width * scale));
+    this.marks.height = Math.max(1, Math.round(height * scale));
+    const context = this.marks.getContext("2d");
+    if (!context || rows.length === 0) return;
+    context.fillStyle = getComputedStyle(this.track).getPropertyValue("--accent");
+    const rowHeight = this.marks.height / rows.length;
+    rows.forEach((row, number) => {
+      const partWidth = this.marks.width / row.length;
+      row.forEach((dense, part) => {
+        if (dense === 0) return;
+        context.globalAlpha = dense;
+        context.fillRect(part * partWidth, number * rowHeight, partWidth, Math.max(1, rowHeight - 1));
+      });
+    });
+  }
+}

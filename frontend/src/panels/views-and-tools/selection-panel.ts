@@ -1,0 +1,69 @@
+import { h } from "../../dom";
+import type { Described } from "../../scene/picking";
+import type { SelectedItem } from "../../state/selection";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import type { TreeItem } from "../../tree/tree-item";
+import { TreeView } from "../../tree/tree-view";
+import { whenSeen } from "../../widgets/when-seen";
+import type { Panel } from "../panel";
+
+/** How often values of what is selected are read again while they move. */
+const REFRESH_MS = 250;
+
+/** RViz's Selection panel: what is selected, and what its display tells of it. */
+export class SelectionPanel implements Panel {
+  readonly id = "selection";
+  readonly icon = "select";
+  readonly element: HTMLElement;
+  private readonly none = h("p", { class: "hint empty" }, strings.selected.none);
+  private readonly tree: TreeView;
+  private timer = 0;
+
+  constructor(
+    private readonly session: Session,
+    private readonly describe: (item: SelectedItem) => Described | null,
+  ) {
+    this.tree = new TreeView(
+      strings.selected.label,
+      () => this.items(),
+      () => [],
+    );
+    this.element = h("div", { class: "panel" }, this.none, this.tree.element);
+    session.selection.changed.on(this.tree.refresh);
+    whenSeen(this.element, this.tree.refresh);
+    session.frames.posesChanged.on(() => this.refreshSoon());
+    session.data.received.on(() => this.refreshSoon());
+  }
+
+  private refreshSoon(): void {
+    if (this.timer !== 0 || this.session.selection.items.length === 0 || this.element.offsetParent === null) return;
+    this.timer = window.setTimeout(() => {
+      this.timer = 0;
+      this.tree.refresh();
+    }, REFRESH_MS);
+  }
+
+  private items(): TreeItem[] {
+    const { items } = this.session.selection;
+    this.none.hidden = items.length > 0;
+    const rows: TreeItem[] = [];
+    for (const item of items) {
+      const described = this.describe(item);
+      if (described) rows.push(row(`${item.display} ${item.key}`, described, items.length === 1));
+    }
+    return rows;
+  }
+}
+
+function row(key: string, { name, value = "", children }: Described, expanded: boolean): TreeItem {
+  return {
+    key,
+    name,
+    kind: "group",
+    value,
+    description: "",
+    expanded,
+    ...(children ? { children: () => children.map((child) => row(`${key}/${child.name}`, child, false)) } : {}),
+  };
+}

@@ -1,0 +1,25 @@
+import { h } from "../../dom";
+import { strings } from "../../strings";
+import type { Panel } from "../panel";
+
+const TF = "rviz_default_plugins/TF";
+
+/** RViz's Transformation panel: TF is the only way there is. */
+export class TransformationPanel implements Panel {
+  readonly id = "transformation";
+  readonly icon = "axes";
+  readonly element: HTMLElement;
+
+  constructor() {
+    const choice = h("input", { class: "check" });
+    choice.type = "radio";
+    choice.name = "transformer";
+    choice.checked = true;
+    this.element = h(
+      "div",
+      { class: "panel transformation-panel" },
+      h("p", { class: "hint" }, strings.transformation.hint),
+      h("label", { class: "labelled-row" }, choice, h("span", {}, strings.transformation.tf), h("span", { class: "row-badge" }, TF)),
+    );
+  }
+}

@@ -1,0 +1,117 @@
+import { button, h } from "../dom";
+import { icon } from "../icons";
+import { WORLD_KEYS } from "../panels/modelling/world-commands";
+import { FIT_KEY, toolName } from "../panels/over-scene/toolbar";
+import { TALK_KEY } from "../panels/voice/talk-button";
+import { TOOLS } from "../scene/tools/catalog";
+import type { ToolsState } from "../state/tools";
+import { strings } from "../strings";
+import { keyText, SHORTCUTS } from "../widgets/shortcuts";
+
+type Row = readonly [keys: string, meaning: string];
+
+/** All keys of the page, on a sheet that `?` opens. */
+export class KeySheet {
+  private dialog: HTMLDialogElement | null = null;
+
+  constructor(private readonly tools: ToolsState) {}
+
+  toggle(): void {
+    if (this.dialog) this.dialog.close();
+    else this.open();
+  }
+
+  private open(): void {
+    const words = strings.keys;
+    const dialog = h("dialog", { class: "key-sheet", aria: { label: words.title } });
+    const close = button(words.close, () => dialog.close(), "tool bare", icon("close"));
+    dialog.append(
+      h("header", {}, h("strong", {}, words.title), h("span", { class: "spacer" }), close),
+      h("div", { class: "key-columns" }, ...this.sections().map(([title, rows, note]) => section(title, rows, note))),
+    );
+    dialog.addEventListener("close", () => {
+      this.dialog = null;
+      dialog.remove();
+    });
+    dialog.addEventListener("click", (event) => {
+      if (event.target === dialog) dialog.close();
+    });
+    document.body.append(dialog);
+    this.dialog = dialog;
+    dialog.showModal();
+  }
+
+  private sections(): (readonly [title: string, rows: readonly Row[], note?: string])[] {
+    const words = strings.keys;
+    const { shell, displays, modelling } = strings;
+    const tools = this.tools.tools.flatMap((tool): Row[] => {
+      const entry = TOOLS.get(tool.cls);
+      return entry ? [[entry.key.toUpperCase(), toolName(tool)]] : [];
+    });
+    return [
+      [words.toolsTitle, tools, words.toolsNote],
+      [
+        words.viewTitle,
+        [
+          ["F", words.focus],
+          [FIT_KEY, strings.tools.fitHint],
+          ["Z", words.zero],
+          ["Shift Z", words.resetView],
+          [words.arrows, words.turn],
+          [`Shift ${words.arrows}`, words.move],
+          ["+ -", words.zoom],
+          [`${words.space} ← →`, strings.timeline.keys],
+          ["[ ]", strings.recording.key],
+          [strings.simulation.dragKeys, strings.simulation.dragModel],
+          [strings.simulation.pushKeys, strings.simulation.pushModel],
+        ],
+      ],
+      [
+        words.treeTitle,
+        [
+          ["↑ ↓", words.rows],
+          ["← →", words.open],
+          ["Enter", words.edit],
+          [words.space, words.toggle],
+          [keyText(SHORTCUTS.add), displays.addHint],
+          [keyText(SHORTCUTS.duplicate), displays.duplicate],
+          [keyText(SHORTCUTS.rename), displays.rename],
+          [keyText(SHORTCUTS.remove), displays.remove],
+          [`${keyText(SHORTCUTS.moveUp)} ${keyText(SHORTCUTS.moveDown)}`, `${displays.moveUp}, ${displays.moveDown}`],
+        ],
+      ],
+      [
+        modelling.label,
+        [
+          ["T R S", Object.values(modelling.modes).join(", ")],
+          [`${keyText(WORLD_KEYS.copy)} ${keyText(WORLD_KEYS.paste)}`, modelling.copyPaste],
+          [keyText(WORLD_KEYS.duplicate), modelling.duplicate],
+          [keyText(WORLD_KEYS.remove), modelling.remove],
+          [keyText(WORLD_KEYS.group), modelling.group],
+          [keyText(WORLD_KEYS.ungroup), modelling.ungroup],
+          ["Esc", modelling.deselect],
+        ],
+      ],
+      [
+        words.generalTitle,
+        [
+          ["Esc", words.escape],
+          [keyText(SHORTCUTS.open), shell.open],
+          [keyText(SHORTCUTS.save), shell.save],
+          [keyText(SHORTCUTS.saveAs), shell.saveAs],
+          [keyText(SHORTCUTS.undo), shell.undo],
+          [keyText(SHORTCUTS.redo), shell.redo],
+          ["R", words.resetTime],
+          [TALK_KEY.toUpperCase(), strings.voice.talkKey],
+          ["F11", words.fullscreen],
+          ["?", words.sheet],
+        ],
+      ],
+    ];
+  }
+}
+
+function section(title: string, rows: readonly Row[], note?: string): HTMLElement {
+  const list = rows.flatMap(([keys, meaning]) => [h("dt", {}, h("kbd", {}, keys)), h("dd", {}, meaning)]);
+  return h("section", {}, h("h2", {}, title), h("dl", {}, ...list), note === undefined ? null : h("p", { class: "hint" }, note));
+}

@@ -1,0 +1,106 @@
+import type { Tokens } from "../connection/tokens";
+import { button, h } from "../dom";
+import type { Stage } from "../scene/stage";
+import { timeText, VideoRecorder } from "../scene/video";
+import type { Session } from "../state/session";
+import { strings } from "../strings";
+import { copyText } from "../widgets/copy-text";
+import { tell } from "../widgets/dialog";
+import type { MenuEntry } from "../widgets/menu";
+import { saveBlob, saveFrom } from "../widgets/save-file";
+
+const SCALES = [1, 2, 4] as const;
+
+/** What the user takes away: pictures and videos of the scene, the robot as a file. */
+export class ShareMenu {
+  /** Shown while a video is recorded: its time, and a click ends it. */
+  readonly element: HTMLElement;
+  private readonly video: VideoRecorder | null;
+  private readonly stop: HTMLButtonElement;
+
+  constructor(
+    private readonly session: Session,
+    private readonly stage: Stage | null,
+    private readonly tokens: Tokens,
+  ) {
+    this.video = stage && VideoRecorder.isPossible ? recorderOf(stage, (video) => this.keepVideo(video)) : null;
+    this.stop = button(strings.sharing.recording, () => this.video?.stop(), "tool recording", "");
+    this.element = h("span", { class: "recorder", role: "status" }, this.stop);
+    this.video?.changed.on(() => this.showTime());
+    this.showTime();
+    session.connection.on("export_ready", ({ url, name, outside }) => {
+      saveFrom(name, new URL(url, document.baseURI).href);
+      if (outside.length > 0) tell(strings.sharing.exportOutside, strings.sharing.exportOutsideHint, outside);
+    });
+    session.connection.on("export_failed", ({ message }) => tell(strings.sharing.exportFailed, message));
+  }
+
+  entries(): MenuEntry[] {
+    const words = strings.sharing;
+    const { stage, video } = this;
+    const recording = video?.isRecording ?? false;
+    return [
+      ...SCALES.map((scale): MenuEntry => ({
+        label: scale === 1 ? words.screenshot : words.screenshotScaled(scale),
+        icon: "camera",
+        disabled: stage === null,
+        run: () => void this.takePicture(scale),
+      })),
+      {
+        label: recording ? words.stopVideo(timeText(video?.seconds ?? 0)) : words.startVideo,
+        icon: "record",
+        disabled: video === null,
+        separate: true,
+        run: () => (recording ? video?.stop() : video?.start()),
+      },
+      { label: words.exportHtml, icon: "download", separate: true, disabled: this.hasNoRobot, run: () => this.ask("html") },
+      { label: words.exportGlb, icon: "download", disabled: this.hasNoRobot, run: () => this.ask("glb") },
+      { label: words.copyLink, hint: words.copyLinkHint, icon: "link", separate: true, run: () => void this.copyLink() },
+    ];
+  }
+
+  private get hasNoRobot(): boolean {
+    return this.session.robot === null;
+  }
+
+  private async takePicture(scale: number): Promise<void> {
+    const picture = await this.stage?.picture(scale);
+    if (picture) saveBlob(this.fileName("png"), picture);
+  }
+
+  private keepVideo(video: Blob): void {
+    saveBlob(this.fileName(video.type.startsWith("video/mp4") ? "mp4" : "webm"), video);
+  }
+
+  private ask(format: "html" | "glb"): void {
+    const { cls, name, values } = this.session.view.current;
+    this.session.connection.send({ type: "ask_export", format, view: { cls, name, values: { ...values } } });
+  }
+
+  private async copyLink(): Promise<void> {
+    const words = strings.sharing;
+    const { link } = this.tokens;
+    if (await copyText(link)) tell(words.linkCopied, words.copyLinkHint);
+    else tell(words.linkHere, link);
+  }
+
+  private showTime(): void {
+    const recording = this.video?.isRecording ?? false;
+    this.element.hidden = !recording;
+    const label = strings.sharing.stopVideo(timeText(this.video?.seconds ?? 0));
+    this.stop.textContent = `● ${timeText(this.video?.seconds ?? 0)}`;
+    this.stop.title = label;
+    this.stop.setAttribute("aria-label", label);
+  }
+
+  /** Named after the robot and the time. */
+  private fileName(ending: string): string {
+    const name = (this.session.robot?.name ?? "scene").replace(/[^\p{L}\p{N}._-]+/gu, "_");
+    const time = new Date().toISOString().slice(0, 19).replace(/[T:]/g, "-");
+    return `${name}-${time}.${ending}`;
+  }
+}
+
+function recorderOf({ viewport, loop }: Stage, finished: (video: Blob) => void): VideoRecorder {
+  return new VideoRecorder(viewport.canvas, () => loop.invalidate(), finished);
+}

@@ -1,0 +1,47 @@
+import { Signal } from "../signal";
+import type { TextStorage } from "../storage";
+
+export const THEME_CHOICES = ["system", "dark", "light"] as const;
+export type ThemeChoice = (typeof THEME_CHOICES)[number];
+export type Theme = "dark" | "light";
+
+const KEY = "linkwright.theme";
+
+/** The page's colours: the user's choice, else the system's. Drawings of the scene have their own, as in RViz. */
+export class ThemeState {
+  readonly changed = new Signal<Theme>();
+  private chosen: ThemeChoice;
+
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly storage: TextStorage,
+    private readonly system: MediaQueryList,
+  ) {
+    const remembered = storage.getItem(KEY);
+    this.chosen = THEME_CHOICES.find((each) => each === remembered) ?? "system";
+    system.addEventListener("change", () => this.apply());
+    this.apply();
+  }
+
+  get choice(): ThemeChoice {
+    return this.chosen;
+  }
+
+  get theme(): Theme {
+    if (this.chosen !== "system") return this.chosen;
+    return this.system.matches ? "light" : "dark";
+  }
+
+  choose(choice: ThemeChoice): void {
+    this.chosen = choice;
+    this.storage.setItem(KEY, choice);
+    this.apply();
+  }
+
+  private apply(): void {
+    const { theme } = this;
+    if (this.root.dataset["theme"] === theme) return;
+    this.root.dataset["theme"] = theme;
+    this.changed.emit(theme);
+  }
+}

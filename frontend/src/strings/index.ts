@@ -1,0 +1,24 @@
+import { browserStorage } from "../storage";
+import { en, type Strings } from "./en";
+import { zh } from "./zh";
+
+export type Language = "en" | "zh";
+
+const LANGUAGE_KEY = "linkwright.language";
+
+function preferred(): Language {
+  const chosen = browserStorage().getItem(LANGUAGE_KEY);
+  if (chosen === "en" || chosen === "zh") return chosen;
+  return navigator.language.toLowerCase().startsWith("zh") ? "zh" : "en";
+}
+
+export const language: Language = preferred();
+
+/** The page's words in the user's language. */
+export const strings: Strings = language === "zh" ? zh : en;
+
+/** Remembers the choice and shows the page anew. */
+export function chooseLanguage(next: Language): void {
+  browserStorage().setItem(LANGUAGE_KEY, next);
+  location.reload();
+}

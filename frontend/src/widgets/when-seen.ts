@@ -1,0 +1,20 @@
+/** Calls `changed` when an element comes into sight or goes: a hidden tab of the dock takes its panel out of the page. */
+export function whenSeen(element: HTMLElement, changed: (seen: boolean) => void): void {
+  let seen = false;
+  new ResizeObserver(() => {
+    const now = element.isConnected && element.offsetWidth > 0;
+    if (now === seen) return;
+    seen = now;
+    changed(seen);
+  }).observe(element);
+}
+
+/** Holds something for as long as an element is in sight; `shown` is called after each time that it was taken. */
+export function holdWhileSeen(element: HTMLElement, hold: () => () => void, shown: () => void): void {
+  let release: (() => void) | null = null;
+  whenSeen(element, (seen) => {
+    release?.();
+    release = seen ? hold() : null;
+    if (seen) shown();
+  });
+}
