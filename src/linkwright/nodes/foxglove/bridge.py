@@ -160,7 +160,7 @@ class FoxgloveBridge(SingleNode):
     # --- the network -------------------------------------------------------------------------------------------
 
     async def _serve(self) -> None:
-        from aiohttp import web
+        from linkwright.http_server import web
 
         application = web.Application()
         application.router.add_get("/", self._connected)
@@ -172,7 +172,7 @@ class FoxgloveBridge(SingleNode):
         self._node.get_logger().info(f"Foxglove and Lichtblick connect to {self.address}")
 
     async def _connected(self, request: web.Request) -> web.StreamResponse:
-        from aiohttp import WSMsgType, web
+        from linkwright.http_server import web
 
         if not is_welcome(request.headers.get("Origin"), self._origins):
             return web.Response(status=403, text="Pages of other sites may not connect.\n")
@@ -194,7 +194,7 @@ class FoxgloveBridge(SingleNode):
         writer = asyncio.get_running_loop().create_task(client.write())
         try:
             async for message in socket_:
-                if message.type in (WSMsgType.TEXT, WSMsgType.BINARY):
+                if message.type in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):
                     session.receive(message.data)
         finally:
             self._sessions.pop(session, None)

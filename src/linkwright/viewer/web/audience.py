@@ -265,16 +265,16 @@ class Audience(PageGroup):
         await asyncio.gather(*goodbyes, return_exceptions=True)
 
     async def _listen(self, page: Page, socket: WebSocketResponse) -> None:
-        from aiohttp import WSMsgType
+        from linkwright.http_server import web
 
         patience = _PATIENCE
         pace = Pace(asyncio.get_running_loop().time)
         async for message in socket:
-            if message.type not in (WSMsgType.TEXT, WSMsgType.BINARY):
+            if message.type not in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):
                 continue
             if (pause := pace.wait()) > 0:
                 await asyncio.sleep(pause)
-            if message.type is WSMsgType.BINARY:
+            if message.type is web.WSMsgType.BINARY:
                 sound = unpack_sound(message.data)
                 if sound is None:
                     await socket.close(code=1003, message=b"pages send text, and sound in blocks")

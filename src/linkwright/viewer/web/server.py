@@ -16,10 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
 
-from aiohttp import web
-from aiohttp.http_exceptions import HttpProcessingError
-
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.http_server import HttpProcessingError, web
 from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
 from linkwright.viewer.web.audience import Page, language_asked
 from linkwright.viewer.web.files import CONTENT_TYPES, Downloads, FileRefusedError, MeshFolders

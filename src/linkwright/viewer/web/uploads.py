@@ -16,11 +16,11 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Protocol
 
 import msgspec
-from aiohttp import web
 
 from linkwright.bag.scratch import scratch_folder
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, in_one_line, phrase
 from linkwright.diagnostics.translation import localized
+from linkwright.http_server import web
 from linkwright.viewer.web.audience import language_asked
 
 if TYPE_CHECKING:

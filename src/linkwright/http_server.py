@@ -1,0 +1,46 @@
+"""aiohttp's server without its client, which takes about as long to load.
+
+``import aiohttp`` loads both, and the client reads the system's certificates twice as it does. Here the package is
+entered without running its ``__init__``, and only the modules that a server needs are loaded. ``__init__`` runs when
+somebody asks for one of its names: a user's node, say, that fetches something.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec, module_from_spec
+from pathlib import Path
+from threading import RLock
+from typing import Any
+
+
+def _enter_package() -> None:
+    """Put aiohttp's package among the loaded modules, with nothing in it but what runs its ``__init__``."""
+    spec = find_spec("aiohttp")
+    if spec is None or spec.loader is None or spec.origin is None:
+        return  # the import below says what is wrong
+    package, loader, lock = module_from_spec(spec), spec.loader, RLock()
+    installed = [each.stem for each in Path(spec.origin).parents[1].glob("aiohttp-*.dist-info")]
+
+    def missing(name: str) -> Any:
+        if name == "__version__" and len(installed) == 1:
+            return installed[0].partition("-")[2]  # the server names itself by it
+        with lock:
+            if package.__dict__.get("__getattr__") is missing:
+                if find_spec(f"aiohttp.{name}"):
+                    raise AttributeError(name)  # then `import` loads that module
+                del package.__dict__["__getattr__"]
+                loader.exec_module(package)
+        return getattr(package, name)
+
+    package.__dict__["__getattr__"] = missing
+    sys.modules["aiohttp"] = package
+
+
+if "aiohttp" not in sys.modules:
+    _enter_package()
+
+from aiohttp import web  # noqa: E402 - after the package is entered
+from aiohttp.http_exceptions import HttpProcessingError  # noqa: E402 - as above
+
+__all__ = ["HttpProcessingError", "web"]
