@@ -3,12 +3,8 @@
 from typing import TYPE_CHECKING
 
 from linkwright.deferred import deferred
-from linkwright.graph.actions.client import ActionClient, ClientGoalHandle
-from linkwright.graph.actions.goal import CancelResponse, GoalResponse, GoalStatus, ServerGoalHandle
-from linkwright.graph.actions.server import ActionServer
 from linkwright.graph.computation_graph import Graph
 from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, SubscriptionEventCallbacks
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
@@ -77,6 +73,10 @@ from linkwright.graph.transforms.errors import (
 )
 
 if TYPE_CHECKING:
+    from linkwright.graph.actions.client import ActionClient, ClientGoalHandle
+    from linkwright.graph.actions.goal import CancelResponse, GoalResponse, GoalStatus, ServerGoalHandle
+    from linkwright.graph.actions.server import ActionServer
+    from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, SubscriptionEventCallbacks
     from linkwright.graph.transforms.buffer import FrameSnapshot, TransformBuffer
     from linkwright.graph.transforms.listener import TransformListener
 
@@ -181,8 +181,12 @@ __all__ = [
 __getattr__ = deferred(
     __name__,
     {
+        "actions.client": ("ActionClient", "ClientGoalHandle"),
+        "actions.goal": ("CancelResponse", "GoalResponse", "GoalStatus", "ServerGoalHandle"),
+        "actions.server": ("ActionServer",),
+        "endpoints.event_types": ("PublisherEventCallbacks", "SubscriptionEventCallbacks"),
         "transforms.buffer": ("FrameSnapshot", "TransformBuffer"),
         "transforms.listener": ("TransformListener",),
     },
 )
-"""Those made of numpy's arrays, whose import takes longer than all else here."""
+"""What most nodes do without; transforms are made of numpy's arrays, whose import takes longer than all else here."""

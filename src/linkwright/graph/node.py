@@ -7,8 +7,6 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.content_filter import ContentFilterOptions
-from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, SubscriptionEventCallbacks
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
@@ -40,6 +38,8 @@ from linkwright.graph.time.values import NANOSECONDS_PER_SECOND
 if TYPE_CHECKING:
     from typing_extensions import Self
 
+    from linkwright.graph.endpoints.content_filter import ContentFilterOptions
+    from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, SubscriptionEventCallbacks
     from linkwright.graph.executors import Executor
     from linkwright.graph.introspection.answers import TopicEndpointInfo
 

@@ -12,7 +12,7 @@ from linkwright.diagnostics.render import shown_width
 from linkwright.diagnostics.translation import localized
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import inertial_block
-from linkwright.inertia.estimate import Estimate
+from linkwright.inertia.estimation import Estimate
 from linkwright.inertia.inertial import to_inertial
 from linkwright.inertia.verdict import Standing, Verdict, grouped, judge
 from linkwright.inertia.writing import Written

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import dist, isfinite
-from statistics import median
+
+import numpy as np
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.bounds import Bounds, bounds_of, union
@@ -36,7 +37,7 @@ def size_of(robot: Robot) -> ModelSize | None:
         if joint.child in frames and joint.parent in frames
     ]
     apart = [step for step in steps if step > _APART]
-    return ModelSize(whole.diagonal, median(apart) if apart else whole.diagonal)
+    return ModelSize(whole.diagonal, float(np.median(apart)) if apart else whole.diagonal)
 
 
 def _simple_shapes(robot: Robot, link: str) -> Iterator[Bounds]:

@@ -6,11 +6,9 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from functools import partial
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.graph.endpoints.base import TopicEndpoint
-from linkwright.graph.endpoints.endpoint_events import PublisherEvents
-from linkwright.graph.endpoints.event_types import EventHandler, PublisherEventCallbacks
 from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.log.logger import run_logged
@@ -20,6 +18,10 @@ from linkwright.graph.qos.compatibility import limit_ns
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
 from linkwright.graph.time.values import Duration
 from linkwright.messages import serialize
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.endpoint_events import PublisherEvents
+    from linkwright.graph.endpoints.event_types import EventHandler, PublisherEventCallbacks
 
 M = TypeVar("M")
 
@@ -66,6 +68,8 @@ class Publisher(TopicEndpoint[M]):
         self._copies = node.copies_messages
         self._is_plain = not keeps and not self._copies
         if event_callbacks is not None:
+            from linkwright.graph.endpoints.endpoint_events import PublisherEvents  # here: few ask for events
+
             self.events = PublisherEvents(self, event_callbacks, self._liveliness_changed)
             self._is_plain = self._is_plain and not self.events.wants_messages
 
@@ -93,6 +97,8 @@ class Publisher(TopicEndpoint[M]):
     @property
     def event_handlers(self) -> list[EventHandler]:
         """The handlers of its events: those with a callback, and those that only log."""
+        from linkwright.graph.endpoints.event_types import PublisherEventCallbacks
+
         return (self.event_callbacks or PublisherEventCallbacks()).handlers()
 
     def get_subscription_count(self) -> int:

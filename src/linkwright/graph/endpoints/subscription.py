@@ -8,19 +8,21 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import partial
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.base import TopicEndpoint
-from linkwright.graph.endpoints.content_filter import ContentFilter, ContentFilterOptions
-from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents
-from linkwright.graph.endpoints.event_types import EventHandler, SubscriptionEventCallbacks
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.entity import Entity, accepts
 from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import deserialize, serialize
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.content_filter import ContentFilter, ContentFilterOptions
+    from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents
+    from linkwright.graph.endpoints.event_types import EventHandler, SubscriptionEventCallbacks
 
 M = TypeVar("M")
 
@@ -80,6 +82,8 @@ class Subscription(TopicEndpoint[M], Entity):
         self.event_callbacks = event_callbacks
         self.events: SubscriptionEvents | None = None
         if event_callbacks is not None:
+            from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents  # here: few ask for events
+
             self.events = SubscriptionEvents(self, event_callbacks)
         self._publishers: dict[TopicEndpoint[Any], None] = {}
         self._filter: ContentFilter | None = None
@@ -122,6 +126,8 @@ class Subscription(TopicEndpoint[M], Entity):
     @property
     def event_handlers(self) -> list[EventHandler]:
         """The handlers of its events: those with a callback, and those that only log."""
+        from linkwright.graph.endpoints.event_types import SubscriptionEventCallbacks
+
         return (self.event_callbacks or SubscriptionEventCallbacks()).handlers()
 
     def get_publisher_count(self) -> int:
@@ -135,6 +141,8 @@ class Subscription(TopicEndpoint[M], Entity):
 
     def get_content_filter(self) -> ContentFilterOptions:
         """The content filter in force; an empty one where there is none."""
+        from linkwright.graph.endpoints.content_filter import ContentFilterOptions
+
         return ContentFilterOptions("") if self._filter is None else self._filter.options
 
     def set_content_filter(self, filter_expression: str, expression_parameters: Sequence[str] = ()) -> None:
@@ -147,6 +155,8 @@ class Subscription(TopicEndpoint[M], Entity):
         Raises:
             ContentFilterError: the condition cannot be parsed, or a field or parameter is not there.
         """
+        from linkwright.graph.endpoints.content_filter import ContentFilter, ContentFilterOptions
+
         options = ContentFilterOptions(filter_expression, list(expression_parameters))
         self._filter = ContentFilter(options, self.msg_type) if filter_expression.strip() else None
 

@@ -1,14 +1,13 @@
 """Reading what a ``setup.py`` installs from its syntax tree, without running it.
 
-Each ``$(find PACKAGE)`` of sources reads one. So what is only facts is a named tuple here and in what this loads:
-Python makes its class in a sixth of the time that a frozen data class takes.
+Each ``$(find PACKAGE)`` of sources reads one. So what is only facts is a named tuple or a plain class here and in what
+this loads: Python makes such a class in a sixth of the time that a data class takes.
 """
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from glob import glob
 from pathlib import Path
 from typing import NamedTuple
@@ -61,7 +60,6 @@ class Program(NamedTuple):
     span: Span
 
 
-@dataclass
 class SetupFile:
     """A ``setup.py``.
 
@@ -78,17 +76,18 @@ class SetupFile:
         entry_points_complete: whether these are all.
     """
 
-    source: SourceText
-    tree: ast.Module | None = None
-    error: SyntaxMistake | None = None
-    call: bool = False
-    name: tuple[str, Span] | None = None
-    installed: list[Installed] = field(default_factory=list)
-    data_files_span: Span | None = None
-    is_complete: bool = True
-    packages: list[tuple[str, Span]] | None = None
-    entry_points: list[Program] = field(default_factory=list)
-    entry_points_complete: bool = True
+    def __init__(self, source: SourceText) -> None:
+        self.source = source
+        self.tree: ast.Module | None = None
+        self.error: SyntaxMistake | None = None
+        self.call = False
+        self.name: tuple[str, Span] | None = None
+        self.installed: list[Installed] = []
+        self.data_files_span: Span | None = None
+        self.is_complete = True
+        self.packages: list[tuple[str, Span]] | None = None
+        self.entry_points: list[Program] = []
+        self.entry_points_complete = True
 
     def installed_files(self, package: Path) -> Iterator[InstalledFile]:
         """What ``data_files`` installs, file by file, where that can be told.

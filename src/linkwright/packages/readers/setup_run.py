@@ -9,7 +9,6 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -57,11 +56,11 @@ class _Unknown:
 _UNKNOWN = _Unknown()
 
 
-@dataclass(frozen=True)
 class _Named:
     """Something of a module, by its full name."""
 
-    name: str
+    def __init__(self, name: str) -> None:
+        self.name = name
 
 
 class _CannotFollowError(Exception):

@@ -10,20 +10,13 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from difflib import SequenceMatcher
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, joined, phrase
-from linkwright.graph import (
-    ExtrapolationException,
-    QoSProfile,
-    Subscription,
-    SubscriptionEventCallbacks,
-    TransformException,
-)
+from linkwright.graph import ExtrapolationException, QoSProfile, Subscription, TransformException
 from linkwright.viewer.config.property_store import qos_of
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import FILTER_SIZE, Path, Schema, topic_spec
@@ -250,6 +243,8 @@ class TopicDisplay(DataDisplay, ABC):
         if not topic:
             self.say(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
+        from linkwright.graph import SubscriptionEventCallbacks  # here: a robot alone has no topics
+
         try:
             self._subscription = self.context.node.create_subscription(
                 message,
@@ -341,6 +336,8 @@ class TopicDisplay(DataDisplay, ABC):
             return phrase("nothing came yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
         names = (name for name, found in self.context.node.get_topic_names_and_types() if message in found)
         there = sorted(name for name in names if self._publishers(name))
+        from difflib import SequenceMatcher  # here, because most topics are there
+
         there = sorted(there, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[:_MOST_OTHERS]
         if there:
             return phrase(
