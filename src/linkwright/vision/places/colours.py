@@ -60,12 +60,12 @@ def colour_of(picture: NDArray[np.uint8], box: NDArray[np.floating]) -> str | No
 
 def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
     """The places in `COLOURS` of pixels: red, green, blue, shape ``(n, 3)``."""
-    values = pixels.astype(np.float64) / 255
-    most, least = values.max(axis=1), values.min(axis=1)
+    values = np.ascontiguousarray(pixels.T) / 255.0  # a row a channel: compared in half of the time
+    most, least = values.max(axis=0), values.min(axis=0)
     chroma = most - least
     saturation = chroma / np.maximum(most, 1e-9)
     hue = _hue(values, most, chroma)
-    found = np.full(len(values), COLOURS.index("red"), np.intp)
+    found = np.full(len(pixels), COLOURS.index("red"), np.intp)
     for limit, name in reversed(_HUES):
         found[hue < limit] = COLOURS.index(name)
     found[(hue >= _PINK_HUES[0]) & (hue < _PINK_HUES[1])] = COLOURS.index("pink")
@@ -82,7 +82,7 @@ def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
 
 def _hue(values: Floats, most: Floats, chroma: Floats) -> Floats:
     """In degrees, 0 for red and for grey."""
-    red, green, blue = values.T
+    red, green, blue = values
     safe = np.maximum(chroma, 1e-9)
     sixths = np.where(
         most == red,
