@@ -5,12 +5,13 @@ from __future__ import annotations
 import gc
 import signal
 import sys
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from tests.domains import own_domain
+from tests.forked import ForkServer
 from tests.repository_tools import load_tool
 
 # How long an example takes says how busy the machine is. With CI set, hypothesis draws the same examples each time.
@@ -49,6 +50,14 @@ def _state_of_the_user(tmp_path_factory):
 def _catalogues():
     """The program speaks other languages as the catalogues of the checkout have it."""
     load_tool("catalogues").compile_catalogues()
+
+
+@pytest.fixture(scope="session")
+def fork_server() -> Iterator[ForkServer]:
+    """What starts ``python -m linkwright`` in a fifth of the time, for tests of what it does then."""
+    server = ForkServer()
+    yield server
+    server.close()
 
 
 @pytest.fixture(autouse=True)

@@ -8,8 +8,6 @@ import queue
 import re
 import shutil
 import signal
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Generator, Iterator
@@ -20,8 +18,10 @@ from typing import Any, TypeVar
 import pytest
 from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
+from tests import forked
 from tests.browser.live import LiveViewer, configuration
 from tests.browser.seen import what_was_seen
+from tests.forked import ForkServer, start_process
 from tests.waiting import wait_until
 
 SECONDS = 60.0
@@ -106,7 +106,7 @@ def browser(playwright: Playwright) -> Iterator[Browser]:
 class Program:
     """A running `linkwright` command; `output` is all it printed, standard error included, so far."""
 
-    process: subprocess.Popen[str]
+    process: forked.Program
     url: str = ""
     output: list[str] = field(default_factory=list)
     _lines: queue.Queue[str | None] = field(default_factory=queue.Queue)
@@ -142,17 +142,28 @@ Start = Callable[..., Program]
 
 
 @pytest.fixture
-def start(tmp_path: Path) -> Iterator[Start]:
+def start(tmp_path: Path, fork_server: ForkServer) -> Iterator[Start]:
     """A function that starts `linkwright WORDS... --no-open` and waits for the viewer's address."""
+    with starting(fork_server.start, tmp_path) as run:
+        yield run
+
+
+@pytest.fixture
+def start_fresh(tmp_path: Path) -> Iterator[Start]:
+    """The same with processes that import everything themselves, as those of users do."""
+    with starting(start_process, tmp_path) as run:
+        yield run
+
+
+@contextlib.contextmanager
+def starting(start_program: Callable[..., forked.Program], folder: Path) -> Iterator[Start]:
+    """What both kinds of starting have in common."""
     running: list[tuple[Program, threading.Thread]] = []
 
-    def run(*words: str, cwd: Path = tmp_path) -> Program:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "linkwright", *words, "--no-open"],
+    def run(*words: str, cwd: Path = folder) -> Program:
+        process = start_program(
+            [*words, "--no-open"],
             cwd=cwd,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
             # Robots of other tests that run at this moment must not come to this page over DDS.
             env={**os.environ, "PYTHONUNBUFFERED": "1", "NO_COLOR": "1", "LINKWRIGHT_DDS": "0"},
         )

@@ -25,8 +25,8 @@ def edit(path, before, after):
     path.write_text(text.replace(before, after), encoding="utf-8")
 
 
-def test_change_break_and_repair(start, open_page, model):
-    program = start("launch", "my_robot_description", "display_xacro.launch.py", f"model:={model}")
+def test_change_break_and_repair(start_fresh, open_page, model):
+    program = start_fresh("launch", "my_robot_description", "display_xacro.launch.py", f"model:={model}")
     page = open_page(program)
     page.locator('[data-joint="left_wheel_joint"] input[type=range]').fill("1.2")
     until(page, "lw.joints.left_wheel_joint > 1")
@@ -59,8 +59,8 @@ def test_change_break_and_repair(start, open_page, model):
     assert program.interrupt() == 130
 
 
-def test_a_link_that_goes_leaves_no_ghost(start, open_page, model):
-    page = open_page(start("view", str(model)))
+def test_a_link_that_goes_leaves_no_ghost(start_fresh, open_page, model):
+    page = open_page(start_fresh("view", str(model)))
     assert state(page, "robot.links") == 12
     edit(model, "<xacro:laser ", "<!-- <xacro:laser ")
     edit(model, '"${laser_joint_z}"/>', '"${laser_joint_z}"/> -->')
@@ -68,9 +68,9 @@ def test_a_link_that_goes_leaves_no_ghost(start, open_page, model):
     until(page, "!('laser_link' in lw.frames)")
 
 
-def test_a_model_broken_at_the_start_is_shown_when_it_is_mended(start, open_page, model):
+def test_a_model_broken_at_the_start_is_shown_when_it_is_mended(start_fresh, open_page, model):
     edit(model, "</robot>", "</robott>")
-    program = start("view", str(model))
+    program = start_fresh("view", str(model))
     page = open_page(program, wait=False)
     page.get_by_text("</robott>", exact=False).first.wait_for()
     edit(model, "</robott>", "</robot>")

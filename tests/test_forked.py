@@ -1,0 +1,110 @@
+"""Programs that are forked off do what processes of their own do."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+
+import pytest
+
+from tests import forked
+from tests.forked import ForkServer, start_process
+from tests.places import PACKAGE
+from tests.waiting import SECONDS, wait_until
+
+pytestmark = pytest.mark.skipif(not forked.IS_POSSIBLE, reason="only Linux can wait for a process by a file")
+
+ROBOT = PACKAGE / "urdf" / "mbot_base.xacro"
+QUIET = {**os.environ, "LINKWRIGHT_DDS": "0", "NO_COLOR": "1"}
+
+
+@pytest.fixture(params=["forked", "fresh"])
+def start(request, fork_server):
+    return fork_server.start if request.param == "forked" else start_process
+
+
+def ended(program: forked.Program) -> tuple[str, int]:
+    with program.stdout:
+        return program.stdout.read(), program.wait(SECONDS)
+
+
+def test_what_a_program_prints_and_its_status(start, tmp_path):
+    printed, status = ended(start(["xacro", str(ROBOT)], cwd=tmp_path, env=QUIET))
+    assert printed.rstrip().endswith("</robot>")
+    assert status == 0
+    printed, status = ended(start(["check", "absent.urdf"], cwd=tmp_path, env=QUIET))
+    assert "absent.urdf" in printed
+    assert status == 1
+    printed, status = ended(start(["vew"], cwd=tmp_path, env=QUIET))
+    assert "did you mean" in printed
+    assert status == 2
+
+
+def test_its_folder_environment_and_input_are_its_own(start, tmp_path):
+    launch = tmp_path / "told.launch.py"
+    launch.write_text(
+        "import os, sys\n"
+        "print('folder', os.getcwd(), 'first', sys.path[0], 'word', os.environ.get('A_WORD'), 'argv', sys.argv[1:])\n"
+        "print('home', os.environ.get('HOME'), 'input', repr(sys.stdin.read()))\n"
+        "from launch import LaunchDescription\n"
+        "def generate_launch_description():\n"
+        "    return LaunchDescription()\n"
+    )
+    words = ["launch", "told.launch.py", "--no-open"]
+    env = {**QUIET, "A_WORD": "here"}
+    del env["HOME"]
+    printed, status = ended(start(words, cwd=tmp_path, env=env))
+    assert status == 0, printed
+    assert f"folder {tmp_path} first {tmp_path} word here argv {words}" in printed
+    assert "home None input ''" in printed
+
+
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -signal.SIGKILL)]
+)
+def test_signals_end_it(start, tmp_path, number, status):
+    program = start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env={**QUIET, "PYTHONUNBUFFERED": "1"})
+    with program.stdout:
+        assert any(line.startswith("Viewer: ") for line in program.stdout)
+        assert program.poll() is None
+        with pytest.raises(subprocess.TimeoutExpired):
+            program.wait(0.01)
+        program.send_signal(number)
+        program.stdout.read()
+        assert program.wait(SECONDS) == status
+        assert program.poll() == status
+        program.send_signal(number)  # to nobody
+
+
+def test_several_run_at_once_and_one_that_nobody_waits_for_hinders_none(fork_server, tmp_path):
+    first, second = (fork_server.start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env=QUIET) for _ in range(2))
+    forgotten = fork_server.start(["--version"], cwd=tmp_path, env=QUIET)
+    os.close(forgotten._report)
+    with first.stdout, second.stdout, forgotten.stdout:
+        forgotten.stdout.read()
+        second.terminate()
+        second.wait(SECONDS)
+        assert first.poll() is None
+        assert ended(fork_server.start(["--version"], cwd=tmp_path, env=QUIET))[1] == 0
+        first.kill()
+        assert first.wait(SECONDS) == -signal.SIGKILL
+
+
+def test_a_server_that_cannot_begin_says_why(tmp_path, monkeypatch):
+    monkeypatch.setattr(forked, "ROOT", tmp_path)  # where there is no module of that name
+    server = ForkServer()
+    with pytest.raises(AssertionError, match="No module named 'tests'"):
+        server.start(["--version"], cwd=tmp_path, env=QUIET)
+    server.close()
+
+
+def test_programs_go_on_when_the_server_ends(tmp_path):
+    server = ForkServer()
+    program = server.start(["view", str(ROBOT), "--no-open"], cwd=tmp_path, env={**QUIET, "PYTHONUNBUFFERED": "1"})
+    with program.stdout:
+        assert any(line.startswith("Viewer: ") for line in program.stdout)
+        server.close()
+        os.kill(program.pid, 0)
+        os.kill(program.pid, signal.SIGTERM)
+        wait_until(lambda: program.stdout.read() == "")
