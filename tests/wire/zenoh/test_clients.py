@@ -32,6 +32,11 @@ def followed(process, session):
     return sum(session in key for key in tuple(process.transport._zenoh_engine._interests._declared))
 
 
+def sessions_here(process):
+    """How many sessions a process was told of that say so when they leave."""
+    return len(process.transport._departures.here)
+
+
 def test_what_own_endpoints_need_is_known_and_nothing_else(processes):
     talker, other = processes("talker"), processes("other")
     publisher = talker.node.create_publisher(String, "chatter", 10)
@@ -138,6 +143,7 @@ def test_a_publisher_that_was_killed_is_lost_and_one_that_left_is_not(processes,
     left.create_publisher(Int32, "flood", 10)
     victim = programs("our_program", "victim")
     ours.spin_until(lambda: subscription.get_publisher_count() == 2)
+    ours.spin_until(lambda: sessions_here(ours) == 2)  # of one that ends before that nobody knows how
     if its_process_goes_on:
         left.destroy_node()
     else:

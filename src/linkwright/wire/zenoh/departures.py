@@ -4,6 +4,9 @@ A token goes when its owner withdraws it, and when its session ends, however tha
 token of their own, and say that they leave before it goes: what they had is lost when it goes without that. Others
 withdraw the endpoints of a node before the node itself; at the end of a session that was killed all its tokens go at
 once, in no order. So an endpoint is lost whose node went before it.
+
+A client of a router asks for a session's other tokens once it knows of a publisher there (`Interests.follow`). Of a
+session that ends before the router has answered, milliseconds later, nothing tells how: it counts as one that left.
 """
 
 from __future__ import annotations
@@ -111,10 +114,12 @@ class Departures:
 
     def _is_lost(self, gone: _Gone) -> bool:
         token = gone.token
-        if self._remote.is_there(gone.key) or token.node_key not in self._nodes_gone:
+        if self._remote.is_there(gone.key):
             return False
         if token.session in self._here or token.session in self._ended:
             return token.session in self._ended and token.session not in self._left
+        if token.node_key not in self._nodes_gone:
+            return False
         return token.node_key in self._unordered or self._remote.has_endpoints(token.node_key)
 
     def _forget(self, now: float) -> None:

@@ -1,0 +1,89 @@
+"""How publishers of other sessions went, told by the order of news, some of which may not come."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.zenoh.departures import GRACE, Departures
+from linkwright.wire.zenoh.remote import RemoteGraph
+from linkwright.wire.zenoh.tokens import Token
+
+SESSION = "5e55"
+NAME = NodeIdentity("talker", "/far")
+NODE = Token(7, SESSION, "0", "0", NAME)
+PUBLISHER = Token(
+    7,
+    SESSION,
+    "0",
+    "1",
+    NAME,
+    EndpointKind.PUBLISHER,
+    "/chatter",
+    "std_msgs::msg::dds_::String_",
+    "hash",
+    "::,10:,:,:,,",
+)
+
+
+class Scene:
+    """A session with a publisher, and who is told to be lost."""
+
+    def __init__(self) -> None:
+        self.time = 0.0
+        self.lost: list[EndpointInfo] = []
+        self.remote = RemoteGraph()
+        self.departures = Departures(self.remote, lambda: self.time)
+        self.departures.watch(self.lost.append)
+        self.remote.came(PUBLISHER.key, PUBLISHER)
+
+    def went(self, token: Token) -> None:
+        if self.remote.went(token.key) is not None:
+            self.departures.went(token.key, token)
+
+    def names_lost(self) -> list[str]:
+        """Those that are lost once all is judged."""
+        self.time += 2 * GRACE
+        assert self.departures.review() is None
+        return [each.name for each in self.lost]
+
+
+@pytest.mark.parametrize("leaves", [False, True], ids=["killed", "left"])
+@pytest.mark.parametrize("knows_node", [False, True], ids=["of the publisher alone", "of its node"])
+def test_the_end_of_its_session_is_enough(leaves, knows_node):
+    """Which a client is told of before the node: it may be killed in between."""
+    scene = Scene()
+    scene.departures.session_came(SESSION)
+    if knows_node:
+        scene.remote.came(NODE.key, NODE)
+    if leaves:
+        scene.departures.session_leaves(SESSION)
+    scene.departures.session_ended(SESSION)
+    scene.went(PUBLISHER)
+    scene.went(NODE)
+    assert scene.names_lost() == ([] if leaves else ["/chatter"])
+
+
+def test_a_publisher_whose_session_and_node_stay_was_withdrawn():
+    scene = Scene()
+    scene.departures.session_came(SESSION)
+    scene.remote.came(NODE.key, NODE)
+    scene.went(PUBLISHER)
+    assert scene.names_lost() == []
+
+
+@pytest.mark.parametrize("first", [NODE, PUBLISHER], ids=["node", "publisher"])
+def test_in_a_session_of_others_it_is_lost_when_its_node_went_first(first):
+    scene = Scene()
+    scene.remote.came(NODE.key, NODE)
+    scene.went(first)
+    scene.went(NODE)
+    scene.went(PUBLISHER)
+    assert scene.names_lost() == (["/chatter"] if first is NODE else [])
+
+
+def test_of_a_session_of_which_nothing_else_is_known_it_counts_as_one_that_left():
+    scene = Scene()
+    scene.went(PUBLISHER)
+    assert scene.names_lost() == []
