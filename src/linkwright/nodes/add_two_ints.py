@@ -14,7 +14,7 @@ _WAIT_SECONDS = 1.0
 
 
 class AddTwoIntsServer(SingleNode):
-    """The running server."""
+    """The running server; logs each request."""
 
     DEFAULT_NAME = "add_two_ints_server"
 
@@ -29,7 +29,7 @@ class AddTwoIntsServer(SingleNode):
 
 
 class AddTwoIntsClient(SingleNode):
-    """The running client: waits for the server, has 2 and 3 added, and ends."""
+    """The running client: waits for the server, asks it to add 2 and 3, and ends."""
 
     DEFAULT_NAME = "add_two_ints_client"
 

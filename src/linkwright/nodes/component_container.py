@@ -52,11 +52,11 @@ class ComponentContainer(SingleNode):
 
     @property
     def loaded(self) -> dict[int, RunningNode]:
-        """The nodes in it, by the numbers that it gave them."""
+        """The loaded nodes by their numbers."""
         return dict(self._loaded)
 
     def close(self) -> None:
-        """Unload all nodes and end it."""
+        """Unload all nodes and close it."""
         for number in tuple(self._loaded):
             self._close(number)
         super().close()

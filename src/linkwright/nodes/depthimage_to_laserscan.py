@@ -1,4 +1,4 @@
-"""depthimage_to_laserscan_node: the rows in the middle of a depth image as a laser scan.
+"""depthimage_to_laserscan_node: a laser scan from the middle rows of a depth image.
 
 Source: depthimage_to_laserscan 2.5 (ROS 2 Humble).
 """

@@ -1,4 +1,4 @@
-"""Nodes that say each second on ``/diagnostics`` how they are, as with diagnostic_updater."""
+"""Publishing diagnostics of a node each second on ``/diagnostics``, as diagnostic_updater does."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Level(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Health:
-    """How something is: a level, a sentence, and values by name."""
+    """A status: a level, a sentence, and values by name."""
 
     level: Level
     message: str
@@ -31,7 +31,7 @@ class Health:
 
 
 class DiagnosticUpdater:
-    """Publishes how a node is, each second of its clock.
+    """Publishes the diagnostics of a node, each second of its clock.
 
     Args:
         node: whose name stands before that of the task.

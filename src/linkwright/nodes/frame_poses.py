@@ -1,4 +1,4 @@
-"""Where frames are, for nodes that take messages from the frame of a sensor to another one."""
+"""Looking up poses of frames, for nodes that transform messages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _SECONDS_BETWEEN_COMPLAINTS = 5.0
 
 
 class FramePoses:
-    """The transforms that a node hears.
+    """The transforms that a node receives.
 
     Args:
         node: listens to ``/tf`` and ``/tf_static``.
@@ -28,7 +28,7 @@ class FramePoses:
         TransformListener(self.buffer, node)
 
     def pose(self, target: str, source: str, time_ns: int) -> Transform | None:
-        """The pose of a frame in another one at a time, or as it was last known.
+        """The pose of a frame in another one at a time, or the latest known.
 
         It never waits: a transform that is a little late is used as it was before. Where there is none at all, that is
         logged now and then, and the result is None.

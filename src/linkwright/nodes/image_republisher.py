@@ -1,4 +1,4 @@
-"""republish of image_transport: images from one transport to another: raw, compressed, compressedDepth.
+"""republish of image_transport: converts images between the transports raw, compressed and compressedDepth.
 
 Sources: image_transport 3.1 (ROS 2 Humble) and later, compressed_image_transport, compressed_depth_image_transport. The
 transport of the input comes from the first word or the parameter ``in_transport``, that of the output likewise; without
@@ -113,7 +113,7 @@ class ImageRepublisher(SingleNode):
 
 
 def topic_of(node: Node, base: str, transport: str) -> str:
-    """The topic of a transport: where the base is remapped, its name there with the transport behind it."""
+    """The name of a transport's topic: the remapped base with the transport behind it."""
     if transport == "raw":
         return base
     resolved = node.resolve_topic_name(base)

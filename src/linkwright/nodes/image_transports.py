@@ -1,4 +1,4 @@
-"""Images as messages of image_transport's plugins ``compressed`` and ``compressedDepth``, and back.
+"""Converting images to messages of image_transport's plugins ``compressed`` and ``compressedDepth``, and back.
 
 Sources: compressed_image_transport (the format's text), compressed_depth_image_transport (the header, the quantization
 of depths in metres by ``depth_max`` 10 and ``depth_quantization`` 100).
@@ -28,7 +28,7 @@ __all__ = ["BadImageError", "compressed_depth", "compressed_image", "plain_depth
 
 
 def plain_image(message: Any) -> Any:
-    """A sensor_msgs/msg/CompressedImage of the transport ``compressed`` as sensor_msgs/msg/Image.
+    """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressed`` to a sensor_msgs/msg/Image.
 
     Raises:
         BadImageError: it is no JPEG or PNG.
@@ -42,7 +42,7 @@ def plain_image(message: Any) -> Any:
 
 
 def compressed_depth(image: Any) -> Any | None:
-    """A depth image as sensor_msgs/msg/CompressedImage of the transport ``compressedDepth``; None for any other image.
+    """Encode a depth image for the transport ``compressedDepth``; None for other images.
 
     Raises:
         BadImageError: it has less data than it says.
@@ -73,7 +73,7 @@ def compressed_depth(image: Any) -> Any | None:
 
 
 def plain_depth(message: Any) -> Any:
-    """A sensor_msgs/msg/CompressedImage of the transport ``compressedDepth`` as sensor_msgs/msg/Image.
+    """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressedDepth`` to a sensor_msgs/msg/Image.
 
     Raises:
         BadImageError: it is none, or its data are not in it.

@@ -1,4 +1,4 @@
-"""imu_filter_madgwick_node and complementary_filter_node of imu_tools: the orientation of an IMU that measures none.
+"""imu_filter_madgwick_node and complementary_filter_node of imu_tools: orientation from rates and accelerations.
 
 Sources: imu_filter_madgwick and imu_complementary_filter 2.1 (ROS 2 Humble): topics, parameters, defaults. What the IMU
 measures goes with what the magnetometer measured last; there stamps are matched.
@@ -37,7 +37,7 @@ class _Filter(Protocol):
 
 
 class _ImuFilter(SingleNode, ABC):
-    """What both have in common: the topics, the transform, the time between measurements."""
+    """The base of both: topics, transform, and the time between measurements."""
 
     _USES_MAGNETOMETER: bool
     _PUBLISHES_TF: bool
@@ -73,17 +73,17 @@ class _ImuFilter(SingleNode, ABC):
 
     @abstractmethod
     def _make(self) -> _Filter:
-        """The filter, of the rest of the parameters."""
+        """Make the filter from the rest of the parameters."""
 
     def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        """Get the first orientation; whether there is one."""
+        """Initialise the orientation; whether that succeeded."""
         return True
 
     def _published(self, orientation: Quaternion) -> Quaternion:
         return orientation
 
     def _felt(self, acceleration: Vector3) -> Vector3:
-        """The acceleration as it is published."""
+        """The acceleration to be published."""
         return acceleration
 
     def _hear_magnetic(self, message: Any) -> None:

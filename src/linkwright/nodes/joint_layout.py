@@ -1,4 +1,4 @@
-"""Which joints joint_state_publisher publishes, in which order, within which limits, and which follow which."""
+"""The joints of joint_state_publisher: order, limits, and mimic joints."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _UNLIMITED_SPAN = {"revolute": 2.0 * pi, "continuous": 2.0 * pi, "prismatic": 2.
 
 @dataclass(frozen=True, slots=True)
 class JointRange:
-    """A joint that is published, with the positions it may take (rad or m); both limits are finite.
+    """A published joint with its range (rad or m); both limits are finite.
 
     `zero` is where it starts: its entry in ``zeros``, else 0, or the middle where 0 is not within the limits.
     """
@@ -63,7 +63,7 @@ class JointLayout:
 
 
 def empty_layout() -> JointLayout:
-    """The layout before there is a description."""
+    """The layout without a description."""
     return JointLayout({}, (), {}, np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0), ())
 
 
@@ -108,7 +108,7 @@ def layout_of(robot: Robot, settings: JointSettings) -> JointLayout:
 
 
 def _resolve(name: str, dependent: Mapping[str, Dependence]) -> tuple[str, float, float]:
-    """The joint at the end of a chain, and the factor and offset along it."""
+    """The free joint at the end of a chain of mimics, and the factor and offset along it."""
     chain = [name]
     factor, offset = 1.0, 0.0
     while (link := dependent.get(name)) is not None:
@@ -148,7 +148,7 @@ def _limits(joint: Joint, settings: JointSettings, problems: list[str]) -> tuple
 
 
 def _missing_limit(joint: Joint) -> str | None:
-    """A limit that urdfdom takes for 0 because it is absent, and joint_state_publisher refuses."""
+    """The name of a limit that is missing: urdfdom takes it for 0, and joint_state_publisher refuses it."""
     if joint.limit is None:
         return None
     for name, value in (("lower", joint.limit.lower), ("upper", joint.limit.upper)):
@@ -158,7 +158,7 @@ def _missing_limit(joint: Joint) -> str | None:
 
 
 def _is_given(joint: Joint, tag: str, attribute: str) -> bool:
-    """Whether the file has the attribute. A joint that was not read from a file has them all."""
+    """Whether the file has the attribute. A joint that was not read from a file has all of them."""
     if joint.element is None:
         return True
     element = joint.element.first(tag)

@@ -1,4 +1,4 @@
-"""The sliders of joint_state_publisher_gui, without a picture of them: whoever draws them reads and moves them here."""
+"""The sliders of joint_state_publisher_gui as data, for the viewer to draw and move."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class JointSlider:
 
 
 class JointPanel:
-    """The joints that can be moved, and where they are.
+    """The sliders of all free joints.
 
     Args:
         node: its executor runs the callbacks of subscribers.
@@ -73,12 +73,12 @@ class JointPanel:
         return list(self._sliders)
 
     def positions(self) -> dict[str, float]:
-        """Where the joints of all rows are, rad or m."""
+        """The positions of all rows, rad or m."""
         published = dict(zip(self._joints.layout.ranges, self._joints.published().tolist(), strict=True))
         return {slider.name: published[slider.name] for slider in self._sliders}
 
     def set_position(self, name: str, value: float) -> bool:
-        """Move a joint, within its limits.
+        """Set the position of a joint, within its limits.
 
         Args:
             name: the joint.
@@ -96,21 +96,21 @@ class JointPanel:
         return True
 
     def randomize(self) -> None:
-        """Put every joint anywhere within its limits."""
+        """Set every joint to a random position within its limits."""
         self._logger.info("Randomizing")
         for slider in self._free():
             self._joints.set(slider.name, self._random.uniform(slider.lower, slider.upper))
         self._moved()
 
     def center(self) -> None:
-        """Put every joint where it started: at its zero, which is not the middle of its range."""
+        """Set every joint to zero, which need not be the middle of its range."""
         self._logger.info("Centering")
         for slider in self._free():
             self._joints.set(slider.name, slider.zero)
         self._moved()
 
     def subscribe(self, callback: PanelCallback) -> Callable[[], None]:
-        """Have a callback told of changes: ``"sliders"`` when the rows are others, ``"positions"`` when joints moved.
+        """Register a callback for changes: ``"sliders"`` when the rows changed, ``"positions"`` when joints moved.
 
         Changes of one turn of the event loop are told once.
 
@@ -126,7 +126,7 @@ class JointPanel:
         return unsubscribe
 
     def rebuild(self) -> None:
-        """Make the rows anew for the layout that the joints have now."""
+        """Make the rows anew for the layout of the joints now."""
         layout = self._joints.layout
         movable = {joint.name for joint in layout.free if joint.lower != joint.upper}
         free = layout.free
@@ -160,7 +160,7 @@ class JointPanel:
         self.notice_positions()
 
     def notice_positions(self) -> None:
-        """Joints were moved from elsewhere."""
+        """Tell subscribers that joints were moved by others."""
         self._positions_changed.trigger()
 
     def _free(self) -> list[JointSlider]:

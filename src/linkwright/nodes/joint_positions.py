@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 class _Quantity:
-    """One number for each free joint, where there is one: NaN stands for none."""
+    """A number for each free joint; NaN stands for none."""
 
     def __init__(self, values: Array) -> None:
         self._with_zero = np.append(values, 0.0)
@@ -52,7 +52,7 @@ class JointPositions:
         self.take_over(self.layout, settings)
 
     def take_over(self, layout: JointLayout, settings: JointSettings) -> None:
-        """Change to another layout.
+        """Take over another layout.
 
         Joints that were free before and still are keep their state, moved into the new limits, if it ever was other
         than where they start; the others begin at zero.
@@ -77,7 +77,7 @@ class JointPositions:
                 self._keep(joint, before[:, row], zeros_before[joint.name])
 
     def hear(self, message: JointState) -> None:
-        """Take over what a message says of free joints; positions outside of limits too."""
+        """Take over the values of a message for free joints; positions outside of limits too."""
         for number, name in enumerate(message.name):
             row = self._rows.get(name)
             if row is None:
@@ -91,7 +91,7 @@ class JointPositions:
                     quantity.values[row] = given[number]
 
     def sweep(self, delta: float) -> None:
-        """Move every free joint by delta (rad or m), turning round at limits; continuous ones start over."""
+        """Move every free joint by delta (rad or m), reversing at limits; continuous ones wrap around."""
         position, direction = self._position.values, self._direction
         position += direction * delta
         beyond = (position - self._ahead) * direction > 0.0
@@ -101,7 +101,7 @@ class JointPositions:
             self._ahead = np.where(self._direction > 0.0, self._upper, self._lower)
 
     def set(self, name: str, position: float) -> None:
-        """Move a free joint, within its limits; KeyError when there is none of that name."""
+        """Set the position of a free joint, within its limits; KeyError when there is none of that name."""
         row = self._rows[name]
         self._position.values[row] = min(max(position, self._lower[row]), self._upper[row])
 

@@ -15,7 +15,7 @@ _DEPENDENT_FIELDS = ("parent", "factor", "offset")
 
 @dataclass(frozen=True, slots=True)
 class Dependence:
-    """A joint's position is ``factor * position of parent + offset`` (rad or m)."""
+    """A dependent joint: its position is ``factor * position of parent + offset`` (rad or m)."""
 
     parent: str
     factor: float = 1.0
@@ -24,7 +24,7 @@ class Dependence:
 
 @dataclass(frozen=True, slots=True)
 class JointSettings:
-    """What the parameters say.
+    """The parameters as one object.
 
     Attributes:
         rate: messages a second.
@@ -52,7 +52,7 @@ class JointSettings:
 
 
 def declare_settings(node: Node) -> None:
-    """Declare the parameters. Those given from outside keep their types, as in the ROS node: ``rate: 2.5`` is fine.
+    """Declare the parameters. Values from outside keep their types, as in the ROS node: ``rate: 2.5`` is fine.
 
     Raises:
         LinkwrightError: a value is none that a parameter can have.
@@ -75,7 +75,7 @@ def declare_settings(node: Node) -> None:
 
 
 def settings_from(values: Mapping[str, Any]) -> JointSettings:
-    """The settings that parameter values by name make.
+    """Convert parameter values by name to settings.
 
     Raises:
         LinkwrightError: values that mean nothing (NODE201), all of them.

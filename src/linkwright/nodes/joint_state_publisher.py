@@ -1,4 +1,4 @@
-"""joint_state_publisher: joint states for a robot that has nothing to measure them.
+"""joint_state_publisher: joint states of a robot without measured ones.
 
 It follows the ROS 2 node of that name (2.4), with these deliberate differences:
 
@@ -38,13 +38,13 @@ _FIRST_ELEMENT = re.compile(r"<([A-Za-z]\w*)")
 
 
 class Watcher(Protocol):
-    """Who wants to know of changes."""
+    """The interface of those who watch the joints."""
 
     def rebuild(self) -> None:
-        """The robot or the settings have changed."""
+        """Handle a change of the robot or of the settings."""
 
     def notice_positions(self) -> None:
-        """Joints were moved by a source or the sweep."""
+        """Handle positions that a source or the sweep has set."""
 
 
 class JointStatePublisher(SingleNode):
@@ -88,15 +88,15 @@ class JointStatePublisher(SingleNode):
 
     @property
     def joints(self) -> JointPositions:
-        """Where the joints are."""
+        """The positions of the joints."""
         return self._joints
 
     def watch(self, watcher: Watcher) -> None:
-        """Tell somebody of changes from now on."""
+        """Register a watcher."""
         self._watchers.append(watcher)
 
     def publish_soon(self) -> None:
-        """Publish as soon as the loop gets to it: once, however often this is called before."""
+        """Publish in the next turn of the loop, once for any number of calls."""
         self._soon.trigger()
 
     def _robot_from_arguments(self, arguments: Sequence[str]) -> Robot | None:
@@ -221,6 +221,6 @@ class JointStatePublisher(SingleNode):
 
 
 def _other_format(text: str) -> str | None:
-    """Which other format for robots a text is in, by its first element; None for none."""
+    """The other format of robots that a text has, by its root element; None for none."""
     element = _FIRST_ELEMENT.search(text)
     return None if element is None else _OTHER_FORMATS.get(element[1])

@@ -1,4 +1,4 @@
-"""scan_to_scan_filter_chain of laser_filters: laser scans in, through a chain of filters, and out.
+"""scan_to_scan_filter_chain of laser_filters: passes laser scans through a chain of filters.
 
 Source: laser_filters 2.0 (ROS 2 Humble): the topics, the qualities of service and the parameters ``filterN.name``,
 ``filterN.type`` and ``filterN.params``. With ``tf_message_filter_target_frame`` a scan whose place in that frame is not
@@ -83,7 +83,7 @@ class ScanToScanFilterChain(SingleNode):
 
 
 def scan_of(message: Any) -> Scan:
-    """The scan in a sensor_msgs/msg/LaserScan, with arrays of its own."""
+    """Convert a sensor_msgs/msg/LaserScan to a scan with arrays of its own."""
     return Scan(
         ranges=np.array(message.ranges, dtype=np.float32),
         intensities=np.array(message.intensities, dtype=np.float32),
@@ -99,7 +99,7 @@ def scan_of(message: Any) -> Scan:
 
 
 def message_of(scan: Scan, scan_time: float) -> Any:
-    """A scan as sensor_msgs/msg/LaserScan; `scan_time` is the time between scans in seconds."""
+    """Convert a scan to a sensor_msgs/msg/LaserScan; `scan_time` is the time between scans in seconds."""
     message = get_message("sensor_msgs/msg/LaserScan")()
     message.header.stamp, message.header.frame_id = Time.from_nanoseconds(scan.stamp_ns), scan.frame
     message.angle_min, message.angle_max, message.angle_increment = scan.angle_min, scan.angle_max, scan.angle_increment
@@ -110,7 +110,7 @@ def message_of(scan: Scan, scan_time: float) -> Any:
 
 
 def read_chain(node: Node) -> list[ScanFilter]:
-    """Declare the parameters of a chain, ``filter1.type`` and so on up to the first number that is not there.
+    """Declare the parameters of a chain, ``filter1.type`` and so on up to the first missing number.
 
     Raises:
         LinkwrightError: see `ScanToScanFilterChain`.
@@ -159,7 +159,7 @@ def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
 
 
 def _converted(name: str, value: Any, kind: Any) -> Any:
-    """A value as the type of its field; a whole number may stand for a float, and 0 and 1 for truths."""
+    """A value in the type of its field; an integer may stand for a float, and 0 and 1 for booleans."""
     if kind is float and isinstance(value, int | float) and not isinstance(value, bool):
         return float(value)
     if kind is bool and value in (True, False):

@@ -1,4 +1,4 @@
-"""Subscriptions that are there only while somebody listens to what is made of them."""
+"""Subscriptions that exist only while somebody subscribes to what is published from them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from linkwright.graph import Graph, Node, Publisher, Subscription
 
 
 class LazySubscriptions:
-    """Opens subscriptions when the first listener of some publishers comes, and closes them when the last one goes.
+    """Opens subscriptions with the first subscriber of some publishers, and closes them with the last.
 
     Args:
         graph: tells of changes.
@@ -36,11 +36,11 @@ class LazySubscriptions:
 
     @property
     def are_open(self) -> bool:
-        """Whether the subscriptions are there."""
+        """Whether the subscriptions are open."""
         return bool(self._open)
 
     def close(self) -> None:
-        """Look no more; the subscriptions go with their node."""
+        """Stop watching; the subscriptions are removed with their node."""
         self._graph.unwatch(self._changed.trigger)
 
     def _look(self) -> None:

@@ -1,4 +1,4 @@
-"""How a node is started, and what starting it returns."""
+"""Options of a node that is started, and the interfaces of running nodes."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _print(line: str) -> None:
 
 @dataclass(slots=True)
 class NodeOptions:
-    """How to start a node, as a launch file or a command line says it.
+    """The options of a node, from a launch file or a command line.
 
     Attributes:
         name: its name; None for the one its code gives it.
@@ -60,14 +60,14 @@ class NodeOptions:
 
 
 class RunningNode(Protocol):
-    """A node that was started; some are more, see `FinishingNode` and `NodeWithSliders`."""
+    """A running node; some have more, see `FinishingNode` and `NodeWithSliders`."""
 
     @property
     def node(self) -> Node:
         """Its node in the graph."""
 
     def close(self) -> None:
-        """End it and take it out of the graph."""
+        """Close it and remove it from the graph."""
 
 
 @runtime_checkable
@@ -88,7 +88,7 @@ class NodeWithSliders(RunningNode, Protocol):
 
 
 class SingleNode:
-    """What the nodes of this room derive from: each is one node of the graph, `_node`, which goes when it ends.
+    """The base of most nodes of this room: one node of the graph, `_node`, which is destroyed by `close`.
 
     Attributes:
         DEFAULT_NAME: the name of a node that is given none; not there where each has another.
@@ -115,7 +115,7 @@ Factory = Callable[[Graph, NodeOptions], RunningNode]
 def create_node(
     graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
 ) -> tuple[Node, list[str]]:
-    """The graph node for the options, and the arguments that are not ROS arguments.
+    """Create the node of the options, and return the arguments that are not ROS arguments.
 
     Args:
         graph: where it is to live.
@@ -132,7 +132,7 @@ def create_node(
 def create_node_of(
     node_class: Callable[..., N], graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
 ) -> tuple[N, list[str]]:
-    """As `create_node`, for a node that `node_class` makes of the arguments that `Node` takes.
+    """As `create_node`, for a node that `node_class` makes of the arguments of `Node`.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -157,7 +157,7 @@ def create_node_of(
 
 @contextmanager
 def starting(node: Node) -> Iterator[None]:
-    """While a node starts: an error in what it was given is logged as FATAL, ends the node, and goes on upwards."""
+    """While a node starts: log an error as FATAL, destroy the node, and raise the error again."""
     try:
         yield
     except LinkwrightError as error:
@@ -172,7 +172,7 @@ def _full_name(name: str, namespace: str, remappings: list[tuple[str, str]]) -> 
 
 
 def _set_levels(graph: Graph, node: Node, ros: RosArguments) -> None:
-    """Obey ``--log-level``: without a logger's name it is for this node, which may share its process with others."""
+    """Apply ``--log-level``: without a logger's name to this node, which may share its process with others."""
     if ros.log_level is not None:
         node.get_logger().set_level(ros.log_level)
     for logger, level in ros.log_levels.items():

@@ -1,4 +1,4 @@
-"""pointcloud_to_laserscan_node and laserscan_to_pointcloud_node: clouds as laser scans, and back.
+"""pointcloud_to_laserscan_node and laserscan_to_pointcloud_node: conversion between clouds and laser scans.
 
 Source: pointcloud_to_laserscan 2.0 (ROS 2 Humble). A message whose place in the target frame is not known is left out;
 it does not wait.
@@ -31,7 +31,7 @@ _TINY = float(np.finfo(np.float64).tiny)
 
 
 class _Converter(SingleNode, ABC):
-    """What both have in common: a target frame, two topics, and work only while somebody listens."""
+    """The base of both: a target frame, two topics, and work only while anybody subscribes."""
 
     INPUT: str
     INPUT_TYPE: str
@@ -63,14 +63,14 @@ class _Converter(SingleNode, ABC):
 
     @abstractmethod
     def _declare(self) -> tuple[str, str]:
-        """Declare the rest of the parameters; the topics of the input and of the output."""
+        """Declare the rest of the parameters; returns the topics of input and output."""
 
     @abstractmethod
     def _hear(self, message: Any) -> None:
-        """Turn a message of the input into one of the output."""
+        """Convert a message of the input to one of the output."""
 
     def _placed(self, points: NDArray[np.float64], header: Any) -> NDArray[np.float64] | None:
-        """Points in the target frame; None where that is not known."""
+        """Points transformed to the target frame; None without a transform."""
         if not self._target:
             return points
         pose = self._poses.pose(self._target, header.frame_id, header.stamp.nanoseconds)
@@ -156,7 +156,7 @@ class LaserScanToPointCloud(_Converter):
 
 
 def points_of(cloud: Any) -> NDArray[np.float64] | None:
-    """The points of a sensor_msgs/msg/PointCloud2, shape (n, 3); None where it has none."""
+    """The points of a sensor_msgs/msg/PointCloud2, shape (n, 3); None without coordinates."""
     fields = {each.name: each for each in cloud.fields}
     count = cloud.width * cloud.height
     data = np.frombuffer(bytes(cloud.data), np.uint8)
@@ -184,7 +184,7 @@ def points_of(cloud: Any) -> NDArray[np.float64] | None:
 
 
 def _cloud(columns: list[tuple[str, NDArray[Any]]], places: NDArray[np.int32], frame: str, stamp: Any) -> Any:
-    """A cloud of float32 fields, and ``index``, the place in the scan, as laser_geometry makes it."""
+    """A cloud of float32 fields, and ``index``, that of the ray, as laser_geometry makes it."""
     field = get_message("sensor_msgs/msg/PointField")
     message = get_message("sensor_msgs/msg/PointCloud2")()
     message.header.stamp, message.header.frame_id = stamp, frame

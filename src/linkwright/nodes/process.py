@@ -27,7 +27,7 @@ _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP
 
 
 def main(package: str, executable: str, arguments: Sequence[str]) -> int:
-    """Run a node until it is done, or told to end by SIGINT, SIGTERM or SIGHUP, which end it cleanly with status 0.
+    """Run a node until it ends, or until SIGINT, SIGTERM or SIGHUP, which end it cleanly with status 0.
 
     Args:
         package: its package.

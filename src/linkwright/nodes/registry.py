@@ -1,4 +1,4 @@
-"""Which nodes can be started in this process.
+"""The nodes that can be started in this process, found by entry points.
 
 They are found through the entry points ``linkwright.nodes`` and ``linkwright.components``, whose names are
 ``PACKAGE/EXECUTABLE``, or ``PACKAGE/PLUGIN`` for nodes that containers load. Each points to a `Factory`. Ours are
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class NodeRegistry(Mapping[tuple[str, str], Factory]):
-    """What starts a node, by its package and its name there.
+    """Finds the function or class that starts a node, by package and executable.
 
     Args:
         group: of the entry points.
@@ -40,7 +40,7 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
         return found
 
     def __getitem__(self, key: tuple[str, str]) -> Factory:
-        """What starts a node.
+        """The function or class that starts a node.
 
         Raises:
             KeyError: there is no such node.
@@ -67,7 +67,7 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
 
 
 def default_name(package: str, executable: str) -> str | None:
-    """The name of a node that is given none; None where only the node itself knows it."""
+    """The default name of a node; None where only the node itself knows it."""
     with suppress(LinkwrightError, KeyError):
         name: str | None = getattr(EXECUTABLES[package, executable], "DEFAULT_NAME", None)
         return name

@@ -1,4 +1,4 @@
-"""robot_state_publisher: joint states in, transforms out.
+"""robot_state_publisher: publishes transforms from joint states.
 
 It follows the ROS 2 node of that name (Humble 3.0.3 and later; see the notes on each rule), with these deliberate
 differences:
@@ -49,7 +49,7 @@ _NANOSECONDS_PER_MILLISECOND = 1_000_000
 
 @dataclass(slots=True, eq=False)
 class _Held:
-    """A message that waits for its time."""
+    """A message that is held back until its time."""
 
     message: JointState
     release_ns: int

@@ -1,4 +1,4 @@
-"""The transforms of a robot for given joint states, and when they are due: robot_state_publisher without its node."""
+"""Transforms of a robot for joint states, and their rates: robot_state_publisher without its node."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ where such a link is must come from elsewhere."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recipe:
-    """How to make transforms of the positions in a message with a certain list of joint names.
+    """The way from a message with a certain list of joint names to transforms.
 
     Transform i is that of joint i of `motion` at position ``message[source[i]] * factor[i] + offset[i]``.
     """
@@ -152,7 +152,7 @@ class RobotTransforms:
 
 
 class JointGroup:
-    """The joints of a message, as a throttle knows them; one object for each list of names."""
+    """The joints of a message for a throttle; one object for each list of names."""
 
     __slots__ = ("positions", "rows")
 
@@ -196,21 +196,21 @@ class Throttle:
         return group
 
     def is_move(self, group: JointGroup, positions: FloatSequence) -> bool:
-        """Whether these positions are others than those published last."""
+        """Whether these positions differ from those published last."""
         return group.positions is None or not np.array_equal(group.positions, positions)
 
     def opens_ns(self, group: JointGroup, now_ns: int, *, move: bool) -> int:
-        """The stamp from which on a message is published."""
+        """The stamp from which on a message may be published."""
         before = self._moved_ns if move else self._sent_ns
         return min(int(before[group.rows].min()), now_ns) + self.interval_ns
 
     def is_in_order(self, group: JointGroup, stamp_ns: int) -> bool:
-        """Whether all the joints were published before, and none with a later stamp."""
+        """Whether all joints were published before, and none with a later stamp."""
         stamps = self._stamp_ns[group.rows]
         return bool(stamps.all() and (stamps <= stamp_ns).all())
 
     def published(self, group: JointGroup, positions: FloatSequence, stamp_ns: int, at_ns: int) -> None:
-        """Note that a message with a stamp was published at a time."""
+        """Record that a message with a stamp was published at a time."""
         if self.is_move(group, positions):
             self._moved_ns[group.rows] = at_ns
         self._sent_ns[group.rows] = at_ns
@@ -218,6 +218,6 @@ class Throttle:
         group.positions = np.array(positions, dtype=np.float64)
 
     def clear(self) -> None:
-        """Forget what was published."""
+        """Reset."""
         for times in (self._sent_ns, self._moved_ns, self._stamp_ns):
             times[:] = 0

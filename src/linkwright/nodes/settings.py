@@ -1,4 +1,4 @@
-"""Parameters of nodes: those that must be given, those that words of a command line stand for, unknown ones."""
+"""Declaring parameters of nodes: required ones, those from words of a command line, unknown ones."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _EVERYWHERE = ("qos_overrides.", "start_type_description_service", "diagnostic_u
 
 
 def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> Any:
-    """The value of a parameter that has no default.
+    """Declare a parameter without a default, and read it.
 
     Args:
         node: declares it.
@@ -38,7 +38,7 @@ def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> 
 def options_from_words(
     options: NodeOptions, words: Sequence[str], names: Mapping[str, Callable[[str], Any]], usage: str
 ) -> NodeOptions:
-    """The options with the words of a command line as parameters.
+    """Convert the words of a command line to parameters in the options.
 
     Args:
         options: as the node is started.
@@ -71,7 +71,7 @@ def words_of(options: NodeOptions) -> list[str]:
 
 
 def positive(node: Node, name: str, value: float) -> float:
-    """A parameter that must be more than zero.
+    """Check that a parameter is more than zero.
 
     Raises:
         LinkwrightError: NODE433, it is not.
@@ -82,7 +82,7 @@ def positive(node: Node, name: str, value: float) -> float:
 
 
 def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) -> LinkwrightError:
-    """The error for a parameter whose value means nothing: NODE433."""
+    """The error for an invalid value of a parameter: NODE433."""
     message = phrase("parameter '{name}' of '{node}' cannot be '{value}'", name=name, node=node, value=value)
     hint = None
     if known:
@@ -91,7 +91,7 @@ def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) ->
 
 
 def tell_unknown(node: Node) -> None:
-    """Name the parameters that were given to a node and that it does not have; called when all are declared.
+    """Log the parameters that were given and that the node does not have; called when all are declared.
 
     Those that look misspelt are a warning. Parameters for all nodes of a launch (``/**``) reach nodes that do not know
     them, so the rest is only told of.

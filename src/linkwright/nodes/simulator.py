@@ -1,4 +1,4 @@
-"""gzserver: the node ``gazebo``, a world that moves, with its plugins, topics and services.
+"""gzserver: the node ``gazebo``, a simulated world with its plugins, topics and services.
 
 It follows gzserver of Gazebo classic with the libraries of gazebo_ros; for gz it is the server. Its world is simulated
 in a thread of its own, see `linkwright.simulation.server`.
@@ -130,7 +130,7 @@ class Simulator(SingleNode):
         super().close()
 
     def _renew(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
-        """Take another description of the robot, which goes on where it is; one that cannot be read is refused."""
+        """Replace the robot by a changed description, in its present state; an invalid one is refused."""
         from linkwright.simulation.plugins.entities import told
 
         for each in parameters:
@@ -149,7 +149,7 @@ class Simulator(SingleNode):
         self._reports.publish_state(paused=self.runner.paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:
-        """Log what is wrong with the world, and what of it is left out, each once."""
+        """Log the findings on the world, and what of it is not simulated, each once."""
         logger = self._node.get_logger()
         first: dict[str, Diagnostic] = {}
         for each in findings:

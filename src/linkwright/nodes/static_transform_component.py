@@ -12,7 +12,7 @@ _PLACE = {"translation": ("x", "y", "z"), "rotation": ("x", "y", "z", "w")}
 
 
 def start(graph: Graph, options: NodeOptions) -> RunningNode:
-    """A static transform publisher that is told by parameters what the executable is told by arguments."""
+    """Start a static transform publisher with parameters in place of the executable's arguments."""
     given: dict[str, Any] = options.parameters
     words: list[str] = []
     for group, axes in _PLACE.items():

@@ -1,4 +1,4 @@
-"""static_transform_publisher of tf2_ros: one transform that never changes, from the command line to ``/tf_static``."""
+"""static_transform_publisher of tf2_ros: publishes one static transform of the command line on ``/tf_static``."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _OLD_WITH_QUATERNION = (*_TRANSLATION, *_QUATERNION, *_FRAMES)
 
 @dataclass(frozen=True, slots=True)
 class StaticTransform:
-    """What the command line says: pose (metres, unit quaternion x y z w) of the child frame in the parent frame.
+    """The command line: pose (metres, unit quaternion x y z w) of the child frame in the parent frame.
 
     `old_style` tells that the values were given by position, which tf2_ros calls deprecated.
     """
@@ -116,7 +116,7 @@ class StaticTransformPublisher(SingleNode):
 
 
 def _random_suffix() -> str:
-    """Letters and digits that tell this node from others of its kind, in whatever process, as in tf2_ros."""
+    """Random letters and digits for the node's name, unique among processes, as in tf2_ros."""
     return "".join(secrets.choice(string.ascii_letters + string.digits) for _ in range(16))
 
 

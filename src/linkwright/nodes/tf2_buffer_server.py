@@ -1,4 +1,4 @@
-"""buffer_server of tf2_ros: looks transforms up for other processes, which need not hear all of ``/tf`` for it."""
+"""buffer_server of tf2_ros: looks up transforms for other processes, which need not receive all of ``/tf``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""tf2_echo of tf2_ros: prints the transform between two frames again and again."""
+"""tf2_echo of tf2_ros: prints the transform between two frames periodically."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Tf2Echo(SingleNode):
 
 
 def describe(transform: Any) -> str:
-    """A geometry_msgs/msg/TransformStamped as tf2_echo prints it."""
+    """Format a geometry_msgs/msg/TransformStamped as tf2_echo does."""
     stamp, translation, rotation = transform.header.stamp, transform.transform.translation, transform.transform.rotation
     position = (translation.x, translation.y, translation.z)
     quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
@@ -98,7 +98,7 @@ def describe(transform: Any) -> str:
 
 
 def _roll_pitch_yaw(turn: NDArray[np.float64]) -> tuple[float, float, float]:
-    """The angles that tf2 gives for a rotation matrix, with its signs of zero."""
+    """The angles of a rotation matrix as tf2 computes them, with its signs of zero."""
     (xx, xy, xz), (yx, _, _), (zx, zy, zz) = turn.tolist()
     if abs(zx) >= 1.0:
         # Roll and yaw turn about the same axis: all of it counts as roll.

@@ -1,4 +1,4 @@
-"""tf2_monitor of tf2_ros: tells who sends transforms, how often, and how old they are when they come."""
+"""tf2_monitor of tf2_ros: reports publishers of transforms, their rates and delays."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SHORTEST_SPAN_S = 1e-8
 
 
 class Tf2Monitor(SingleNode):
-    """The running node: reports about every ten seconds, on all frames or on the way between two."""
+    """The running node: reports about every ten seconds, on all frames or on the chain between two."""
 
     DEFAULT_NAME = "tf2_monitor_main"
 
@@ -76,7 +76,7 @@ class Tf2Monitor(SingleNode):
             self._report()
 
     def _begin(self) -> bool:
-        """Begin, once the way between the two frames is there."""
+        """Start once the chain between the two frames is known."""
         what = "all frames"
         if self._ends is not None:
             first, second = self._ends

@@ -1,4 +1,4 @@
-"""Publishing velocities as geometry_msgs/msg/Twist or TwistStamped, whichever those who listen take."""
+"""Publishing velocities as geometry_msgs/msg/Twist or TwistStamped, whichever the subscribers take."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ class VelocityTopic:
 
     @property
     def type_name(self) -> str:
-        """The type that is published now."""
+        """The type that is published."""
         return self._publisher.type_name if self._publisher is not None else ""
 
     def review(self, *, may_change: bool = True) -> int:
-        """Look which type the subscribers take, and take it too.
+        """Switch to the type of the subscribers.
 
         Args:
             may_change: whether the type may become another one; not while something moves.
@@ -99,7 +99,7 @@ class VelocityTopic:
         self.publish((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
     def close(self) -> None:
-        """Leave the topic."""
+        """Remove the publisher."""
         if self._publisher is not None:
             self._node.destroy_publisher(self._publisher)
             self._publisher = None

@@ -1,4 +1,4 @@
-"""view_frames of tf2_tools: listens to transforms for some seconds and draws the tree of frames."""
+"""view_frames of tf2_tools: records transforms for some seconds and draws the tree of frames."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class ViewFrames(SingleNode):
 
 
 def frames_as_dot(frames: Mapping[str, Mapping[str, Any]], recorded_s: float) -> str:
-    """The drawing for Graphviz.
+    """The drawing in Graphviz's language.
 
     Args:
         frames: what the buffer says of each frame, by name.

@@ -1,4 +1,4 @@
-"""``rmw_zenohd``: the router by which nodes of rmw_zenoh_cpp find each other."""
+"""``rmw_zenohd``: the router through which nodes of rmw_zenoh_cpp find each other."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 
 class ZenohRouter(SingleNode):
-    """A Zenoh router for as long as it runs, at tcp/localhost:7447 unless the settings say otherwise.
+    """A running Zenoh router, at tcp/localhost:7447 unless the settings give another address.
 
     The settings are rmw_zenohd's, ``ZENOH_ROUTER_CONFIG_URI`` and ``ZENOH_CONFIG_OVERRIDE``. Unlike that it listens to
     this machine alone by itself. Its node is a hidden one.

@@ -16,7 +16,7 @@ from linkwright.nodes.options import NodeOptions, create_node
 
 
 class HardwareSpawner(ManagerProgram):
-    """The running node: it ends when the hardware has been asked.
+    """The running node: it ends after the hardware was asked.
 
     Raises:
         LinkwrightError: NODE831, the command line cannot be understood.

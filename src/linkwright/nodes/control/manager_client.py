@@ -1,4 +1,4 @@
-"""What the programs that talk to a controller manager share: its services, called with the texts of the real ones.
+"""Calling the services of a controller manager, for spawner, unspawner and hardware_spawner.
 
 Source: controller_manager of ros2_control (options, times, texts).
 """
@@ -22,7 +22,7 @@ _ATTEMPTS = 3
 
 
 class NoManagerError(Exception):
-    """The services of the manager are not there, or do not answer; the text is that of ros2_control."""
+    """The services of the manager are missing, or do not answer; the text is that of ros2_control."""
 
 
 class ManagerClient:
@@ -42,7 +42,7 @@ class ManagerClient:
         self._timeout, self._call_timeout = timeout, call_timeout
 
     async def ask(self, service: str, **fields: Any) -> Any:
-        """Call one of the manager's own services, ``list_controllers``.
+        """Call one of the manager's services, such as ``list_controllers``.
 
         Raises:
             NoManagerError: it is not there, or does not answer.
@@ -51,7 +51,7 @@ class ManagerClient:
         return await self._call(f"controller_manager_msgs/srv/{kind}", service, fields)
 
     async def set_parameter(self, name: str, value: Any) -> bool:
-        """Set a parameter of the manager; whether it took it."""
+        """Set a parameter of the manager; whether it accepted it."""
         parameter = Parameter(name, value=value).to_parameter_msg()
         answer = await self._call("rcl_interfaces/srv/SetParameters", "set_parameters", {"parameters": [parameter]})
         return all(each.successful for each in answer.results)
@@ -88,7 +88,7 @@ class ManagerClient:
         raise NoManagerError(f"Could not successfully call service {name} after {_ATTEMPTS} attempts.")
 
     async def _wait_for(self, client: Any, name: str) -> None:
-        """Wait until there is a server."""
+        """Wait for the server of a client."""
         logger = self._node.get_logger()
         while not client.service_is_ready():
             logger.info(f"waiting for service {name} to become available...")
@@ -100,7 +100,7 @@ class ManagerClient:
 
 
 class ManagerProgram(SingleNode):
-    """A node that has a controller manager do something and ends.
+    """A node that calls the services of a controller manager and ends.
 
     Derived classes make `_node` and call `_begin`.
     """
@@ -108,7 +108,7 @@ class ManagerProgram(SingleNode):
     finished: asyncio.Future[int]
 
     def _begin(self, work: Callable[[], Coroutine[Any, Any, int]]) -> None:
-        """Run what gives the exit status."""
+        """Start a coroutine that returns the exit status."""
         self.finished = asyncio.get_running_loop().create_future()
         self._task = asyncio.get_running_loop().create_task(self._run(work))
 
@@ -130,7 +130,7 @@ class ManagerProgram(SingleNode):
 
 
 def _said(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
-    """The words of a command line without those that launch files leave empty, unless they are values of options."""
+    """The words of a command line without empty ones, which launch files leave, unless they are values of options."""
     flags = [action for action in parser._actions if action.nargs == 0]
     valueless = {"", *(option for action in flags for option in action.option_strings)}
     before = ["", *words]
@@ -140,7 +140,7 @@ def _said(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
 
 
 def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
-    """The options of a command line.
+    """Parse the options of a command line.
 
     Raises:
         LinkwrightError: NODE831, it cannot be understood.

@@ -1,4 +1,4 @@
-"""ros2_control_node of controller_manager: controllers at real time.
+"""ros2_control_node of controller_manager: runs controllers in real time.
 
 It reads, updates and writes at ``update_rate`` on the event loop, so that topics and services need not be handed over.
 Updates that come too late are left out, as ``overruns.manage`` says, or made up for.
@@ -79,7 +79,7 @@ class Ros2ControlNode(SingleNode):
             logger.info(f"Subscribing to '{topic}' topic for robot description.")
 
     def close(self) -> None:
-        """Deactivate the controllers, and end."""
+        """Deactivate the controllers, and close."""
         self._manager.close()
         super().close()
 
@@ -138,7 +138,7 @@ class Ros2ControlNode(SingleNode):
         self._took_ns = clock.timer_ns() - timer_ns
 
     def _missed(self, count: int) -> None:
-        """Updates were missed: they are left out, or made up for. Those that took too long themselves are told."""
+        """Handle missed updates: skip them, or make them up. Updates that took too long are logged."""
         rate, took_ns = self._manager.update_rate, self._took_ns
         if self._tells_of_overruns and took_ns > self._period_ns:
             self._node.get_logger().warning(

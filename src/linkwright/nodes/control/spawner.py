@@ -1,4 +1,4 @@
-"""spawner and unspawner of controller_manager: load, configure and activate controllers, and take them away.
+"""spawner and unspawner of controller_manager: load, configure and activate controllers, and unload them.
 
 Source: controller_manager of ros2_control, options of Humble and Jazzy, and their texts.
 """
@@ -25,7 +25,7 @@ _TAKEN = ("type", "fallback_controllers")
 
 
 class Spawner(ManagerProgram):
-    """The running node: it ends with status 0 when the controllers are there.
+    """The running node: it ends with status 0 when the controllers are active.
 
     Raises:
         LinkwrightError: NODE831, the command line cannot be understood; NODE832, a parameter file is not there.
@@ -47,7 +47,7 @@ class Spawner(ManagerProgram):
         self._begin(self._spawn)
 
     def close(self) -> None:
-        """End it; with ``--unload-on-kill`` the controllers go with it."""
+        """Close it; with ``--unload-on-kill`` the controllers are unloaded."""
         if self._unloads:
             self._unloads = False
             self._take_away()
@@ -102,7 +102,7 @@ class Spawner(ManagerProgram):
         return True
 
     def _parameters(self, name: str) -> dict[str, Any]:
-        """What the manager is to be told of a controller."""
+        """The parameters of a controller for the manager."""
         wanted, found = self._wanted, {}
         if wanted.controller_type:
             found["type"] = wanted.controller_type
@@ -119,7 +119,7 @@ class Spawner(ManagerProgram):
         return found
 
     def _take_away(self) -> None:
-        """Deactivate and unload the controllers, without waiting for answers: the program ends."""
+        """Deactivate and unload the controllers, without waiting for responses: the program ends."""
         names, manager = self._wanted.controller_names, self._client.manager
         kind = get_service("controller_manager_msgs/srv/SwitchController")
         switch = self._node.create_client(kind, f"{manager}/switch_controller")
@@ -131,7 +131,7 @@ class Spawner(ManagerProgram):
 
 
 class Unspawner(ManagerProgram):
-    """The running node: it ends with status 0 when the controllers are gone.
+    """The running node: it ends with status 0 when the controllers are unloaded.
 
     Raises:
         LinkwrightError: NODE831, the command line cannot be understood.

@@ -1,4 +1,4 @@
-"""foxglove_bridge: the graph over a WebSocket, as Foxglove and Lichtblick understand it."""
+"""foxglove_bridge: the graph over a WebSocket, by the protocol of Foxglove and Lichtblick."""
 
 from linkwright.nodes.foxglove.bridge import FoxgloveBridge
 

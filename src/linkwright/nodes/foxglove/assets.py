@@ -1,4 +1,4 @@
-"""The files that clients may fetch: meshes and images of packages that a robot description names."""
+"""Assets for clients: meshes and images of packages that a robot description names."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LARGEST = 256 << 20
 
 
 class AssetRefusedError(Exception):
-    """A file is not given; the text says why."""
+    """An asset is refused; the text says why."""
 
 
 class Assets:
@@ -32,7 +32,7 @@ class Assets:
         self._packages: set[str] = set()
 
     def described(self, text: str) -> None:
-        """A robot description came: the packages that it names may be read from."""
+        """Allow the packages that a robot description names."""
         self._packages.update(_PACKAGE.findall(text))
 
     def read(self, uri: str) -> bytes:
@@ -63,7 +63,7 @@ class Assets:
 
 
 def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
-    """The file, links followed and checked: they may lead into another folder of the package, as colcon lays them."""
+    """Read the file, after following and checking links: colcon lays some into other folders of the package."""
     path = (share / relative).resolve(strict=True)
     if not path.is_relative_to(share.resolve(strict=True)):
         enclosing = enclosing_package(path.parent)

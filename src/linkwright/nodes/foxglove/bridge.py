@@ -75,12 +75,12 @@ class FoxgloveBridge(SingleNode):
 
     @property
     def address(self) -> str:
-        """Where clients connect."""
+        """The address for clients."""
         host, port = self._listener.getsockname()[:2]
         return f"ws://[{host}]:{port}" if ":" in host else f"ws://{host}:{port}"
 
     def close(self) -> None:
-        """Say goodbye to the clients and end."""
+        """Close the connections and the server."""
         self._graph.unwatch(self._graph_changed)
         if self._look_due is not None:
             self._look_due.cancel()
@@ -219,7 +219,7 @@ class FoxgloveBridge(SingleNode):
 
 
 def _listen(address: str, port: int) -> socket.socket:
-    """A listening socket.
+    """Open a listening socket.
 
     Raises:
         LinkwrightError: NODE702, it cannot listen there.

@@ -1,4 +1,4 @@
-"""The connected clients: what waits to be sent to each."""
+"""Connected clients, each with its queue."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ class Client:
         self._filled = asyncio.Event()
 
     def send(self, message: dict[str, Any] | bytes) -> None:
-        """Have a message sent that must not be lost."""
+        """Queue a message that must not be lost."""
         made = message if isinstance(message, bytes) else json.dumps(message, ensure_ascii=False)
         self._control.append(made)
         self._filled.set()
 
     def send_data(self, frame: bytes) -> None:
-        """Have a message of a topic sent, if there is room in time."""
+        """Queue a message of a topic, which is dropped if the client is too slow."""
         self._data.append(frame)
         self._bytes += len(frame)
         while self._bytes > self._most and len(self._data) > 1:
@@ -50,7 +50,7 @@ class Client:
         self._filled.set()
 
     async def write(self) -> None:
-        """Send until the connection ends."""
+        """Send the queue until the connection ends."""
         with suppress(ConnectionError):
             while True:
                 if len(self._control) > _MOST_CONTROL:

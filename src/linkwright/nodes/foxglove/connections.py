@@ -1,4 +1,4 @@
-"""The graph's connections for clients: who publishes, subscribes and serves what."""
+"""The connection graph for clients: publishers, subscriptions and services by topic."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Connections = tuple[Names, Names, Names]
 
 
 def connections(node: Node) -> Connections:
-    """The connections of a node's graph now."""
+    """The connection graph of a node's graph now."""
     kinds = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVICE)
     found: dict[EndpointKind, dict[str, set[str]]] = {kind: {} for kind in kinds}
     for endpoint in node.graph.endpoints():
@@ -24,7 +24,7 @@ def connections(node: Node) -> Connections:
 
 
 def update(before: Connections | None, now: Connections) -> dict[str, Any]:
-    """The message with what changed; with everything for a client that knows nothing yet."""
+    """The message with the changes; with everything for a client that has nothing yet."""
     old = before or ({}, {}, {})
     published, subscribed, served = (
         {name: ids for name, ids in new.items() if known.get(name) != ids} for known, new in zip(old, now, strict=True)

@@ -1,4 +1,4 @@
-"""Which topics, services and parameters are offered, by foxglove_bridge's lists of regular expressions."""
+"""Filtering topics, services and parameters by foxglove_bridge's lists of regular expressions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _MOST_KNOWN = 10_000
 
 
 class NameFilter:
-    """Names that match one of some expressions as a whole. One with which it takes too long to tell is used no more.
+    """Filters names by regular expressions that match as a whole. One that takes too long is not used again.
 
     Args:
         parameter: whose value they are, for messages.
@@ -27,7 +27,7 @@ class NameFilter:
         self._known: dict[str, bool] = {}
 
     def accepts(self, name: str) -> bool:
-        """Whether a name is wanted."""
+        """Whether a name passes."""
         known = self._known.get(name)
         if known is None:
             if len(self._known) == _MOST_KNOWN:

@@ -1,4 +1,4 @@
-"""Which web pages may connect: any page that the user opens can reach this machine's own addresses."""
+"""Which web pages may connect: any page that a user opens can reach addresses of this machine."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class Parameters:
         self._clients: dict[str, AsyncParameterClient] = {}
 
     async def get(self, names: Sequence[str]) -> list[dict[str, Any]]:
-        """The parameters with these names, or all, as clients are told of them."""
+        """The parameters of these names, or all, in the form for clients."""
         by_node: dict[str, list[str] | None] = {}
         if names:
             for name in names:
@@ -43,7 +43,7 @@ class Parameters:
         return [each for parameters in found for each in parameters if self._wanted.accepts(each["name"])]
 
     async def set(self, told: Sequence[Mapping[str, Any]]) -> None:
-        """Set parameters; what nodes refuse stays as it was."""
+        """Set parameters; those that nodes refuse keep their values."""
         for each in told:
             name = str(each.get("name", ""))
             node, _, parameter = name.partition(".")
@@ -52,7 +52,7 @@ class Parameters:
                 await self._answer(self._client(node).set_parameters([Parameter(parameter, value=value)]))
 
     def close(self) -> None:
-        """Ask no more."""
+        """Close the clients of the parameter services."""
         for client in self._clients.values():
             client.destroy()
         self._clients.clear()
@@ -91,7 +91,7 @@ class Parameters:
         return self._clients[node]
 
     async def _answer(self, future: Any) -> Any:
-        """The result of a future of the graph; None when it takes too long."""
+        """The result of a future of the graph; None if it takes too long."""
         loop = asyncio.get_running_loop()
         done = asyncio.Event()
         future.add_done_callback(lambda _: loop.call_soon_threadsafe(done.set))
@@ -103,7 +103,7 @@ class Parameters:
 
 
 def told(name: str, value: Any) -> dict[str, Any]:
-    """A parameter as clients are told of it."""
+    """A parameter in the form for clients."""
     parameter: dict[str, Any] = {"name": name, "value": value}
     if isinstance(value, (bytes, bytearray)):
         parameter.update(value=base64.b64encode(value).decode(), type="byte_array")

@@ -21,7 +21,7 @@ _CLIENT_MESSAGE, _SERVICE_REQUEST = 1, 2
 
 
 class StatusLevel(IntEnum):
-    """How bad what a client is told is."""
+    """The severity of a status message."""
 
     INFO = 0
     WARNING = 1
@@ -29,12 +29,12 @@ class StatusLevel(IntEnum):
 
 
 class BadFrameError(ValueError):
-    """What a client sent is no message of the protocol; the text says why."""
+    """Bytes from a client are no message of the protocol; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class ClientMessage:
-    """A client publishes on a channel of its own."""
+    """A message that a client publishes on a channel of its own."""
 
     channel: int
     data: bytes
@@ -42,7 +42,7 @@ class ClientMessage:
 
 @dataclass(frozen=True, slots=True)
 class ServiceRequest:
-    """A client calls a service."""
+    """A service request of a client."""
 
     service: int
     call: int
@@ -51,34 +51,34 @@ class ServiceRequest:
 
 
 def message_data(subscription: int, time_ns: int, data: bytes) -> bytes:
-    """A message of a channel."""
+    """A binary frame with a message of a channel."""
     return struct.pack("<BIQ", _MESSAGE, subscription, max(0, time_ns)) + data
 
 
 def time_frame(time_ns: int) -> bytes:
-    """The time of the graph."""
+    """A binary frame with the time of the graph."""
     return struct.pack("<BQ", _TIME, max(0, time_ns))
 
 
 def service_response(service: int, call: int, data: bytes) -> bytes:
-    """The answer of a service."""
+    """A binary frame with the response of a service."""
     encoding = ENCODING.encode()
     return struct.pack("<BIII", _SERVICE_RESPONSE, service, call, len(encoding)) + encoding + data
 
 
 def asset(request: int, data: bytes) -> bytes:
-    """A file that was asked for."""
+    """A binary frame with an asset."""
     return struct.pack("<BIBI", _ASSET, request, 0, 0) + data
 
 
 def asset_error(request: int, why: str) -> bytes:
-    """A file that was asked for, and why it is not given."""
+    """A binary frame for an asset that is refused, with the reason."""
     text = why.encode()
     return struct.pack("<BIBI", _ASSET, request, 1, len(text)) + text
 
 
 def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
-    """A binary message of a client.
+    """Parse a binary frame of a client.
 
     Raises:
         BadFrameError: it is none.
@@ -100,5 +100,5 @@ def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
 
 
 def status(level: StatusLevel, message: str) -> dict[str, Any]:
-    """Something that the user of the client should know."""
+    """A status message for the user of the client."""
     return {"op": "status", "level": int(level), "message": message}

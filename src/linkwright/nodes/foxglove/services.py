@@ -19,19 +19,19 @@ _PATIENCE = 10.0
 
 
 class CallFailedError(Exception):
-    """A service did not answer; the text says why."""
+    """A service call failed; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class OfferedService:
-    """A service with its type, by a number."""
+    """A service with its type and number."""
 
     number: int
     name: str
     type_name: str
 
     def told(self) -> dict[str, Any]:
-        """As clients are told of it, in the form of old ones too."""
+        """The service in the form for clients, with the keys of older versions too."""
         schemas = {part: schema_of(f"{self.type_name}_{part}") for part in ("Request", "Response")}
         told: dict[str, Any] = {"id": self.number, "name": self.name, "type": self.type_name}
         for part, schema in schemas.items():
@@ -46,7 +46,7 @@ class OfferedService:
 
 
 class Services:
-    """What clients can call.
+    """The services that clients can call.
 
     Args:
         node: calls.
@@ -61,11 +61,11 @@ class Services:
         self._last = 0
 
     def all(self) -> list[OfferedService]:
-        """Every service now."""
+        """All services now."""
         return list(self._offered.values())
 
     def look(self) -> tuple[list[OfferedService], list[int]]:
-        """The services that came since the last look, and the numbers of those that went."""
+        """The services that came since the last call, and the numbers of those that went."""
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -87,7 +87,7 @@ class Services:
         return come, gone
 
     async def call(self, request: ServiceRequest) -> bytes:
-        """The answer, as CDR.
+        """Call a service; its response as CDR.
 
         Raises:
             CallFailedError: there is none.

@@ -1,4 +1,4 @@
-"""One client of the bridge: what it asks for, and what it has."""
+"""The session of one client: its requests, subscriptions and publications."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _MOST_CHANNELS = 1000
 
 @dataclass(slots=True)
 class Offer:
-    """What clients can work with."""
+    """The channels, services, parameters and assets that sessions share."""
 
     node: Node
     channels: Channels
@@ -49,7 +49,7 @@ class Offer:
 
 @dataclass(slots=True, eq=False)
 class Session:
-    """Does what one client asks for.
+    """Handles the requests of one client.
 
     Attributes:
         watches_connections: the client wants to be told of connections.
@@ -66,7 +66,7 @@ class Session:
     _tasks: set[asyncio.Task[None]] = field(default_factory=set)
 
     def receive(self, message: str | bytes) -> None:
-        """Take a message of the client; what is wrong with one is told to it."""
+        """Handle a message of the client; errors are sent back to it."""
         try:
             if isinstance(message, bytes):
                 self._frame(read_frame(message))
@@ -80,14 +80,14 @@ class Session:
             self._complain(f"the message is not of the protocol: {type(error).__name__}: {str(error)[:200]}")
 
     def graph_changed(self, gone: list[int]) -> None:
-        """Channels went; connections may be others."""
+        """Drop subscriptions of channels that went, and update the connection graph."""
         for number, forwarding in list(self._forwardings.items()):
             if forwarding.channel.number in gone:
                 self._forwardings.pop(number).close()
         self.tell_connections()
 
     def tell_connections(self) -> None:
-        """Send what changed of the connections, if the client wants to know."""
+        """Send the changes of the connection graph, if the client subscribed to it."""
         if self.watches_connections:
             now = connections(self.offer.node)
             if now != self._known:
@@ -95,7 +95,7 @@ class Session:
                 self._known = now
 
     def close(self) -> None:
-        """The client has gone."""
+        """Close all that the client opened."""
         for task in self._tasks:
             task.cancel()
         for forwarding in self._forwardings.values():

@@ -1,4 +1,4 @@
-"""Topics of the graph as channels, and subscriptions and publications of clients."""
+"""Topics as channels, and the subscriptions and publications of clients."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _DEPTH = 100
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A topic with its type, by a number."""
+    """A topic with its type and number."""
 
     number: int
     topic: str
@@ -29,7 +29,7 @@ class Channel:
     schema: str
 
     def told(self) -> dict[str, Any]:
-        """As clients are told of it."""
+        """The channel in the form for clients."""
         return {
             "id": self.number,
             "topic": self.topic,
@@ -41,7 +41,7 @@ class Channel:
 
 
 class Channels:
-    """What clients can subscribe to.
+    """The channels to which clients can subscribe.
 
     Args:
         node: whose graph it is.
@@ -56,7 +56,7 @@ class Channels:
         self._last = 0
 
     def all(self) -> list[Channel]:
-        """Every channel now."""
+        """All channels now."""
         return list(self._channels.values())
 
     def get(self, number: int) -> Channel | None:
@@ -64,7 +64,7 @@ class Channels:
         return next((each for each in self._channels.values() if each.number == number), None)
 
     def look(self) -> tuple[list[Channel], list[int]]:
-        """The channels that came since the last look, and the numbers of those that went."""
+        """The channels that came since the last call, and the numbers of those that went."""
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -88,7 +88,7 @@ class Channels:
 
 
 class Forwarding:
-    """Sends a client the messages of a channel.
+    """Forwards the messages of a channel to a client.
 
     Args:
         node: subscribes.
@@ -108,7 +108,7 @@ class Forwarding:
         node.handle.add(self._subscription)
 
     def close(self) -> None:
-        """Send no more."""
+        """Stop forwarding."""
         self._node.destroy_subscription(self._subscription)
 
     def _qos(self) -> QoSProfile:
@@ -127,7 +127,7 @@ class Forwarding:
 
 
 class Publication:
-    """Publishes what a client sends on a channel of its own.
+    """Publishes the messages of a client's channel.
 
     Args:
         node: publishes.
@@ -154,10 +154,10 @@ class Publication:
         self._publisher.publish(deserialize(data, self._class))
 
     def close(self) -> None:
-        """Publish no more."""
+        """Stop publishing."""
         self._node.destroy_publisher(self._publisher)
 
 
 def _full_type(name: str) -> str:
-    """``std_msgs/String`` is a name of messages too."""
+    """The full name of a type: ``std_msgs/String`` is allowed for messages too."""
     return name.replace("/", "/msg/", 1) if name.count("/") == 1 else name

@@ -42,7 +42,7 @@ _QUEUE = 10
 
 @dataclass(frozen=True)
 class BridgedTopic:
-    """A topic with a name on each side.
+    """A bridged topic with its name on each side.
 
     Attributes:
         ros_topic: its name in ROS, which remappings of the bridge apply to.
@@ -65,7 +65,7 @@ class BridgedTopic:
 
 
 class _Way:
-    """Messages on their way from a topic of one node to that of another.
+    """One direction of a bridge: messages from a topic of one node to that of another.
 
     Args:
         listen: makes the subscription.
@@ -77,7 +77,7 @@ class _Way:
         self._subscription = None if lazy else listen()
 
     def matched(self, info: QoSMatchedInfo) -> None:
-        """Listen while somebody hears it."""
+        """Subscribe while the other side has subscriptions."""
         if info.current_count and self._subscription is None:
             self._subscription = self._listen()
         elif not info.current_count and self._subscription is not None:
@@ -122,11 +122,11 @@ class _Bridge(SingleNode):
             self._hand_on(topic, ros, gz)
 
     def _gz_name(self, name: str) -> str:
-        """The name of a topic of gz, in the node's namespace if that is asked for."""
+        """The name of a topic of gz, in the node's namespace if that is configured."""
         return join(self._node.get_namespace(), name) if self._expands and not name.startswith("/") else name
 
     def _hand_on(self, topic: BridgedTopic, source: _Side, target: _Side) -> None:
-        """Hand messages on from a topic of one side to one of the other."""
+        """Bridge a topic in one direction."""
         (listening, source_topic, source_type), (sending, target_topic, target_type) = source, target
         convert = conversion(source_type, target_type)
         if convert is None:
@@ -169,7 +169,7 @@ class _Bridge(SingleNode):
 
 
 class ParameterBridge(_Bridge):
-    """The running bridge: which topics, its arguments say, or the file that its parameter ``config_file`` names.
+    """The running bridge: its arguments, or the file of its parameter ``config_file``, name the topics.
 
     Raises:
         LinkwrightError: NODE820, what it is told cannot be understood; NODE821, the file cannot be read.
@@ -189,7 +189,7 @@ class ParameterBridge(_Bridge):
 
 
 class StaticBridge(_Bridge):
-    """The running bridge for ``chatter``, the topic of texts in examples."""
+    """The running bridge of ``chatter``, the topic of texts in examples."""
 
     DEFAULT_NAME = "ros_gz_bridge"
 
@@ -199,7 +199,7 @@ class StaticBridge(_Bridge):
 
 
 class ImageBridge(_Bridge):
-    """The running bridge for the images whose topics are its arguments; also as JPEG, where somebody listens."""
+    """The running bridge of images whose topics are its arguments; also as JPEG, where anybody subscribes."""
 
     DEFAULT_NAME = "ros_gz_image"
 
@@ -210,7 +210,7 @@ class ImageBridge(_Bridge):
             self._compress(word)
 
     def _compress(self, topic: str) -> None:
-        """Publish pictures as JPEG too, while somebody listens."""
+        """Publish pictures as JPEG too, while anybody subscribes."""
         name = f"{self._node.resolve_topic_name(topic)}/compressed"
 
         def take(image: Any) -> None:
@@ -234,7 +234,7 @@ class ImageBridge(_Bridge):
 
 
 def topic_of_word(word: str) -> BridgedTopic:
-    """The topic that an argument describes: ``TOPIC@ROS_TYPE@GZ_TYPE``, with ``[`` or ``]`` for one direction.
+    """Parse an argument, ``TOPIC@ROS_TYPE@GZ_TYPE``, with ``[`` or ``]`` for one direction.
 
     Raises:
         LinkwrightError: NODE820, it has another form.
@@ -249,7 +249,7 @@ def topic_of_word(word: str) -> BridgedTopic:
 
 
 def topics_of_file(path: str) -> list[BridgedTopic]:
-    """The topics of a YAML file.
+    """Read the topics of a YAML file.
 
     Raises:
         LinkwrightError: NODE821, it cannot be read; NODE820, it is no list of topics with their types.

@@ -1,4 +1,4 @@
-"""The command lines of Gazebo's programs, as parameters of the node that stands in for them.
+"""Parsing the command lines of Gazebo's programs to parameters of the node that stands in for them.
 
 Of the many options that `gazebo`, `gzserver` and `gz sim` take, those mean something here that say which world is
 loaded, whether the simulation begins paused, and what random numbers follow from; and the ROS arguments.
@@ -24,7 +24,7 @@ _ROS_ARGUMENTS = "--ros-args"
 
 @dataclass(frozen=True)
 class SimulatorCommand:
-    """What a command line asks for.
+    """The settings of a command line.
 
     Attributes:
         package: the node's package.
@@ -40,7 +40,7 @@ class SimulatorCommand:
 
 
 def simulator_command(words: Sequence[str]) -> SimulatorCommand | None:
-    """What the command line of a program asks for; None where the program is none of Gazebo's."""
+    """Parse the command line of a program; None where it is none of Gazebo's."""
     program, *rest = words
     name = PurePath(program).name
     if name in ("gazebo", "gzserver"):
@@ -53,7 +53,7 @@ def simulator_command(words: Sequence[str]) -> SimulatorCommand | None:
 
 
 def classic_server(words: Sequence[str], *, window: bool = False) -> SimulatorCommand:
-    """What the words after ``gzserver`` ask for, or after ``gazebo``, which has a window."""
+    """Parse the words after ``gzserver``, or after ``gazebo``, which has a window."""
     own, ros = _divided(words)
     options, others = _read(own, _CLASSIC_VALUES.split())
     parameters = _seed(options) | ({"gui": True} if window else {})
@@ -65,7 +65,7 @@ def classic_server(words: Sequence[str], *, window: bool = False) -> SimulatorCo
 
 
 def gz_server(words: Sequence[str]) -> SimulatorCommand:
-    """What the words after ``gz sim`` ask for: without ``-r`` the simulation begins paused."""
+    """Parse the words after ``gz sim``: without ``-r`` the simulation begins paused."""
     own, ros = _divided(words)
     options, others = _read(own, _GZ_VALUES.split())
     if "-g" in options:
@@ -77,13 +77,13 @@ def gz_server(words: Sequence[str]) -> SimulatorCommand:
 
 
 def _divided(words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """The program's own words, and those of ROS."""
+    """Split into the program's own words, and ROS arguments."""
     at = words.index(_ROS_ARGUMENTS) if _ROS_ARGUMENTS in words else len(words)
     return list(words[:at]), list(words[at:])
 
 
 def _read(words: list[str], with_value: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """The options with their values, empty for those without, and the words that are none."""
+    """The options with their values, empty for those without, and the other words."""
     options, others = {}, []
     rest = [word for word in words if word.strip()]
     while rest:

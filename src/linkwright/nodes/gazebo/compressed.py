@@ -1,4 +1,4 @@
-"""Pictures as JPEG, which image_bridge publishes beside those that it hands on.
+"""JPEG images for image_bridge.
 
 Source: the plugin ``compressed`` of image_transport (the topic, the format's name, the quality).
 """
@@ -17,7 +17,7 @@ _CHANNELS = {"rgb8": 3, "bgr8": 3, "mono8": 1}
 
 
 def compressed(image: Any) -> Any | None:
-    """A picture as ``sensor_msgs/msg/CompressedImage``; None for one whose pixels JPEG does not have.
+    """Compress an image to ``sensor_msgs/msg/CompressedImage``; None for pixels that JPEG cannot have.
 
     Raises:
         ModuleNotFoundError: Pillow is not installed.

@@ -1,4 +1,4 @@
-"""What bridges make of messages whose types differ on their two sides.
+"""Converting messages of bridges whose types differ on their two sides.
 
 Source: ros_gz_bridge: which types it makes of one of gz.
 """
@@ -22,7 +22,7 @@ TYPES_OF_GZ = {
 
 
 def conversion(source: str, target: str) -> Conversion | None:
-    """What makes a message of one type of one of another; None where nothing does."""
+    """The function that converts messages of one type to another; None where there is none."""
     if source == target:
         return lambda message: message
     inside = _WITH_HEADER.get(source)

@@ -1,4 +1,4 @@
-"""create of ros_gz_sim: puts a model into the world."""
+"""create of ros_gz_sim: spawns a model."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TRUE = ("", "true", "1", "yes", "t", "y")
 
 
 class Create(EntitySpawner):
-    """The running node: it ends with status 0 when the entity is in the world.
+    """The running node: it ends with status 0 when the entity was spawned.
 
     Raises:
         LinkwrightError: NODE812, neither its command line nor its parameters name a description, or a number is none;
@@ -74,7 +74,7 @@ class Create(EntitySpawner):
 
 
 def _renamed(entity: Entity, names: Sequence[str]) -> Entity:
-    """The entity under a name that is free, as gz numbers them."""
+    """The entity under a free name, numbered as gz does."""
     name, number = entity.name, 0
     while name in names:
         name, number = f"{entity.name}_{number}", number + 1
@@ -82,7 +82,7 @@ def _renamed(entity: Entity, names: Sequence[str]) -> Entity:
 
 
 def _options(words: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """The options of a command line as gflags reads it: one dash or two, a value after ``=`` or as the next word."""
+    """Parse options as gflags does: one dash or two, a value after ``=`` or as the next word."""
     rest = list(words)
     while rest:
         word = rest.pop(0)

@@ -1,4 +1,4 @@
-"""remove, delete_entity and set_entity_pose of ros_gz_sim: what is in the world goes, or stands elsewhere.
+"""remove, delete_entity and set_entity_pose of ros_gz_sim: remove and move models of a world.
 
 Source: ros_gz_sim (parameters, options). There models are also known by numbers, which none has here.
 """
@@ -22,7 +22,7 @@ _MODEL, _LINK = "6", "2"
 
 
 class Remove(SimulatorClient):
-    """remove: takes the model out of the world that its parameter ``entity_name`` names, and ends.
+    """remove: removes the model that its parameter ``entity_name`` names, and ends.
 
     Raises:
         LinkwrightError: NODE812, it names none.
@@ -47,7 +47,7 @@ class Remove(SimulatorClient):
         self._ask(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._answered)
 
     def _answered(self, response: Any) -> None:
-        """End as an answer with ``success`` and ``status_message`` says."""
+        """End with the status of a response with ``success`` and ``status_message``."""
         if response.success:
             self._say("Result: true")
             self._end(0)
@@ -56,7 +56,7 @@ class Remove(SimulatorClient):
 
 
 class DeleteEntity(Remove):
-    """delete_entity: takes the model out of the world that ``--name`` names, and ends.
+    """delete_entity: removes the model that ``--name`` names, and ends.
 
     Raises:
         LinkwrightError: NODE812, its command line is none.
@@ -72,7 +72,7 @@ class DeleteEntity(Remove):
 
 
 class SetEntityPose(Remove):
-    """set_entity_pose: puts the model or link elsewhere that ``--name`` names, and ends.
+    """set_entity_pose: sets the pose of the model or link that ``--name`` names, and ends.
 
     Raises:
         LinkwrightError: NODE812, its command line is none.
@@ -113,7 +113,7 @@ def _parser(program: str) -> _Parser:
 
 
 def _read(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
-    """What a command line says, which names something.
+    """Parse a command line that names an entity.
 
     Raises:
         LinkwrightError: NODE812, it is none.

@@ -1,4 +1,4 @@
-"""spawn_entity.py of gazebo_ros: puts a model into the world by the service ``/spawn_entity``."""
+"""spawn_entity.py of gazebo_ros: spawns a model by the service ``/spawn_entity``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.nodes.options import NodeOptions, create_node, starting
 
 
 class SpawnEntity(EntitySpawner):
-    """The running node: it ends with status 0 when the entity is in the world.
+    """The running node: it ends with status 0 when the entity was spawned.
 
     Raises:
         LinkwrightError: NODE810, the command line is none; NODE811, the file cannot be read.
@@ -42,7 +42,7 @@ class SpawnEntity(EntitySpawner):
                 self._look_for(wanted.wait)
 
     def close(self) -> None:
-        """End it; with ``-b`` the entity goes with it."""
+        """Close it; with ``-b`` the entity is deleted."""
         if self._wanted.b and self._described and not self.finished.done():
             kind = get_service("gazebo_msgs/srv/DeleteEntity")
             client = self._node.create_client(kind, f"{self._service_namespace}/delete_entity")
@@ -90,7 +90,7 @@ class SpawnEntity(EntitySpawner):
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
-    """The options of a command line, which are long ones after a single dash.
+    """Parse the options of a command line, which are long ones after a single dash.
 
     Raises:
         LinkwrightError: NODE810, it cannot be understood.

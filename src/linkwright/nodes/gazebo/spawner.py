@@ -1,4 +1,4 @@
-"""What programs share that ask a simulator: spawn_entity.py of gazebo_ros and create of ros_gz_sim above all."""
+"""The base of programs that call a simulator's services: spawn_entity.py of gazebo_ros, create of ros_gz_sim."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _LIST = "gazebo_msgs/srv/GetModelList"
 
 @dataclass(frozen=True)
 class Entity:
-    """What is to be spawned, and where.
+    """The name, text and pose of an entity to be spawned.
 
     Attributes:
         name: of the model in the world.
@@ -54,7 +54,7 @@ def spawn_request(entity: Entity, text: str) -> Any:
 
 
 class SimulatorClient(SingleNode):
-    """A node that asks the simulator for something and ends; its status is 1 where that was not done.
+    """A node that calls a service of the simulator and ends; its status is 1 if that failed.
 
     Derived classes make `_node` and call `_connect`.
     """
@@ -62,7 +62,7 @@ class SimulatorClient(SingleNode):
     finished: asyncio.Future[int]
 
     def _connect(self, node: Node, *, service_namespace: str = "", timeout: float | None = None) -> None:
-        """Say who asks whom.
+        """Set the node, and where the simulator's services are.
 
         Args:
             node: the node.
@@ -75,7 +75,7 @@ class SimulatorClient(SingleNode):
         self.finished = asyncio.get_running_loop().create_future()
 
     def _ask(self, kind: str, name: str, request: Any, then: Callable[[Any], None]) -> None:
-        """Call a service of the simulator; what answers is given to a function."""
+        """Call a service of the simulator; its response is passed to a function."""
         path = f"{self._service_namespace}/{name}"
         client = self._node.create_client(get_service(kind), path)
         future = client.call_async(request)  # it waits until there is a server
@@ -119,7 +119,7 @@ class EntitySpawner(SimulatorClient):
     def _prepare(
         self, node: Node, entity: Entity, *, service_namespace: str = "", timeout: float | None = None
     ) -> None:
-        """Say what is to be spawned, and the rest as for `_connect`."""
+        """Set the entity to be spawned, and the rest as `_connect` does."""
         self._connect(node, service_namespace=service_namespace, timeout=timeout)
         self._entity = entity
         self._described = False
@@ -127,21 +127,21 @@ class EntitySpawner(SimulatorClient):
     # --- ways to a description ------------------------------------------------------------------------------------
 
     def _wait_for(self, topic: str) -> None:
-        """Take the description that is published on a topic, or was before."""
+        """Take the description from a topic, also one that was published before."""
         self._say(f"Waiting for entity xml on {topic}")
         self._node.create_subscription(String, topic, lambda message: self._spawn(message.data), DESCRIPTION_QOS)
 
     # --- the request ----------------------------------------------------------------------------------------------
 
     def _spawn(self, text: str) -> None:
-        """Spawn a description as soon as the simulator is there; only the first one counts."""
+        """Spawn a description once the simulator is there; only the first one is used."""
         if self._described:
             return
         self._described = True
         self._ask(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._answered)
 
     def _ask_for_names(self, then: Callable[[list[str]], None]) -> None:
-        """Ask which models the world has."""
+        """Ask for the names of the world's models."""
         self._ask(_LIST, "get_model_list", get_service(_LIST).Request(), lambda answer: then(list(answer.model_names)))
 
     def _answered(self, response: Any) -> None:
@@ -152,12 +152,12 @@ class EntitySpawner(SimulatorClient):
         self._spawned()
 
     def _spawned(self) -> None:
-        """The entity is in the world."""
+        """Log that the entity was spawned, and end."""
         self._end(0)
 
 
 def text_at(address: str) -> str:
-    """The description at a path or an address: ``file://``, ``package://``, ``model://``, or of a model on Fuel.
+    """Read the description at a path or URI: ``file://``, ``package://``, ``model://``, or of a model on Fuel.
 
     Raises:
         LinkwrightError: NODE811, there is none, or it cannot be read.
@@ -174,5 +174,5 @@ def text_at(address: str) -> str:
 
 
 def text_of_stdin() -> str:
-    """The description that is written to standard input."""
+    """Read the description from standard input."""
     return sys.stdin.read()

@@ -1,4 +1,4 @@
-"""What stands in for Gazebo's window: a node that says where the world is to be seen."""
+"""A substitute for Gazebo's window: a node that says where the world can be viewed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
 
 class Window(SingleNode):
-    """The running node, which does nothing until it is ended: launch files end everything when the window is closed."""
+    """The running node, which does nothing until it is closed: launch files end all when the window is closed."""
 
     DEFAULT_NAME = "_gzclient"  # hidden: gzclient is no node
 

@@ -1,4 +1,4 @@
-"""amcl of nav2: where the robot is on a map, by a laser and odometry.
+"""amcl of nav2: localizes the robot on a map by a laser and odometry.
 
 Parameters, topics, services and texts are those of nav2. Different on purpose: what is drawn follows from a fixed seed,
 so twice the same data give the same; a scan that fits nowhere near is told; clusters of particles go on where a turn
@@ -40,7 +40,7 @@ _MISFITS = 5
 
 
 class AmclNode(ManagedNode):
-    """The node of the graph."""
+    """amcl as a managed node."""
 
     def declare(self) -> None:
         """Declare the parameters of nav2."""
@@ -91,7 +91,7 @@ class AmclNode(ManagedNode):
         keep(self.create_service(initial, "set_initial_pose", self._on_set_initial_pose))
 
     def activate(self) -> None:
-        """Begin to work, at the initial pose if there is one."""
+        """Start, at the initial pose if there is one."""
         self._heard_ns = self.get_clock().now().nanoseconds
         self._silence = self.create_timer(_SECONDS_OF_SILENCE, self._look_for_scans)
         if self._settings.initial_pose is not None:
@@ -99,20 +99,20 @@ class AmclNode(ManagedNode):
         self._active = True
 
     def deactivate(self) -> None:
-        """Stop working; where the robot is stays known."""
+        """Stop; the pose stays known."""
         self._active = False
         self._silence.destroy()
         self._waiting.clear()
 
     def cleanup(self) -> None:
-        """Forget the map."""
+        """Drop the map."""
         self._map = None
         self._active = False
 
     # --- input -------------------------------------------------------------------------------------------------------
 
     def update(self, message: TFMessage, *, static: bool, now_ns: int) -> None:
-        """Take in transforms; scans that waited for them are next."""
+        """Take over new transforms, and process the scans that waited for them."""
         self._buffer.update(message, static=static, now_ns=now_ns)
         if self._waiting:
             self._work()
@@ -154,7 +154,7 @@ class AmclNode(ManagedNode):
             )
 
     def _work(self) -> None:
-        """Take in the scans whose transforms are there; others wait for them as long as they are good for."""
+        """Process the scans whose transforms are known; others wait until the transform tolerance is over."""
         while self._waiting:
             scan = self._waiting[0]
             stamp_ns = scan.header.stamp.nanoseconds
@@ -209,7 +209,7 @@ class AmclNode(ManagedNode):
         )
 
     def _begin_at(self, pose: Pose | None, covariance: NDArray[np.float64]) -> None:
-        """Put the particles around a pose; where it is not known, around the origin of the map."""
+        """Initialise the particles around a pose; if it is unknown, around the origin of the map."""
         self._pose, self._covariance = pose, covariance
         self._filter.begin_at(pose or (0.0, 0.0, 0.0), covariance)
         self._begin_anew()
@@ -219,7 +219,7 @@ class AmclNode(ManagedNode):
         self._measured = self._misfits = 0
 
     def _follow(self) -> None:
-        """Obey changed parameters while it is at work; frames and topics stay those that it was configured with."""
+        """Apply changed parameters while it is active; frames and topics stay as configured."""
         if not hasattr(self, "_settings"):
             return
         before, self._settings = self._settings, read_parameters(self)
@@ -250,7 +250,7 @@ class AmclNode(ManagedNode):
         self._judge(estimate, beams)
 
     def _judge(self, estimate: Estimate, beams: Beams) -> None:
-        """Say when scans have not fitted for a while."""
+        """Warn when scans have not matched the map for a while."""
         assert self._map is not None, "there is an estimate"
         fit = self._map.fit(estimate.pose, beams)
         if fit is None:
@@ -309,7 +309,7 @@ class AmclNode(ManagedNode):
             logger.warning("Received initial pose request, but AMCL is not yet in the active state")
 
     def _since(self, pose: Pose, stamp_ns: int) -> Pose:
-        """A pose of some time ago with what the robot has driven since, as far as that is known."""
+        """An earlier pose moved by the odometry since then, as far as that is known."""
         if not stamp_ns:
             return pose
         try:
@@ -346,7 +346,7 @@ class AmclNode(ManagedNode):
 
 
 class _Listening:
-    """The subscriptions of a listener, which end when the node is cleaned up."""
+    """The subscriptions of a listener, removed when the node is cleaned up."""
 
     def __init__(self, listener: TransformListener) -> None:
         self._listener = listener

@@ -55,7 +55,7 @@ _NOT_NEGATIVE = ("laser_likelihood_max_dist", *(f"alpha{number}" for number in r
 
 @dataclass(frozen=True, slots=True)
 class AmclSettings:
-    """What the parameters say; lengths in metres, angles in radians, times in seconds.
+    """The parameters as one object; lengths in metres, angles in radians, times in seconds.
 
     Attributes:
         base: frame of the robot.
@@ -107,13 +107,13 @@ class AmclSettings:
 
 
 def declare_parameters(node: Node) -> None:
-    """Declare all of them."""
+    """Declare all parameters."""
     for name, default in _DEFAULTS.items():
         node.declare_parameter(name, default)
 
 
 def read_parameters(node: Node) -> AmclSettings:
-    """What they say.
+    """Read all parameters.
 
     Raises:
         LinkwrightError: NODE433, one cannot have its value.

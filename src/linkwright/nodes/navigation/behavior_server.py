@@ -1,4 +1,4 @@
-"""behavior_server of nav2: spin, back up, drive straight on, wait and assisted teleoperation, each an action.
+"""behavior_server of nav2: spin, back up, drive on heading, wait and assisted teleoperation as actions.
 
 Source: nav2_behaviors, Humble and Jazzy. Obstacles are those of ``local_costmap/costmap_raw``, the footprint is that of
 ``local_costmap/published_footprint``. Different on purpose: a costmap that falls silent ends a behaviour that moves.
@@ -53,7 +53,7 @@ _TYPES = {
 
 
 class _AssistedTeleop(Behavior):
-    """Somebody drives, but not into obstacles; it lasts until it is canceled or its time is over.
+    """Drives by an operator's velocities, slowed down near obstacles; ends when canceled or by a time limit.
 
     Args:
         allowance: how long it may take, in seconds; 0 for ever.
@@ -70,7 +70,7 @@ class _AssistedTeleop(Behavior):
 
 
 class BehaviorNode(ManagedNode):
-    """The node of the graph."""
+    """behavior_server as a managed node."""
 
     _FRAME: ClassVar[str] = "odom"
 
@@ -109,7 +109,7 @@ class BehaviorNode(ManagedNode):
         self._asked = STILL
 
     def configure(self) -> None:
-        """Join the topics, offer the actions.
+        """Make the topics and the action servers.
 
         Raises:
             LinkwrightError: a parameter is not given or means nothing.
@@ -132,14 +132,14 @@ class BehaviorNode(ManagedNode):
             self._servers[plugin] = self.keep(self._server(plugin, name, action))
 
     def deactivate(self) -> None:
-        """Stop the robot, and take no goals."""
+        """Stop the robot, and refuse goals."""
         if self._running is not None:
             server, _, _ = self._running
             self._halt()
             server.abort("UNKNOWN", "the server was deactivated")
 
     def cleanup(self) -> None:
-        """Leave the topics."""
+        """Remove the topics."""
         self._end_timer()
         self._servers.clear()
         self._costmap = self._footprint = None
@@ -175,7 +175,7 @@ class BehaviorNode(ManagedNode):
         self._timer = self.create_timer(self._period, self._cycle)
 
     def _behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
-        """The behaviour for a goal, or what is wrong with the goal."""
+        """Make the behaviour of a goal, or the reason for refusing it."""
         if name == "wait":
             return Wait(_seconds(goal.time))
         allowance = _seconds(goal.time_allowance)
@@ -236,7 +236,7 @@ class BehaviorNode(ManagedNode):
         server.abort(code, reason, total_elapsed_time=_duration(elapsed))
 
     def _halt(self) -> None:
-        """Stop the robot, if something moved it."""
+        """Stop the robot, if it was moved."""
         self._end_timer()
         if self._running is not None and self._running[2] != "wait":
             self._output.stop()
@@ -250,7 +250,7 @@ class BehaviorNode(ManagedNode):
     # --- what is known of the surroundings ----------------------------------------------------------------------------
 
     def _blind(self) -> str:
-        """Why obstacles cannot be seen; empty where they can."""
+        """The reason why obstacles are unknown; empty if they are known."""
         if self._costmap is None or self._footprint is None:
             return "no costmap has come yet"
         if self._now_ns() - self._heard_ns > _SILENT_COSTMAP * 1e9:
@@ -263,7 +263,7 @@ class BehaviorNode(ManagedNode):
         return not bool(np.any(self._costmap.footprint_cost(poses, self._footprint) == LETHAL))
 
     def _pose(self) -> Pose | None:
-        """Of the robot, in the frame of the costmap."""
+        """The robot's pose in the frame of the costmap."""
         frame = self._costmap_frame or self._value("local_frame")
         found = self._poses.pose(frame, self._value("robot_base_frame"), 0)
         return None if found is None else (found[0], found[1], rpy_from_quaternion(found[3:])[2])
@@ -274,7 +274,7 @@ class BehaviorNode(ManagedNode):
         self._heard_ns = self._now_ns()
 
     def _on_footprint(self, message: Any) -> None:
-        """The footprint comes placed where the robot is; it is taken back into the robot's frame."""
+        """Set the footprint from a message, in which it lies at the robot's pose; converted to the robot's frame."""
         found = self._poses.pose(
             message.header.frame_id,
             self._value("robot_base_frame"),
@@ -293,7 +293,7 @@ class BehaviorNode(ManagedNode):
         self._asked = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
 
     def _topic(self, what: str) -> str:
-        """The name of a topic, whichever of Humble's and Jazzy's parameters was given."""
+        """The name of a topic, from Humble's or Jazzy's parameter."""
         old = str(self._value(f"{what}_topic"))
         new = str(self._value(f"local_{what}_topic"))
         return old if f"{what}_topic" in self._humble else new
@@ -313,7 +313,7 @@ class BehaviorServer(ManagedServer):
 
 
 def _feedback(name: str, step: Step, elapsed: float, goal: Any) -> dict[str, Any]:
-    """The fields of the feedback of a behaviour."""
+    """The fields of a behaviour's feedback."""
     if name == "spin":
         return {"angular_distance_traveled": float(step.traveled)}
     if name == "wait":

@@ -1,4 +1,4 @@
-"""Bonds: two processes that notice when the other one dies (bondcpp), as nav2's servers have with their manager.
+"""Bonds (bondcpp), by which nav2's servers and their manager notice when the other process dies.
 
 Both sides publish heartbeats on ``bond`` under the same id. A side that leaves says so, and one that dies falls silent.
 Different from bondcpp: a side waits for the other as long as it is there, not for 10 s, so it does not matter who comes
@@ -23,7 +23,7 @@ _DEPTH = 100
 
 
 def _nothing() -> None:
-    """Nobody wants to know."""
+    """Ignore the event."""
 
 
 class Bond:
@@ -63,7 +63,7 @@ class Bond:
         self._send(active=True)
 
     def end(self) -> None:
-        """Leave: the other side is told."""
+        """Break the bond: the other side is told."""
         if not self.broken:
             self.broken = True
             self._send(active=False)

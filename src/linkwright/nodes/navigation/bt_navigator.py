@@ -1,4 +1,4 @@
-"""bt_navigator of nav2: goes to poses, by the planner, the controller and the behaviours of the other servers.
+"""bt_navigator of nav2: navigates to poses by the planner, controller and behaviour servers.
 
 The actions ``navigate_to_pose`` and ``navigate_through_poses``, and the topic ``goal_pose`` (RViz's 2D Goal Pose). What
 is done is what nav2's usual trees do (``navigate_to_pose_w_replanning_and_recovery.xml``): a new path each second; when
@@ -43,7 +43,7 @@ _ALLOWANCE = 10.0
 
 
 class NavigatorNode(StepNode):
-    """The node of the graph."""
+    """bt_navigator as a managed node."""
 
     def declare(self) -> None:
         """Declare the parameters of nav2."""
@@ -61,7 +61,7 @@ class NavigatorNode(StepNode):
         self._speed = 0.0
 
     def configure(self) -> None:
-        """Join the topics, offer the actions."""
+        """Make the topics and the action servers."""
         pose, odometry = get_message("geometry_msgs/msg/PoseStamped"), get_message("nav_msgs/msg/Odometry")
         self.keep(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _DEPTH))
         self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
@@ -86,7 +86,7 @@ class NavigatorNode(StepNode):
                 self._tell_tree(given)
 
     def activate(self) -> None:
-        """Take goals."""
+        """Accept goals."""
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
@@ -113,7 +113,7 @@ class NavigatorNode(StepNode):
         self.get_logger().warning(f"behaviour trees are not read: the usual one runs instead of {path}")
 
     def _start(self, which: str, goal: Any) -> None:
-        """Begin with a goal; one of the other action is aborted, and a path that is driven goes on being driven."""
+        """Start with a goal; one of the other action is aborted, and a path is followed further meanwhile."""
         poses = [goal.pose] if which == "pose" else list(goal.poses)
         at = poses[-1].pose.position
         x, y = self._pose() or (float("nan"),) * 2
@@ -148,7 +148,7 @@ class NavigatorNode(StepNode):
     # --- what is done -------------------------------------------------------------------------------------------------
 
     def _navigate(self, which: str) -> Step:
-        """Go to the poses, and recover from failures."""
+        """Navigate through the poses, and recover from failures."""
         recoveries = [self._clear_costmaps, self._spin, self._wait, self._back_up]
         while True:
             try:
@@ -162,7 +162,7 @@ class NavigatorNode(StepNode):
             yield from self._recover(recoveries)
 
     def _recover(self, recoveries: Sequence[Any]) -> Step:
-        """The next of the recoveries that succeeds, one after the other as nav2's RoundRobin."""
+        """Run the next of the recoveries that succeeds, in turn as nav2's RoundRobin."""
         for _ in recoveries:
             recovery = recoveries[self._turn % len(recoveries)]
             self._turn += 1
@@ -177,7 +177,7 @@ class NavigatorNode(StepNode):
     _turn = 0
 
     def _plan_and_drive(self, which: str) -> Step:
-        """Drive along a path that is made anew while it is driven."""
+        """Follow a path that is replanned periodically."""
         path = yield from self._planned(which)
         driving = Sent(self._clients["follow_path"], self._to_follow(path))
         cleared = False
@@ -204,7 +204,7 @@ class NavigatorNode(StepNode):
             driving.cancel()
 
     def _planned(self, which: str) -> Step:
-        """A path; when there is none it is tried again after the global costmap was cleared."""
+        """Plan a path; if that fails, once more after clearing the global costmap."""
         try:
             return (yield from self._plan(which))
         except StepError as failure:
@@ -234,7 +234,7 @@ class NavigatorNode(StepNode):
         return path
 
     def _objection(self) -> str:
-        """What is wrong with the goal, as far as the global costmap tells; empty where it is free."""
+        """The reason for refusing a goal by the global costmap; empty for none."""
         at, frame = self._poses[-1].pose.position, self._poses[-1].header.frame_id
         if self._costmap is None or (frame and frame != self._costmap_frame):
             return ""
@@ -263,7 +263,7 @@ class NavigatorNode(StepNode):
         yield from self._clear("global")
 
     def _clear(self, which: str) -> Step:
-        """Clear a costmap, if it answers."""
+        """Clear a costmap, if its server is there."""
         client = self._clearing[which]
         if not client.service_is_ready():
             self.get_logger().warning(f"the {which} costmap is not cleared: there is no {client.service_name}")
@@ -290,7 +290,7 @@ class NavigatorNode(StepNode):
     # --- topics -------------------------------------------------------------------------------------------------------
 
     def _on_goal_pose(self, message: Any) -> None:
-        """RViz's 2D Goal Pose is a goal as any other."""
+        """Navigate to a pose of RViz's 2D Goal Pose."""
         if not self.is_active:
             self.get_logger().warning("a goal came on goal_pose, and this node is not active")
             return
@@ -307,7 +307,7 @@ class NavigatorNode(StepNode):
             self._left = _left_on(self._path, *place)
 
     def _transform(self) -> Any:
-        """The pose of the robot in the global frame; None where it is not known."""
+        """The robot's pose in the global frame; None if it is unknown."""
         try:
             return self._buffer.lookup(self._value("global_frame"), self._value("robot_base_frame"), 0)[0]
         except TransformException:
@@ -329,7 +329,7 @@ class BtNavigator(ManagedServer):
 
 
 def _is_usual(path: str) -> bool:
-    """Whether a behaviour tree is one of those that nav2 uses when none is given."""
+    """Whether a behaviour tree is one of nav2's defaults."""
     return path.rpartition("/")[2] in _USUAL_TREES
 
 
@@ -339,7 +339,7 @@ def _length(path: Any) -> float:
 
 
 def _left_on(path: Any, x: float, y: float) -> float:
-    """How far it is along a path from the pose on it that is closest to a place, in metres."""
+    """The distance along a path from its pose closest to a place to its end, in metres."""
     places = [each.pose.position for each in path.poses]
     nearest = min(range(len(places)), key=lambda index: hypot(places[index].x - x, places[index].y - y))
     rest = places[nearest:]

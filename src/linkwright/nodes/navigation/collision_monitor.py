@@ -1,4 +1,4 @@
-"""collision_monitor of nav2: passes velocities on, slowed or stopped where its sensors see something in a zone.
+"""collision_monitor of nav2: forwards velocities, slowed down or stopped when sensors see something in a zone.
 
 Parameters, topics and rules are those of nav2, Humble's and Jazzy's. Different on purpose: unless
 ``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; a sensor
@@ -39,7 +39,7 @@ _DONE = {
 
 
 class MonitorNode(ManagedNode):
-    """The node of the graph."""
+    """collision_monitor as a managed node."""
 
     def declare(self) -> None:
         """Declare the parameters that do not belong to a zone or a sensor."""
@@ -66,7 +66,7 @@ class MonitorNode(ManagedNode):
         self._stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
 
     def configure(self) -> None:
-        """Read what zones and sensors there are, and join the topics.
+        """Read the zones and sensors, and make the topics.
 
         Raises:
             LinkwrightError: NODE431, NODE433, a parameter is not given or cannot have its value.
@@ -89,18 +89,18 @@ class MonitorNode(ManagedNode):
             commander.watch(self.keep(heard))
 
     def activate(self) -> None:
-        """Begin to pass velocities on."""
+        """Start to forward velocities."""
         for zone in self._zones:
             zone.publish()
 
     def deactivate(self) -> None:
-        """Stop the robot, and pass nothing on."""
+        """Stop the robot, and forward nothing."""
         if self._output is not None and self._verdict.velocity != STILL:
             self._output.stop()
         self._verdict = Verdict(STILL)
 
     def cleanup(self) -> None:
-        """Leave the topics."""
+        """Remove the topics."""
         self._zones, self._sources, self._state = [], [], None
         if self._output is not None:
             self._output.close()
@@ -140,7 +140,7 @@ class MonitorNode(ManagedNode):
         return judged(velocity, [each for each in zones if each is not None])
 
     def _publish(self, velocity: Velocity) -> None:
-        """Publish a velocity; one that stays zero only for ``stop_pub_timeout``, so that others can drive then."""
+        """Publish a velocity; zeros only for ``stop_pub_timeout``, so that others can drive then."""
         assert self._output is not None, "it is configured"
         now_ns = self.get_clock().now().nanoseconds
         if velocity != STILL:

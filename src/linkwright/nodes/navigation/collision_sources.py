@@ -1,4 +1,4 @@
-"""What collision_monitor sees: the newest points of each of its sensors, where they are now as seen from the robot."""
+"""Sensors of collision_monitor: their newest points, in the robot's frame of now."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _WAITING = 20
 
 
 class Source:
-    """A sensor.
+    """A sensor and its newest message.
 
     Args:
         node: listens.
@@ -62,11 +62,11 @@ class Source:
         self._subscription = node.create_subscription(type_, topic, self._hear, SENSOR_DATA_QOS)
 
     def destroy(self) -> None:
-        """Leave the topic."""
+        """Remove the subscription."""
         self._subscription.destroy()
 
     def points(self, now_ns: int, timeout: float) -> Points | None:
-        """What it sees, none when it is switched off; None when it is silent or where it is is not known.
+        """The newest points, none if it is switched off; None if it is silent or its transform is unknown.
 
         Args:
             now_ns: the time.
@@ -92,7 +92,7 @@ class Source:
         return placed[:, :2]
 
     def _newest(self) -> tuple[Any, Transform] | None:
-        """The newest message that has a place, and that; transforms often come a little later than what was seen."""
+        """The newest message with a known transform, and that; transforms often come a little later than messages."""
         for message in reversed(self._waiting):
             pose = self._pose(message.header.frame_id, message.header.stamp.nanoseconds)
             if pose is not None:
@@ -102,7 +102,7 @@ class Source:
         return None
 
     def _pose(self, frame: str, stamp_ns: int) -> Transform | None:
-        """The pose of the sensor when it saw, in the frame that the robot has now."""
+        """The sensor's pose at the time of a message, in the robot's frame of now."""
         try:
             if self._fixed is None:
                 return self._transforms.lookup(self._base, frame, 0)[0]
@@ -122,7 +122,7 @@ class Source:
         return None if points is None else points[np.isfinite(points).all(axis=1)]
 
     def _of_range(self, message: Any) -> NDArray[np.float64]:
-        """Points on the arc where the obstacle may be; none where the reading is out of the range of the sensor."""
+        """Points on the arc of a range reading; none for a reading outside of the sensor's range."""
         if not message.min_range <= message.range <= message.max_range:
             return np.zeros((0, 3))
         half = message.field_of_view / 2.0

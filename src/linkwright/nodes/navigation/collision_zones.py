@@ -1,4 +1,4 @@
-"""The zones of collision_monitor: their parameters, and shapes that topics tell."""
+"""Zones of collision_monitor: their parameters, and shapes from topics."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _DEPTH = 10
 
 
 class Zone:
-    """A zone.
+    """A zone with its rule and shape.
 
     Args:
         node: whose it is.
@@ -65,12 +65,12 @@ class Zone:
             self._publisher = self._keep(node.create_publisher(get_message(_POLYGON), topic, _DEPTH))
 
     def destroy(self) -> None:
-        """Leave the topics."""
+        """Remove the topics."""
         for part in self._parts:
             part.destroy()
 
     def judging(self, velocity: Velocity, seen: Mapping[str, Points]) -> tuple[str, Rule, Shape, Points] | None:
-        """Its name, its rule, its shape at a velocity and what its sensors see; None when it is off or has no shape."""
+        """Its name, rule, shape at a velocity and points; None if it is switched off or has no shape."""
         if not self._value("enabled", True):
             return None
         for each in self._ranges:
@@ -85,7 +85,7 @@ class Zone:
         return self.name, self.rule, self._shape, np.concatenate(mine) if mine else np.zeros((0, 2))
 
     def publish(self) -> None:
-        """Tell its corners to whoever wants to see them."""
+        """Publish its polygon for displays."""
         if (
             self._publisher is None
             or not isinstance(self._shape, Outline)
@@ -136,7 +136,7 @@ class Zone:
         return SpeedRange(Outline(corners), (between[0], between[1]), (between[2], between[3]), direction)
 
     def _read_shape(self, kind: str) -> None:
-        """The shape that parameters tell, or the topic that does."""
+        """Read the shape from parameters, or the topic that it comes from."""
         polygon = get_message(_POLYGON)
         if kind == "circle":
             radius = float(self._value("radius", 0.0))
@@ -162,7 +162,7 @@ class Zone:
             self._keep(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
 
     def _corners(self, name: str) -> Footprint | None:
-        """Corners as Jazzy's files tell them, in a text, or Humble's, in a list of numbers; None without any."""
+        """Corners from Jazzy's parameter, a text, or Humble's, a list of numbers; None without any."""
         full = f"{self.name}.{name}"
         if not self._node.has_parameter(full):
             self._node.declare_parameter(full, None, ParameterDescriptor(dynamic_typing=True))
@@ -191,7 +191,7 @@ class Zone:
         self._place()
 
     def _place(self) -> None:
-        """Take the corners that a topic told into the frame of the robot, as it stands to their frame now.
+        """Transform the corners of a topic to the robot's frame of now.
 
         Footprints come placed where the robot was when they were sent, so they are taken back as of that time.
         """

@@ -1,4 +1,4 @@
-"""controller_server of nav2: drives along paths that the action ``follow_path`` is given.
+"""controller_server of nav2: follows the paths of the action ``follow_path``.
 
 Parameters, topics and results are those of nav2. Different on purpose: unless ``enable_stamped_cmd_vel`` is set, Twist
 or TwistStamped is published, whichever is listened to; while the costmap is not current the robot stands still.
@@ -38,7 +38,7 @@ _STALE_PATH_FRAME = 5.0
 
 
 class _NotNowError(Exception):
-    """What is needed to drive is not known at the moment; nav2's name of the code if that stays so, and what it is."""
+    """Something is unknown for the moment; nav2's name of the error code if that lasts, and what it is."""
 
     def __init__(self, code: str, reason: str) -> None:
         super().__init__(reason)
@@ -46,7 +46,7 @@ class _NotNowError(Exception):
 
 
 class _GoalError(Exception):
-    """A goal cannot be worked on; the name of nav2's error code, and why."""
+    """A goal is aborted; nav2's name of the error code, and the reason."""
 
     def __init__(self, code: str, reason: str) -> None:
         super().__init__(reason)
@@ -54,7 +54,7 @@ class _GoalError(Exception):
 
 
 class ControllerNode(ManagedNode):
-    """The node of the graph.
+    """controller_server as a managed node.
 
     Attributes:
         costmap: around the robot; set before it is configured.
@@ -85,7 +85,7 @@ class ControllerNode(ManagedNode):
         self._command: Velocity | None = None
 
     def configure(self) -> None:
-        """Make the plugins and the costmap, offer the action.
+        """Make the plugins, the costmap and the action server.
 
         Raises:
             LinkwrightError: a parameter is not given or means nothing.
@@ -108,11 +108,11 @@ class ControllerNode(ManagedNode):
         self._goals = self.keep(GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start))
 
     def activate(self) -> None:
-        """Take goals."""
+        """Accept goals."""
         self.costmap.trigger_activate()
 
     def deactivate(self) -> None:
-        """Stop the robot, and take no goals."""
+        """Stop the robot, and refuse goals."""
         if self._goals is not None and self._goals.current is not None:
             self._halt()
             self._goals.abort("UNKNOWN", "the server was deactivated")
@@ -120,7 +120,7 @@ class ControllerNode(ManagedNode):
             self.costmap.trigger_deactivate()
 
     def cleanup(self) -> None:
-        """Let the plugins go."""
+        """Drop the plugins."""
         self._end_timer()
         self._followers.clear()
         self._goals = None
@@ -132,7 +132,7 @@ class ControllerNode(ManagedNode):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _start(self, goal: ServerGoalHandle) -> None:
-        """Begin with a goal; a robot that drives goes on driving."""
+        """Start with a goal; a moving robot goes on moving."""
         request = goal.request
         assert self._goals is not None, "it is configured"
         drives = self._timer is not None
@@ -170,7 +170,7 @@ class ControllerNode(ManagedNode):
         self._follower.begin()
 
     def _cycle(self) -> None:
-        """Find the next velocity."""
+        """Compute and publish the next velocity."""
         goals = self._goals
         if goals is None or goals.current is None:
             self._halt()
@@ -188,7 +188,7 @@ class ControllerNode(ManagedNode):
             self._fail(failure)
 
     def _wait(self, problem: _NotNowError) -> None:
-        """Stand still until what is needed is known again, or give up."""
+        """Stand still until what is missing is known again, or abort."""
         self._publish(STILL)
         waited = (self._now_ns() - self._good_ns) / 1e9
         if waited > max(self._value("costmap_update_timeout"), _LONGEST_WAIT):
@@ -198,7 +198,7 @@ class ControllerNode(ManagedNode):
             self.get_logger().warning(message, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
 
     def _drive(self, goals: GoalServer) -> None:
-        """Drive for a cycle."""
+        """Run a cycle of following."""
         now_ns = self._now_ns()
         frame = self._pose(self._path_frame, _STALE_PATH_FRAME)
         pose = self._pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
@@ -233,7 +233,7 @@ class ControllerNode(ManagedNode):
         goals.feedback(distance_to_goal=self._path.remaining(x, y), speed=hypot(self._measured.x, self._measured.y))
 
     def _bear(self, reason: str, now_ns: int) -> None:
-        """Stand still because there is no velocity, for as long as ``failure_tolerance`` says."""
+        """Stand still without a valid velocity, for as long as ``failure_tolerance`` allows."""
         tolerance = self._value("failure_tolerance")
         if not tolerance:
             raise _GoalError("NO_VALID_CONTROL", reason)
@@ -243,11 +243,11 @@ class ControllerNode(ManagedNode):
             raise _GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
 
     def _velocity(self) -> Velocity:
-        """The velocity that the robot has, as far as it was told; before that as measured."""
+        """The robot's velocity: the commanded one, before that the measured one."""
         return self._measured if self._command is None else self._command
 
     def _pose(self, frame: str, most_seconds: float) -> Pose:
-        """A frame in that of the costmap.
+        """The pose of a frame in that of the costmap.
 
         Raises:
             _NotNowError: it is not known, or has not been for too long.
@@ -322,7 +322,7 @@ class ControllerServer(ManagedServer):
 
 
 def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
-    """The plugin that a goal names; the only one where it names none."""
+    """The plugin that a goal names; the only one if it names none."""
     if name in plugins:
         return plugins[name]
     if not name and len(plugins) == 1:
@@ -331,7 +331,7 @@ def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
 
 
 def _placed(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Poses that are given in a frame, of shape (poses, 3), where that frame is."""
+    """Poses of a frame, of shape (poses, 3), transformed by the pose of that frame."""
     x, y, yaw = frame
     c, s = cos(yaw), sin(yaw)
     placed: NDArray[np.float64] = np.stack(

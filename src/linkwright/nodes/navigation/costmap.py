@@ -72,7 +72,7 @@ _OF_TF = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
 
 
 class CostmapNode(ManagedNode):
-    """A costmap on the graph.
+    """A costmap as a managed node.
 
     Attributes:
         transforms: where frames are, from before it is configured.
@@ -100,17 +100,17 @@ class CostmapNode(ManagedNode):
 
     @property
     def global_frame(self) -> str:
-        """In which it lies."""
+        """Its own frame."""
         return str(self._value("global_frame"))
 
     @property
     def robot_base_frame(self) -> str:
-        """Of the robot."""
+        """The frame of the robot."""
         return str(self._value("robot_base_frame"))
 
     @property
     def layered(self) -> LayeredCostmap:
-        """Its costs and layers.
+        """The costmap with its layers.
 
         Raises:
             RuntimeError: it is not configured.
@@ -126,25 +126,25 @@ class CostmapNode(ManagedNode):
 
     @property
     def footprint(self) -> Footprint:
-        """Of the robot, with its padding, in the frame of the robot. See `layered`."""
+        """The footprint with its padding, in the frame of the robot. See `layered`."""
         return self.layered.footprint
 
     @property
     def uses_radius(self) -> bool:
-        """Whether the robot is taken to be round."""
+        """Whether the robot is treated as round."""
         return str(self._value("footprint")).replace(" ", "") in {"", "[]"}
 
     @property
     def is_current(self) -> bool:
-        """Whether it was updated, has a map if it wants one, and sensors were heard as often as they should be."""
+        """Whether it was updated, has its map, and sensors publish as often as expected."""
         return self._layered is not None and self._layered.is_current(self._now_ns())
 
     def robot_pose(self) -> Pose | None:
-        """x, y (metres) and yaw (radians) of the robot in the frame of the costmap; None where it is not known."""
+        """x, y (metres) and yaw (radians) of the robot in the frame of the costmap; None if they are unknown."""
         return self.pose_of((0.0, 0.0, 0.0), self.robot_base_frame)
 
     def pose_of(self, pose: Pose, frame: str, time_ns: int = 0) -> Pose | None:
-        """A pose that is given in another frame, in that of the costmap; None where no transform tells.
+        """A pose of another frame in that of the costmap; None without a transform.
 
         Args:
             pose: x, y (metres) and yaw (radians).
@@ -165,7 +165,7 @@ class CostmapNode(ManagedNode):
     # --- its life -----------------------------------------------------------------------------------------------------
 
     def configure(self) -> None:
-        """Make the layers, join the topics, offer the services.
+        """Make the layers, the topics and the services.
 
         Raises:
             LinkwrightError: NODE431, NODE433, a parameter is not given or cannot have its value; NAV101, SciPy is not
@@ -197,23 +197,23 @@ class CostmapNode(ManagedNode):
         self._offer_services()
 
     def activate(self) -> None:
-        """Begin to update it."""
+        """Start to update it."""
         self.layered.touch()
         self._start_timer()
 
     def deactivate(self) -> None:
-        """Stop updating it."""
+        """Stop to update it."""
         self._end_timer()
 
     def cleanup(self) -> None:
-        """Leave what the layers listen to."""
+        """Remove the subscriptions of the layers."""
         self._end_timer()
         for topic in self._shared.topics if self._shared is not None else []:
             topic.destroy()
         self._shared = self._layered = self._publisher = None
 
     def update(self) -> bool:
-        """Bring it up to date; False where the place of the robot is not known."""
+        """Update it; False if the robot's pose is unknown."""
         assert self._shared is not None, "it is configured"
         pose = self.robot_pose()
         if pose is None:
@@ -287,7 +287,7 @@ class CostmapNode(ManagedNode):
         self._footprints.publish(message)
 
     def _on_map(self, grid: Grid, frame: str) -> None:
-        """A fixed costmap is as large as its map."""
+        """Resize a static costmap to its map."""
         self.get_logger().info(
             f"StaticLayer: Resizing costmap to {grid.columns} X {grid.rows} at {grid.resolution:g} m/pix"
         )
@@ -313,7 +313,7 @@ class CostmapNode(ManagedNode):
         self.layered.footprint = corners
 
     def _follow(self, changed: list[Parameter]) -> None:
-        """Obey changed parameters while it is at work."""
+        """Apply changed parameters while it is active."""
         layered = self._layered
         if layered is None or self._shared is None:
             return
@@ -379,7 +379,7 @@ class CostmapNode(ManagedNode):
 
 
 def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) -> CostmapNode:
-    """The costmap of a server, in a namespace of its name within the server's.
+    """Make the costmap of a server, in a namespace of its name within the server's.
 
     Args:
         server: whose it is; its ``use_sim_time`` counts for the costmap, too.
@@ -409,7 +409,7 @@ def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) ->
 
 
 def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
-    """A remapping rule for the costmap: transforms are heard where the server hears them, not in its own namespace.
+    """Remapping rules for tf: the costmap uses the server's topics, not those of its own namespace.
 
     Source: a costmap of nav2 listens by a node of its process that is not in the costmap's namespace.
     """
@@ -420,7 +420,7 @@ def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
 
 
 def _upright(grid: Grid) -> Grid:
-    """The size and place of the smallest grid that is not turned and holds another one."""
+    """The size and origin of the smallest axis-aligned grid around another one."""
     if not grid.yaw:
         return grid
     rows, columns = grid.rows, grid.columns

@@ -1,4 +1,4 @@
-"""Layers of costmaps by the parameters that nav2 has for them.
+"""Making the layers of costmaps from nav2's parameters.
 
 Source: nav2_costmap_2d, Humble and Jazzy.
 """
@@ -37,7 +37,7 @@ _KINDS: Final = ("LaserScan", "PointCloud2")
 
 @dataclass(slots=True)
 class Surroundings:
-    """What the layers of a costmap share.
+    """The node and data that the layers of a costmap share.
 
     Attributes:
         node: of the costmap.
@@ -63,7 +63,7 @@ class Surroundings:
 
 
 def make_layers(shared: Surroundings, names: list[str]) -> None:
-    """Make the layers that the parameter ``plugins`` names; those that we do not have are left out with a line.
+    """Make the layers of the parameter ``plugins``; unknown ones are left out with a warning.
 
     Raises:
         LinkwrightError: NODE431, a layer has no type; NODE433, a parameter cannot have its value.
@@ -99,7 +99,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
 
 
 def follow(shared: Surroundings, changed: list[Parameter]) -> bool:
-    """Obey changed parameters of layers; whether there were any."""
+    """Apply changed parameters of layers; whether there were any."""
     found = False
     for each in changed:
         name, _, parameter = each.name.partition(".")
@@ -231,5 +231,5 @@ def _denoise(shared: Surroundings, name: str) -> Layer:
 
 
 def _beside(node: Node, topic: str) -> str:
-    """A relative topic is one beside the namespace of the costmap, not in it."""
+    """A relative topic, resolved beside the namespace of the costmap, not in it."""
     return topic if topic.startswith(("/", "~")) else join(split(node.get_namespace())[0], topic)

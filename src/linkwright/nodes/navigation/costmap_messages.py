@@ -1,4 +1,4 @@
-"""Costmaps on topics: as an occupancy grid for displays, and as they are for other nodes.
+"""Publishing costmaps: as occupancy grids for displays, and raw for other nodes.
 
 Source: nav2_costmap_2d ``Costmap2DPublisher``.
 """
@@ -48,7 +48,7 @@ def raw_message(costmap: Costmap, frame: str, stamp: Any) -> Any:
 
 
 class CostmapPublisher:
-    """Publishes a costmap on ``costmap``, ``costmap_raw``, and what changes of it on ``costmap_updates``.
+    """Publishes a costmap on ``costmap``, ``costmap_raw``, and its changes on ``costmap_updates``.
 
     Args:
         node: of the costmap.
@@ -74,17 +74,17 @@ class CostmapPublisher:
             )
 
     def destroy(self) -> None:
-        """Leave the topics."""
+        """Remove the topics."""
         for each in (self._full, self._raw, self._updates, self._raw_updates):
             if each is not None:
                 each.destroy()
 
     def note(self, window: Window) -> None:
-        """A part changed."""
+        """Record a changed window."""
         self._pending = self._pending.joined(window)
 
     def publish(self) -> None:
-        """Send what changed since it was last sent; all of it to those who listen since then, and when it moved."""
+        """Publish the changes; all of it to new subscribers, and when it moved."""
         grid = self._costmap.costmap.grid
         place = (grid.x, grid.y, grid.rows, grid.columns)
         listeners = self._full.get_subscription_count() + self._raw.get_subscription_count()
@@ -108,7 +108,7 @@ class CostmapPublisher:
             self._publish_raw(window, stamp)
 
     def _publish_raw(self, window: Window, stamp: Any) -> None:
-        """All of it, for those who hear no updates, and what changed."""
+        """Publish all of it, for those without updates, and the changes."""
         if self._raw.get_subscription_count():
             self._raw.publish(raw_message(self._costmap.costmap, self._frame, stamp))
         if self._raw_updates is not None and self._raw_updates.get_subscription_count() and not window.is_empty:

@@ -1,4 +1,4 @@
-"""Costmaps of other nodes, as nav2_msgs/Costmap tells them."""
+"""Reading costmaps of other nodes from nav2_msgs/Costmap."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.navigation.grids.grid import Grid
 
 
 def costmap_of(message: Any) -> Costmap:
-    """The costmap of a message."""
+    """Convert a message to a costmap."""
     metadata = message.metadata
     cells = np.frombuffer(message.data, np.uint8).reshape(metadata.size_y, metadata.size_x)
     origin = metadata.origin.position

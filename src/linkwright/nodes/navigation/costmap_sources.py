@@ -1,4 +1,4 @@
-"""What the layers of a costmap listen to: laser scans and clouds, and maps.
+"""Subscriptions of a costmap's layers: laser scans, clouds, ranges and maps.
 
 Source: nav2_costmap_2d ``ObservationBuffer``, ``StaticLayer``. Scans wait until their place is known, and are taken in
 when the costmap is updated: of a sensor whose points count only until there are others, the last one that has a place.
@@ -44,7 +44,7 @@ _LITTLE = 1e-4
 
 
 class SensorTopic(ABC):
-    """A topic of a sensor, whose messages wait until their place is known.
+    """A topic of a sensor, whose messages wait until their transforms are known.
 
     Args:
         node: listens.
@@ -61,11 +61,11 @@ class SensorTopic(ABC):
         self._subscription = node.create_subscription(message, topic, self._hear, SENSOR_DATA_QOS)
 
     def destroy(self) -> None:
-        """Leave the topic."""
+        """Remove the subscription."""
         self._subscription.destroy()
 
     def take_in(self) -> None:
-        """Give the layer what came and has a place."""
+        """Give the layer the messages whose transforms are known."""
         waiting = list(self._waiting)
         placed = [(message, pose) for message in waiting if (pose := self._pose(message)) is not None]
         if not placed:
@@ -79,11 +79,11 @@ class SensorTopic(ABC):
     @property
     @abstractmethod
     def all_count(self) -> bool:
-        """Whether messages count that others came after."""
+        """Whether all messages are used, or only the newest."""
 
     @abstractmethod
     def _observe(self, message: Any, pose: Transform) -> None:
-        """Give the layer what was seen from a pose in the frame of the costmap."""
+        """Give the layer a message with the sensor's pose in the frame of the costmap."""
 
     def _hear(self, message: Any) -> None:
         self._waiting.append(message)
@@ -97,7 +97,7 @@ class SensorTopic(ABC):
 
 
 class PointsTopic(SensorTopic):
-    """A topic of scans or clouds, for a layer of obstacles.
+    """A topic of scans or clouds, for an obstacle layer.
 
     Args:
         node: listens.
@@ -156,7 +156,7 @@ class PointsTopic(SensorTopic):
 
 
 class RangeTopic(SensorTopic):
-    """A topic of single distances, for a layer of ranges."""
+    """A topic of ranges, for a range layer."""
 
     def __init__(self, node: Node, topic: str, layer: RangeLayer, transforms: BufferCore, frame: str) -> None:
         super().__init__(node, topic, "Range", transforms, frame)
@@ -164,7 +164,7 @@ class RangeTopic(SensorTopic):
 
     @property
     def all_count(self) -> bool:
-        """Likelihoods are learnt from all."""
+        """True: probabilities are learnt from all messages."""
         return True
 
     def _observe(self, message: Any, pose: Transform) -> None:
@@ -217,7 +217,7 @@ class MapTopic:
             self._subscriptions.append(node.create_subscription(message, f"{topic}_updates", self._take_part, 10))
 
     def destroy(self) -> None:
-        """Leave the topics."""
+        """Remove the subscriptions."""
         for each in self._subscriptions:
             each.destroy()
 

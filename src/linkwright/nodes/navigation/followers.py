@@ -1,4 +1,4 @@
-"""The controller plugins of nav2's controller_server: ours under their names, with their parameters.
+"""The plugins of nav2's controller_server: our classes under nav2's names, with nav2's parameters.
 
 Different on purpose: DWB and MPPI are one follower of our own, which has the parameters of both that are limits and
 times; which of the others were given is said in a line.
@@ -37,7 +37,7 @@ USUAL_PROGRESS_CHECKERS = {"progress_checker": "nav2_controller/SimpleProgressCh
 
 
 def make_follower(node: Node, plugin: str) -> Follower:
-    """The follower of a plugin's name.
+    """Make the follower of a plugin.
 
     Raises:
         LinkwrightError: NODE431, its type is not given; a parameter has another type.
@@ -78,7 +78,7 @@ def _made(node: Node, plugin: str, kind: str) -> Follower:
 
 
 def _dwb(node: Node, plugin: str) -> SamplingParameters:
-    """DWB's limits and times, with its defaults."""
+    """DWB's limits and simulated time, with its defaults."""
 
     def value(name: str, default: float) -> float:
         return float(value_of(node, f"{plugin}.{name}", default))
@@ -95,7 +95,7 @@ def _dwb(node: Node, plugin: str) -> SamplingParameters:
 
 
 def _mppi(node: Node, plugin: str) -> SamplingParameters:
-    """MPPI's limits and times, with its defaults."""
+    """MPPI's limits and simulated time, with its defaults."""
 
     def value(name: str, default: float) -> float:
         return float(value_of(node, f"{plugin}.{name}", default))
@@ -113,7 +113,7 @@ def _mppi(node: Node, plugin: str) -> SamplingParameters:
 
 
 def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
-    """The goal checker of a plugin's name; see `make_follower`."""
+    """Make the goal checker of a plugin; see `make_follower`."""
     kind = type_of(node, plugin, USUAL_GOAL_CHECKERS)
     checkers: dict[str, Callable[[], GoalChecker]] = {
         "nav2_controller/SimpleGoalChecker": lambda: SimpleGoalChecker(declared(node, plugin, SimpleGoalParameters)),
@@ -124,7 +124,7 @@ def make_goal_checker(node: Node, plugin: str) -> GoalChecker:
 
 
 def make_progress_checker(node: Node, plugin: str) -> ProgressChecker:
-    """The progress checker of a plugin's name; see `make_follower`."""
+    """Make the progress checker of a plugin; see `make_follower`."""
     kind = type_of(node, plugin, USUAL_PROGRESS_CHECKERS)
     checkers: dict[str, Callable[[], ProgressChecker]] = {
         "nav2_controller/SimpleProgressChecker": lambda: ProgressChecker(declared(node, plugin, ProgressParameters)),

@@ -1,4 +1,4 @@
-"""An action that works on one goal at a time: a new goal takes the place of the one before, as with nav2's servers."""
+"""Action servers with one goal at a time: a new goal replaces the one before, as in nav2's servers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.nodes.navigation.managed import ManagedNode
 
 
 class GoalServer:
-    """The server of an action of a managed node, which refuses goals while the node is not active.
+    """The action server of a managed node, which refuses goals while the node is not active.
 
     Args:
         node: whose it is.
@@ -53,13 +53,13 @@ class GoalServer:
 
     @property
     def goal(self) -> Any:
-        """The message of the goal that is worked on."""
+        """The message of the active goal."""
         assert self.current is not None, "something is worked on"
         return self.current.request
 
     @property
     def is_canceled(self) -> bool:
-        """Whether the goal that is worked on is to be canceled."""
+        """Whether the active goal is to be canceled."""
         return self.current is not None and self.current.is_cancel_requested
 
     def feedback(self, **fields: Any) -> None:
@@ -71,12 +71,12 @@ class GoalServer:
             self.current.publish_feedback(message)
 
     def succeed(self, **fields: Any) -> None:
-        """The goal was reached; fields of the result."""
+        """End with the status succeeded; fields of the result."""
         if (goal := self._leave()) is not None:
             goal.succeed(self._result("", "", fields))
 
     def abort(self, code: str, reason: str, **fields: Any) -> None:
-        """The goal cannot be reached.
+        """End with the status aborted.
 
         Args:
             code: name of the error code, where results have one (Jazzy).
@@ -87,7 +87,7 @@ class GoalServer:
             goal.abort(self._result(code, reason, fields))
 
     def canceled(self, **fields: Any) -> None:
-        """The goal was canceled."""
+        """End with the status canceled."""
         if (goal := self._leave()) is not None:
             if goal.is_cancel_requested:
                 goal.canceled(self._result("", "", fields))
@@ -95,7 +95,7 @@ class GoalServer:
                 goal.abort(self._result("", "", fields))
 
     def destroy(self) -> None:
-        """Leave the graph; a goal that is worked on is aborted."""
+        """Remove it from the graph; an active goal is aborted."""
         self.abort("UNKNOWN", "the server ends")
         self._server.destroy()
 
@@ -127,4 +127,4 @@ class GoalServer:
 
 
 def _never(_goal: ServerGoalHandle) -> None:
-    """Goals are worked on by timers, not by a callback."""
+    """Never called: goals are worked on by timers."""

@@ -1,4 +1,4 @@
-"""lifecycle_manager of nav2: configures and activates managed nodes in order, and brings all down when one dies.
+"""lifecycle_manager of nav2: configures and activates managed nodes in order, and takes all down when one dies.
 
 Services, parameters, order and lines are those of nav2. Different on purpose: an answer is waited for as long as its
 node is there, with a word each ``service_timeout``, so that a slow machine is no failure; and when a node dies the
@@ -26,7 +26,7 @@ _ONE_SECOND = 1.0
 
 
 class _Step(Enum):
-    """A transition: its number, the line before it, and the state that it leads to."""
+    """A transition: its number, the log line before it, and the state that it leads to."""
 
     CONFIGURE = (1, "Configuring", INACTIVE)
     CLEANUP = (2, "Cleaning up", UNCONFIGURED)
@@ -39,7 +39,7 @@ class _Step(Enum):
 
 
 class _State(Enum):
-    """What all managed nodes together are."""
+    """The common state of the managed nodes."""
 
     UNCONFIGURED = auto()
     INACTIVE = auto()
@@ -59,7 +59,7 @@ _HEALTH = {
 
 
 class _ManagedNodeClient:
-    """Asks one managed node.
+    """A client of one managed node.
 
     Args:
         node: who asks.
@@ -78,29 +78,29 @@ class _ManagedNodeClient:
         self._asking = node.create_client(self._get, f"{name}/get_state")
 
     def is_there(self) -> bool:
-        """Whether its services are."""
+        """Whether its services exist."""
         return bool(self._changing.service_is_ready() and self._asking.service_is_ready())
 
     async def wait(self, look_again: float) -> None:
-        """Wait until it is there, with a line each time that takes so many seconds."""
+        """Wait until its services exist, with a log line every few seconds."""
         for client in (self._changing, self._asking):
             while not await is_served(self._node, client, look_again):
                 self._node.get_logger().info(f"Waiting for service {client.service_name}...")
 
     async def change(self, step: _Step, word_each: float) -> bool:
-        """Have it go through a transition; whether it did. One that leaves meanwhile did not."""
+        """Run a transition; whether it succeeded. A node that leaves meanwhile fails."""
         request = self._change.Request()
         request.transition.id = step.number
         answer = await self._answer(self._changing, request, word_each)
         return bool(answer is not None and answer.success) and await self.state(word_each) == step.goal.state_id
 
     async def state(self, word_each: float) -> int | None:
-        """The number of the state that it is in; None where it is not there."""
+        """The number of its state; None if it is missing."""
         answer = await self._answer(self._asking, self._get.Request(), word_each)
         return None if answer is None else int(answer.current_state.id)
 
     async def answers(self, seconds: float) -> bool:
-        """Whether it says within so many seconds that it waits to be configured."""
+        """Whether it answers within a number of seconds that it is unconfigured."""
         if not self.is_there():
             return False
         future = self._asking.call_async(self._get.Request())
@@ -111,7 +111,7 @@ class _ManagedNodeClient:
         return False
 
     def end_bond(self) -> None:
-        """Leave the bond."""
+        """Break the bond."""
         if self.bond is not None:
             self.bond.end()
             self.bond = None
@@ -161,7 +161,7 @@ class LifecycleManager(SingleNode):
             self._begin(self._alone(self._startup))
 
     def close(self) -> None:
-        """End it; the nodes that it manages stay as they are."""
+        """Close it; the managed nodes stay as they are."""
         for task in self._tasks:
             task.cancel()
         for managed in self._managed:
@@ -206,7 +206,7 @@ class LifecycleManager(SingleNode):
         return response
 
     async def _alone(self, command: Callable[[], Coroutine[Any, Any, bool]]) -> bool:
-        """One command after the other."""
+        """Run commands one after the other."""
         async with self._busy:
             return await command()
 
@@ -267,7 +267,7 @@ class LifecycleManager(SingleNode):
     async def _all(
         self, step: _Step, *, whatever_happens: bool = False, without: _ManagedNodeClient | None = None
     ) -> bool:
-        """Have all nodes go through a transition, those that go down the last one first."""
+        """Run a transition of all nodes, downwards in reverse order."""
         upwards = step in (_Step.CONFIGURE, _Step.ACTIVATE)
         for managed in self._managed if upwards else reversed(self._managed):
             if managed is not without and not await self._one(managed, step, wait=upwards) and not whatever_happens:
@@ -314,7 +314,7 @@ class LifecycleManager(SingleNode):
         self._begin(self._alone(lambda: self._bring_down(managed)))
 
     async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
-        """One is down: bring the others down, and all up again when it comes back."""
+        """Take the other nodes down after one died, and all up again when it comes back."""
         if dead.bond is None:
             return True  # it went with another one, or was told to
         if self._state not in (_State.ACTIVE, _State.UNKNOWN):
@@ -348,7 +348,7 @@ class LifecycleManager(SingleNode):
             self._logger.info("Failed to re-establish connection from a server crash after maximum timeout.")
 
     def _stays_down(self) -> bool:
-        """Whether nobody has commanded anything since the nodes were brought down."""
+        """Whether nobody has commanded anything since the nodes were taken down."""
         return self._state is _State.UNCONFIGURED
 
     def _begin(self, work: Coroutine[Any, Any, Any]) -> None:

@@ -1,4 +1,4 @@
-"""What nav2's servers are made of: managed nodes with nav2's lines and a bond to whoever manages them."""
+"""The base classes of nav2's servers: managed nodes with nav2's log lines and a bond to their manager."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ P = TypeVar("P", bound=_Destroyable)
 
 
 class ManagedNode(LifecycleNodeMixin, Node):
-    """A server of nav2 on the graph.
+    """A server of nav2 as a managed node.
 
     Derived classes declare their parameters in `declare` and do their work in `configure`, `activate`, `deactivate`
     and `cleanup`. A `LinkwrightError` raised there is logged, and the transition fails. What `keep` was given goes when
@@ -42,37 +42,37 @@ class ManagedNode(LifecycleNodeMixin, Node):
         self.declare()
 
     def declare(self) -> None:
-        """Declare the parameters; they may also be declared when the node is configured."""
+        """Declare the parameters; others may be declared in `configure`."""
 
     def configure(self) -> None:
-        """Read the parameters, join the topics."""
+        """Read the parameters, and make the topics."""
 
     def activate(self) -> None:
-        """Begin to work."""
+        """Start to work."""
 
     def deactivate(self) -> None:
         """Stop working."""
 
     def cleanup(self) -> None:
-        """Let go of what `configure` made and `keep` was not given, as far as it got."""
+        """Drop what `configure` made and did not `keep`, as far as it got."""
 
     def keep(self, part: P) -> P:
-        """Have a part of the node destroyed when it is cleaned up, and give it back."""
+        """Register a part of the node that is destroyed when it is cleaned up, and return it."""
         self._kept.append(part)
         return part
 
     @property
     def is_active(self) -> bool:
-        """Whether it is in the state ``active``."""
+        """Whether it is active."""
         return self.lifecycle_state == ACTIVE
 
     def start_itself(self) -> None:
-        """Configure and activate it if ``autostart_node`` says so."""
+        """Configure and activate it if ``autostart_node`` is set."""
         if self._starts_itself and self.trigger_configure() == _SUCCESS:
             self.trigger_activate()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """See `configure`; parameters that the node does not know are named once."""
+        """See `configure`; unknown parameters are logged once."""
         self.get_logger().info("Configuring")
         try:
             self.configure()
@@ -86,7 +86,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """See `activate`; the bond begins."""
+        """See `activate`; the bond is formed."""
         self.get_logger().info("Activating")
         verdict = super().on_activate(state)
         try:
@@ -101,7 +101,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return verdict
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """See `deactivate`; the bond ends."""
+        """See `deactivate`; the bond is broken."""
         self.get_logger().info("Deactivating")
         self.deactivate()
         self._end_bond()
@@ -114,7 +114,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return super().on_cleanup(state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """As when it is deactivated, if it is active, and cleaned up."""
+        """Deactivate it, if it is active, and clean up."""
         self.get_logger().info("Shutting down")
         if state == ACTIVE:
             self.deactivate()
@@ -123,13 +123,13 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return super().on_shutdown(state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """A transition had an error: everything is let go, and the node can be configured again."""
+        """Clean up after an error in a transition, so that the node can be configured again."""
         self._end_bond()
         self._let_go()
         return super().on_error(state)
 
     def leave(self) -> None:
-        """Stop working and tell who manages it; called before it is destroyed."""
+        """Stop working and tell its manager; called before it is destroyed."""
         if self.is_active:
             self.deactivate()
         self._end_bond()
@@ -169,9 +169,9 @@ class ManagedServer(SingleNode):
             node.start_itself()
 
     def prepare(self, graph: Graph, options: NodeOptions) -> None:
-        """Give the node what it needs before it starts; nothing here."""
+        """Give the node what it needs before it starts; here nothing."""
 
     def close(self) -> None:
-        """End it; who manages it is told."""
+        """Close it; its manager is told."""
         self._node.leave()
         super().close()

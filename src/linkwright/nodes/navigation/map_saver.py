@@ -1,4 +1,4 @@
-"""map_saver of nav2: writes the map of a topic into files, once (map_saver_cli) or when asked (map_saver_server)."""
+"""map_saver of nav2: saves the map of a topic, once (map_saver_cli) or by a service (map_saver_server)."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _INVALID = 255
 
 
 class _Saving:
-    """What both programs do: wait for the map of a topic and write it."""
+    """The base of both programs: waits for the map of a topic and writes it."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -49,7 +49,7 @@ class _Saving:
         self._latched: bool = declare("map_subscribe_transient_local", True).value
 
     def mode(self, text: str) -> MapMode:
-        """The mode of a name; ``trinary`` for one that is none."""
+        """The mode of a name; ``trinary`` for an unknown one."""
         try:
             return MapMode(text or MapMode.TRINARY.value)
         except ValueError:
@@ -59,7 +59,7 @@ class _Saving:
             return MapMode.TRINARY
 
     async def save(self, topic: str, name: str, kind: str, mode: MapMode, free: float, occupied: float) -> bool:
-        """Save the map of a topic; 0 stands for the thresholds of the parameters. Tells whether it was saved."""
+        """Save the map of a topic; whether that succeeded. Thresholds of 0 stand for those of the parameters."""
         logger = self._node.get_logger()
         logger.info(f"Saving map from '{topic}' topic to '{name}' file")
         if not topic:
@@ -87,7 +87,7 @@ class _Saving:
         return True
 
     def _write(self, message: Any, saved: SavedAs, io: Logger) -> str | None:
-        """Write what came; what is wrong, if it cannot be written."""
+        """Write a map; the reason if that failed."""
         try:
             grid = grid_of(message)
             io.info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:g} m/pix")
@@ -100,7 +100,7 @@ class _Saving:
         return None
 
     async def _map_of(self, topic: str) -> Any:
-        """The next message; None, and a line that says why, where none comes in time."""
+        """The next message; None, with a log line, if none comes in time."""
         node = self._node
         come: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
@@ -130,7 +130,7 @@ class _Saving:
 
 
 class MapSaver(SingleNode):
-    """map_saver_cli: it ends with status 0 or 1, whether the map is saved; with 255 where it understands no word."""
+    """map_saver_cli: it ends with status 0 if the map was saved, else 1; with 255 for an unknown word."""
 
     DEFAULT_NAME = "map_saver"
 
@@ -171,7 +171,7 @@ class MapSaver(SingleNode):
 
 
 def _said(words: list[str]) -> dict[str, str]:
-    """The options of a command line.
+    """Parse the options of a command line.
 
     Raises:
         ValueError: one is unknown, has no value, or not a number where one must be.
@@ -194,7 +194,7 @@ def _said(words: list[str]) -> dict[str, str]:
 
 
 class MapSaverNode(ManagedNode):
-    """map_saver_server on the graph."""
+    """map_saver_server as a managed node."""
 
     def declare(self) -> None:
         """Declare the parameters of nav2."""
@@ -219,7 +219,7 @@ class MapSaverNode(ManagedNode):
 
 
 def _decimal(value: float) -> float:
-    """A float32 as it was meant: 0.65 comes over the wire as 0.649999976."""
+    """The decimal number of a float32: 0.65 comes over the wire as 0.649999976."""
     return round(value, 6)
 
 

@@ -1,4 +1,4 @@
-"""map_server of nav2: a map from files, on a topic and as an answer.
+"""map_server of nav2: publishes a map of files, and returns it by a service.
 
 As nav2's, with one difference: without ``yaml_filename`` it is configured all the same (as Jazzy does) and serves a map
 when one is loaded.
@@ -20,7 +20,7 @@ MAP_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability
 
 
 class MapServerNode(ManagedNode):
-    """The node of the graph."""
+    """map_server as a managed node."""
 
     def declare(self) -> None:
         """Declare the parameters of nav2."""
@@ -30,7 +30,7 @@ class MapServerNode(ManagedNode):
         self._map: Any = None
 
     def configure(self) -> None:
-        """Read the map and join the graph.
+        """Read the map, and make topic and services.
 
         Raises:
             LinkwrightError: NAV201 to NAV204, the map cannot be read.
@@ -86,7 +86,7 @@ class MapServerNode(ManagedNode):
 
 
 def _result(error: LinkwrightError, response: Any) -> int:
-    """The number that nav2 answers with."""
+    """nav2's result code for an error."""
     results: dict[str, int] = {
         "NAV201": response.RESULT_MAP_DOES_NOT_EXIST,
         "NAV202": response.RESULT_INVALID_MAP_METADATA,

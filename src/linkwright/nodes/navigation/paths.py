@@ -1,4 +1,4 @@
-"""Paths and poses as messages."""
+"""Converting paths and poses to messages and back."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.messages import get_message
 
 
 def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
-    """The nav_msgs/Path of poses: x, y (metres) and yaw (radians), of shape (n, 3)."""
+    """Convert poses, x, y (metres) and yaw (radians), of shape (n, 3), to a nav_msgs/Path."""
     path, pose_stamped = get_message("nav_msgs/msg/Path")(), get_message("geometry_msgs/msg/PoseStamped")
     path.header.frame_id, path.header.stamp = frame, stamp
     for x, y, yaw in poses.tolist():
@@ -26,12 +26,12 @@ def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
 
 
 def poses_of(stamped: Any) -> NDArray[np.float64]:
-    """x, y (metres) and yaw (radians) of geometry_msgs/PoseStamped, of shape (n, 3)."""
+    """Convert geometry_msgs/PoseStamped to x, y (metres) and yaw (radians), of shape (n, 3)."""
     return np.array([pose_of(each) for each in stamped], np.float64).reshape(-1, 3)
 
 
 def pose_of(stamped: Any) -> tuple[float, float, float]:
-    """x, y (metres) and yaw (radians) of a geometry_msgs/PoseStamped."""
+    """Convert a geometry_msgs/PoseStamped to x, y (metres) and yaw (radians)."""
     position, turn = stamped.pose.position, stamped.pose.orientation
     quaternion = (turn.x, turn.y, turn.z, turn.w)
     yaw = rpy_from_quaternion(quaternion)[2] if any(quaternion) else 0.0

@@ -1,4 +1,4 @@
-"""planner_server of nav2: plans ways for the actions ``compute_path_to_pose`` and ``compute_path_through_poses``.
+"""planner_server of nav2: plans paths for ``compute_path_to_pose`` and ``compute_path_through_poses``.
 
 Parameters, topics, texts and results are those of nav2, Humble and Jazzy. All types of planners are recognised, and one
 method does the work of all (`linkwright.navigation.planning.planner`); where it is not that of the type, a line says
@@ -46,7 +46,7 @@ Work = Generator[str | None, None, Any]
 
 
 class _RefusedError(Exception):
-    """There is no plan.
+    """A goal is aborted: there is no plan.
 
     Attributes:
         code: name of nav2's error code.
@@ -58,7 +58,7 @@ class _RefusedError(Exception):
 
 
 class PlannerNode(ManagedNode):
-    """The node of the graph.
+    """planner_server as a managed node.
 
     Attributes:
         costmap: of the world; set before it is configured.
@@ -75,7 +75,7 @@ class PlannerNode(ManagedNode):
         self._work: dict[str, SlicedWork] = {}
 
     def configure(self) -> None:
-        """Make the planners and the costmap, offer the actions.
+        """Make the planners, the costmap and the action servers.
 
         Raises:
             LinkwrightError: NODE431, a planner has no type.
@@ -94,17 +94,17 @@ class PlannerNode(ManagedNode):
         self.keep(self.create_service(kind, "is_path_valid", self._is_path_valid))
 
     def activate(self) -> None:
-        """Take goals."""
+        """Accept goals."""
         self.costmap.trigger_activate()
 
     def deactivate(self) -> None:
-        """Plan nothing more."""
+        """Stop planning, and refuse goals."""
         self._stop()
         if self.costmap.is_active:
             self.costmap.trigger_deactivate()
 
     def cleanup(self) -> None:
-        """Let the costmap go."""
+        """Drop the costmap."""
         self._stop()
         if self.costmap.lifecycle_state == INACTIVE:
             self.costmap.trigger_cleanup()
@@ -138,7 +138,7 @@ class PlannerNode(ManagedNode):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _offer(self, kind: str, name: str, work: Callable[[Any], Work]) -> None:
-        """Offer an action whose goals some work makes a path for."""
+        """Offer an action whose paths a generator computes."""
 
         def begin(goal: ServerGoalHandle) -> None:
             self._stop(name)
@@ -177,7 +177,7 @@ class PlannerNode(ManagedNode):
             )
 
     def _stop(self, *names: str) -> None:
-        """Leave the work for an action where it stands, or that for all."""
+        """Stop the planning for an action, or for all."""
         for name in names or tuple(self._work):
             work = self._work.pop(name, None)
             if work is not None:
@@ -239,7 +239,7 @@ class PlannerNode(ManagedNode):
     # --- the service --------------------------------------------------------------------------------------------------
 
     def _is_path_valid(self, request: Any, response: Any) -> Any:
-        """Whether the robot can go on along a path from where it is."""
+        """Answer whether a path is free from the robot on."""
         poses = poses_of(request.path.poses)
         here = self.costmap.robot_pose() if self.is_active else None
         response.is_valid = bool(len(poses))

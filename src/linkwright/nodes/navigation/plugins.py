@@ -1,4 +1,4 @@
-"""Plugins of nav2's servers: their types, as files write them, and their parameters, ``NAME.parameter``."""
+"""Types and parameters, ``NAME.parameter``, of the plugins of nav2's servers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 def declared(node: Node, prefix: str, table: type[T], **defaults: Any) -> T:
-    """The parameters of a plugin, declared as the fields of a dataclass say.
+    """Declare the parameters of a plugin as the fields of a dataclass, and read them.
 
     Args:
         node: whose they are.
@@ -46,7 +46,7 @@ def texts_of(node: Node, name: str, default: Sequence[str]) -> list[str]:
 
 
 def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
-    """The type of a plugin with ``/`` for ``::``, as ``PLUGIN.plugin`` says.
+    """The type of a plugin from ``PLUGIN.plugin``, with ``/`` for ``::``.
 
     Args:
         node: whose it is.
@@ -70,7 +70,7 @@ def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
 
 
 def take_unread(node: Node, plugin: str) -> list[str]:
-    """Declare the parameters that were given to a plugin and that it does not have; their names without its own."""
+    """Declare the unknown parameters of a plugin; their names without the plugin's."""
     names = [each for each in node.undeclared_overrides() if each.startswith(f"{plugin}.")]
     for name in names:
         node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True))

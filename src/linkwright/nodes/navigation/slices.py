@@ -1,4 +1,4 @@
-"""Long work on the event loop, in slices: others get their turns in between."""
+"""Running long work on the event loop in slices, between which other callbacks run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ WAIT = "wait"
 
 
 class SlicedWork:
-    """Does the work of a generator until it ends or is stopped.
+    """Runs a generator until it ends or is stopped.
 
     Args:
         node: whose time passes while the work waits.
@@ -40,7 +40,7 @@ class SlicedWork:
         self._later()
 
     def stop(self) -> None:
-        """End the work where it stands; nobody is called."""
+        """Stop the work; no callback is called."""
         self._work.close()
         if self._turn is not None:
             self._turn.cancel()

@@ -1,4 +1,4 @@
-"""smoother_server of nav2: makes paths smoother for the action ``smooth_path``.
+"""smoother_server of nav2: smooths paths for the action ``smooth_path``.
 
 Parameters, topics and results are those of nav2, Humble and Jazzy. All types of smoothers are recognised, and the work
 of all is done as nav2's simple smoother does it; where it is not that of the type, a line says so.
@@ -29,7 +29,7 @@ _USUAL: Final = {"simple_smoother": _SIMPLE}
 
 
 class SmootherNode(ManagedNode):
-    """The node of the graph."""
+    """smoother_server as a managed node."""
 
     def declare(self) -> None:
         """Declare the parameters of nav2 that do not belong to a smoother."""
@@ -40,7 +40,7 @@ class SmootherNode(ManagedNode):
         self.declare_parameter("action_server_result_timeout", 10.0)
 
     def configure(self) -> None:
-        """Make the smoothers, join the topics, offer the action.
+        """Make the smoothers, the topics and the action server.
 
         Raises:
             LinkwrightError: NODE431, a smoother has no type; NAV101, SciPy is not installed.

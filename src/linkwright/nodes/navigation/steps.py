@@ -1,4 +1,4 @@
-"""Servers whose goals are done in steps, most of which are goals of other servers.
+"""Managed nodes whose goals are worked on in steps, most of which are goals of other servers.
 
 What is to be done is written as a generator: it goes on once each cycle, and ``yield`` waits for the next. It ends when
 the goal is reached, raises `StepError` when it cannot be, and is closed when the goal is canceled.
@@ -44,7 +44,7 @@ class StepNode(ManagedNode):
     _server: GoalServer | None = None
 
     def work_on(self, server: GoalServer, work: Step) -> None:
-        """Begin with the goal that a server was given, and end what was worked on before."""
+        """Start with the goal of a server, and end the work on another one."""
         self._stop()
         if self._server is not None and self._server is not server:
             self._server.abort("UNKNOWN", "another goal took its place")
@@ -55,22 +55,22 @@ class StepNode(ManagedNode):
         """Publish the feedback of the goal; called each cycle."""
 
     def result(self) -> dict[str, Any]:
-        """Fields of the result."""
+        """The fields of the result."""
         return {}
 
     def deactivate(self) -> None:
-        """End what is done, and take no goals."""
+        """End the work, and refuse goals."""
         self._stop()
         if self._server is not None:
             self._server.abort("UNKNOWN", "the server was deactivated", **self.result())
 
     def cleanup(self) -> None:
-        """End what is done."""
+        """End the work."""
         self._stop()
         self._server = None
 
     def asked(self, client: ActionClient, goal: Any, complaint: str) -> Step:
-        """The result of a goal of another server; it is canceled when this is closed.
+        """Send a goal to another server and wait for its result; the goal is canceled when this is closed.
 
         Raises:
             StepError: there is no such server, or it did not reach the goal.
@@ -88,7 +88,7 @@ class StepNode(ManagedNode):
         return sent.result
 
     def until(self, is_done: Callable[[], bool], what: str) -> Step:
-        """Wait for an answer.
+        """Wait for a response.
 
         Raises:
             StepError: it does not come.
@@ -100,11 +100,11 @@ class StepNode(ManagedNode):
             yield
 
     def now_ns(self) -> int:
-        """The node's time."""
+        """The time of the node's clock."""
         return self.get_clock().now().nanoseconds
 
     def _cycle(self) -> None:
-        """The next step."""
+        """Run the next step."""
         server, work = self._server, self._work
         if server is None or work is None:
             self._stop()
@@ -128,7 +128,7 @@ class StepNode(ManagedNode):
             self.tell_progress(server)
 
     def _stop(self) -> None:
-        """End the work; what it asked of others is canceled."""
+        """End the work; goals at other servers are canceled."""
         work, self._work = self._work, None
         if work is not None:
             work.close()
@@ -138,7 +138,7 @@ class StepNode(ManagedNode):
 
 
 class Sent:
-    """A goal that was sent to another server."""
+    """A goal at another server."""
 
     def __init__(self, client: ActionClient, goal: Any) -> None:
         self._handle: Any = None
@@ -167,21 +167,21 @@ class Sent:
 
     @property
     def has_succeeded(self) -> bool:
-        """Whether the goal was reached."""
+        """Whether it succeeded."""
         return self._answer is not None and self._answer.status == GoalStatus.SUCCEEDED
 
     @property
     def has_failed(self) -> bool:
-        """Whether it is over and the goal was not reached."""
+        """Whether it has ended without success."""
         return self.is_over and not self.has_succeeded
 
     def reason(self, usual: str) -> str:
-        """Why it failed, as the server says it (Jazzy), else as usual."""
+        """The reason of its failure from the server (Jazzy), else a usual one."""
         said = getattr(self.result, "error_msg", "")
         return f"{usual}: {said}" if said else usual
 
     def cancel(self) -> None:
-        """Have it canceled, unless it is over."""
+        """Cancel it, unless it has ended."""
         if not self.is_over:
             self._dropped = True
             if self._handle is not None:

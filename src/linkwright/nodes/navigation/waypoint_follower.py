@@ -1,4 +1,4 @@
-"""waypoint_follower of nav2: goes to poses one after the other and waits at each, by the action ``follow_waypoints``.
+"""waypoint_follower of nav2: navigates to poses one after the other and waits at each (``follow_waypoints``).
 
 Different on purpose: of the tasks at waypoints there is the waiting; others are left out with a line.
 """
@@ -19,7 +19,7 @@ _WAITING = "nav2_waypoint_follower/WaitAtWaypoint"
 
 
 class WaypointNode(StepNode):
-    """The node of the graph."""
+    """waypoint_follower as a managed node."""
 
     def declare(self) -> None:
         """Declare the parameters of nav2."""
@@ -54,7 +54,7 @@ class WaypointNode(StepNode):
         server.feedback(current_waypoint=self._index)
 
     def result(self) -> dict[str, Any]:
-        """The waypoints that were missed."""
+        """The missed waypoints."""
         return {"missed_waypoints": self._missed}
 
     def _start(self, goal: ServerGoalHandle) -> None:
@@ -87,7 +87,7 @@ class WaypointNode(StepNode):
             yield
 
     def _miss(self, pose: Any, reason: str) -> Any:
-        """A waypoint that was missed, as results tell it: Humble by its index."""
+        """A missed waypoint as results have it: Humble's by its index."""
         if is_before_iron():
             return self._index
         return get_message("nav2_msgs/msg/MissedWaypoint")(index=self._index, goal=pose, error_msg=reason)

@@ -1,1 +1,1 @@
-"""The nodes of robot_localization: they work out where the robot is of what several sensors measure."""
+"""The nodes of robot_localization: pose estimation from several sensors."""

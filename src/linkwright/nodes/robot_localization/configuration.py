@@ -30,7 +30,7 @@ _GIVES = {
 
 @dataclass(frozen=True, slots=True)
 class Frames:
-    """The names of the frames; `world` is one of `map` and `odom`, and `output` is what messages call the body."""
+    """The names of the frames; `world` is `map` or `odom`, and `output` is the body in messages."""
 
     map: str
     odom: str
@@ -41,7 +41,7 @@ class Frames:
 
 @dataclass(frozen=True, slots=True)
 class SensorSettings:
-    """One sensor.
+    """The settings of one sensor.
 
     Attributes:
         name: such as ``odom0``.
@@ -72,7 +72,7 @@ class SensorSettings:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """All that the node is told; times are in nanoseconds where the name says so, else in seconds."""
+    """The parameters as one object; times are in nanoseconds where the name says so, else in seconds."""
 
     frequency: float
     two_d: bool
@@ -219,7 +219,7 @@ _THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
 
 
 def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
-    """What the parameters say of commanded velocities. All are declared, for those that are not used to be known."""
+    """The settings of commanded velocities. All are declared, so that unused ones are known."""
     use: bool = node.declare_parameter("use_control", False).value
     timeout: float = node.declare_parameter("control_timeout", _CONTROL_TIMEOUT).value
     node.declare_parameter("stamped_control", False)
@@ -245,7 +245,7 @@ def _control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
 
 
 def _covariance(node: Node, name: str, default: Matrix) -> Matrix:
-    """A covariance of the state: 225 numbers, or the 15 of the diagonal."""
+    """A covariance of the state, from 225 numbers or the 15 of the diagonal."""
     numbers = _numbers(node, name, (SIZE * SIZE, SIZE))
     if numbers is None:
         return default
@@ -271,7 +271,7 @@ def _flags(node: Node, name: str, length: int) -> Used | None:
 
 
 def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
-    """See that a parameter has as many values as it must.
+    """Check the number of a parameter's values.
 
     Raises:
         LinkwrightError: NODE441, it has not.

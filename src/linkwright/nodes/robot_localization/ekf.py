@@ -1,4 +1,4 @@
-"""ekf_node and ukf_node of robot_localization: one estimate of where the robot is, from several sensors.
+"""ekf_node and ukf_node of robot_localization: estimation of pose and motion from several sensors.
 
 They follow robot_localization 3.5 (ROS 2 Humble) and later, with these deliberate differences:
 

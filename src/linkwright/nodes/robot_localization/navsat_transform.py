@@ -1,4 +1,4 @@
-"""navsat_transform_node of robot_localization: fixes of a satellite receiver as odometry, and odometry as fixes.
+"""navsat_transform_node of robot_localization: fixes of a satellite receiver to odometry, and odometry to fixes.
 
 It follows robot_localization 3.5 (ROS 2 Humble). The origin of the map on the earth, and how it is turned, come from
 the first fix with the first odometry and the heading of an IMU (0 in the east), or from a datum. Different on purpose:
@@ -161,7 +161,7 @@ class NavsatTransformNode(SingleNode):
         self._place_map()
 
     def _place_map(self) -> None:
-        """Find where the map is, where all that is needed for it has come."""
+        """Compute the transform of the map, once all inputs are there."""
         if self._first_fix is None or self._first_pose is None or self._heading is None:
             return
         latitude, longitude, altitude = self._first_fix
@@ -196,7 +196,7 @@ class NavsatTransformNode(SingleNode):
         self._tf_publisher.publish(TFMessage(batch=batch))
 
     def _receiver(self) -> Vector3:
-        """Where the receiver is on the robot."""
+        """The pose of the receiver on the robot."""
         frame = self._fix.header.frame_id if self._fix is not None else ""
         if not frame:
             return 0.0, 0.0, 0.0
@@ -204,7 +204,7 @@ class NavsatTransformNode(SingleNode):
         return (0.0, 0.0, 0.0) if pose is None else pose[:3]
 
     def _grid(self, place: Vector3) -> Vector3:
-        """A place on the earth (degrees, degrees, metres) in the grid, metres."""
+        """A position on earth (degrees, degrees, metres) in the grid, metres."""
         if self._plane is not None:
             return self._plane.point_of(*place)
         assert self._zone is not None, "it comes with the first place"
@@ -212,7 +212,7 @@ class NavsatTransformNode(SingleNode):
         return easting, northing, place[2]
 
     def _place(self, point: Vector3) -> Vector3:
-        """A point of the grid as a place on the earth."""
+        """A point of the grid as a position on earth."""
         if self._plane is not None:
             return self._plane.place_of(point)
         assert self._zone is not None, "it comes with the first place"

@@ -1,4 +1,4 @@
-"""The sensors of ekf_node: what their messages mean for the state, in the frames of the filter."""
+"""Sensors of ekf_node: converting their messages to measurements in the filter's frames."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _NOT_MEASURED = -1.0
 
 
 class Surroundings:
-    """What the sensors share.
+    """The data that sensors share.
 
     Args:
         node: of the filter.
@@ -67,12 +67,12 @@ class Surroundings:
 
     @property
     def filter(self) -> KalmanFilter:
-        """The filter, whose estimate some readings need."""
+        """The filter, whose estimate some measurements need."""
         return self.estimator.filter
 
 
 class Source:
-    """One sensor: its subscription, and what it remembers of its messages.
+    """One sensor: its subscription, and its state.
 
     Args:
         settings: see there.
@@ -189,7 +189,7 @@ class Source:
         self._add(reading, "acceleration", stamp_ns, self._settings.acceleration_threshold)
 
     def _attitude(self, message: Any, mounting: Transform) -> Quaternion:
-        """The orientation of an IMU: what it says, or else what the filter says."""
+        """The orientation of an IMU: measured, or else that of the filter."""
         if _is_measured(message.orientation_covariance):
             return _orientation(message.orientation)
         roll, pitch, yaw = (float(angle) for angle in self._around.filter.state[ANGLES])

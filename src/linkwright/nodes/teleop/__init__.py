@@ -1,1 +1,1 @@
-"""Nodes that steer robots by hand: keyboards, joysticks, and what chooses between velocities and smooths them."""
+"""Teleoperation: keyboards, joysticks, multiplexing and smoothing of velocities."""

@@ -26,7 +26,7 @@ _FASTEST = 1000.0
 
 @dataclass(frozen=True, slots=True)
 class _Settings:
-    """What both nodes are told.
+    """The settings of both nodes.
 
     Attributes:
         number: of the device.
@@ -47,13 +47,13 @@ class _Settings:
     sticky: bool
 
     def device(self) -> Path | None:
-        """The device, if it is there."""
+        """The device, if it exists."""
         if self.path is not None and not self.name:
             return self.path if self.path.exists() else None
         return find_device(self.number, self.name)
 
     def wanted(self) -> str:
-        """What is looked for, as the user said it."""
+        """The device that is looked for, in the user's words."""
         return f"'{self.name}'" if self.name else str(self.path or f"/dev/input/js{self.number}")
 
 
@@ -136,7 +136,7 @@ class JoyNode(SingleNode):
             self._repeat.reset()
 
     def _wait(self, text: str) -> None:
-        """Say once why there is no joystick."""
+        """Log once why there is no joystick."""
         if text != self._missing:
             self._missing = text
             self._node.get_logger().warning(text)
@@ -208,7 +208,7 @@ class JoyLinuxNode(JoyNode):
 
 
 def deflection(value: int, deadzone: float) -> float:
-    """How far an axis is deflected, -1 to 1, forwards and to the left positive.
+    """The deflection of an axis, -1 to 1, forwards and to the left positive.
 
     Args:
         value: as the device tells it, -32767 to 32767, backwards and to the right positive.
@@ -229,7 +229,7 @@ def _settings(node: Node, number: int, name: str, path: Path | None, coalesce: f
 
 
 def _within(node: Node, name: str, default: float, least: float, most: float | None) -> float:
-    """A number that is a parameter.
+    """Check that a parameter is within limits.
 
     Raises:
         LinkwrightError: NODE903 it is out of its range.

@@ -1,4 +1,4 @@
-"""Joysticks of Linux, read from /dev/input/js*: the kernel's joystick interface, which needs no library.
+"""Joysticks of Linux by the kernel's joystick interface, /dev/input/js*, without a library.
 
 Source of the format: the kernel's documentation of the joystick API (``linux/joystick.h``).
 """
@@ -67,7 +67,7 @@ class JoystickDevice:
             raise
 
     def close(self) -> None:
-        """Let go of the device; again does nothing."""
+        """Close the device; a second call does nothing."""
         descriptor, self._descriptor = self._descriptor, None
         if descriptor is not None:
             asyncio.get_running_loop().remove_reader(descriptor)
@@ -92,7 +92,7 @@ class JoystickDevice:
 
 
 def find_device(number: int, name: str = "") -> Path | None:
-    """The joystick of a number, or the first whose name contains a text; None when there is none.
+    """Find the device of a number, or the first whose name contains a text; None when there is none.
 
     Args:
         number: that in ``/dev/input/jsNUMBER``.

@@ -1,4 +1,4 @@
-"""teleop_twist_keyboard: keys pressed in a terminal become velocities.
+"""teleop_twist_keyboard: publishes velocities for keys pressed in a terminal.
 
 Keys, parameters and the line about speeds are those of the ROS node; ``repeat_rate`` and ``key_timeout`` are those of
 its ROS 1 form. Different on purpose: unless ``stamped`` is set it publishes what the topic's subscribers take; whatever
@@ -70,7 +70,7 @@ class TeleopTwistKeyboard(SingleNode):
         self._say(speeds_text(self._speed, self._turn))
 
     def close(self) -> None:
-        """Stop the robot, give the terminal back, and end."""
+        """Stop the robot, restore the terminal, and close."""
         self._terminal.close()
         self._topic.stop()
         self._topic.close()
@@ -110,7 +110,7 @@ class TeleopTwistKeyboard(SingleNode):
             self._direction = MOVES.get(key, STILL)
 
     def _lost(self) -> None:
-        """No key came for too long: who held one down may have lost the line, or let it go."""
+        """Stop after no key for too long: its user may have lost the connection, or let the key go."""
         self._silence.cancel()
         if self._direction != STILL:
             self._direction = STILL
@@ -123,11 +123,11 @@ class TeleopTwistKeyboard(SingleNode):
             self.finished.set_result(0)
 
     def _follow(self) -> bool:
-        """Publish what those take who listen; whether somebody does."""
+        """Publish the type that subscribers take; whether there are any."""
         return self._topic.review(may_change=self._direction == STILL or self._unheard) > 0
 
     def _review(self) -> None:
-        """Follow who listens; tell once that nobody does while something is to move."""
+        """Follow the subscribers; warn once if there is none while something is to move."""
         if self._follow():
             self._unheard = False
         elif self._direction != STILL and not self._unheard:

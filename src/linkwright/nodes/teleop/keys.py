@@ -1,4 +1,4 @@
-"""The keys of teleop_twist_keyboard and what they do; the layout is that of the ROS node."""
+"""The keys of teleop_twist_keyboard; the layout is that of the ROS node."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _KEYS = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)?|.", re.DOTALL)
 
 
 class Direction(NamedTuple):
-    """Where to, as parts of the greatest speed: forwards, to the left, up, and turning to the left."""
+    """A direction, as parts of the greatest speeds: forwards, to the left, up, and turning to the left."""
 
     x: float = 0.0
     y: float = 0.0
@@ -58,12 +58,12 @@ SPEEDS = {
 
 
 def keys_in(text: str) -> Iterator[str]:
-    """The keys that a terminal sent; an arrow or function key, which sends several characters, is one of them."""
+    """Split the text of a terminal into keys; arrow and function keys send several characters."""
     return (found[0] for found in _KEYS.finditer(text))
 
 
 def help_text() -> Phrase:
-    """What the keys do."""
+    """The help on the keys."""
     return phrase("""
 Keys are published as velocities, Twist or TwistStamped.
 ---------------------------
@@ -92,5 +92,5 @@ CTRL-C ends
 
 
 def speeds_text(speed: float, turn: float) -> str:
-    """The line that tells the speeds, in m/s and rad/s."""
+    """The line with the speeds, in m/s and rad/s."""
     return f"currently:\tspeed {speed}\tturn {turn} "

@@ -1,4 +1,4 @@
-"""Velocities within limits of speed and acceleration, all axes together; rules of nav2's velocity smoother."""
+"""Smoothing velocities by limits of speed and acceleration, all axes together, as nav2's velocity smoother."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What one axis may do, in m/s and m/s2, or rad/s and rad/s2.
+    """The limits of one axis, in m/s and m/s2, or rad/s and rad/s2.
 
     Attributes:
         least: the lowest velocity, 0 or less.
@@ -29,7 +29,7 @@ class Limits:
         return min(max(velocity, self.least), self.most)
 
     def change(self, now: float, wanted: float, seconds: float) -> float:
-        """By how much it may change on its way to what is wanted.
+        """The change of the velocity in a cycle, towards the wanted one.
 
         It accelerates where it gets faster in the direction that it has, else it decelerates.
         """
@@ -44,7 +44,7 @@ class Limits:
 def smoothed(
     limits: Sequence[Limits], now: Sequence[float], wanted: Sequence[float], seconds: float, *, scaled: bool
 ) -> list[float]:
-    """The velocities that come next, before deadbands.
+    """The velocities of the next cycle, before deadbands.
 
     Args:
         limits: of each axis.

@@ -1,4 +1,4 @@
-"""A stop for who obeys velocities that a node hands on, when who sent the last of them is lost (`Commander`)."""
+"""Stopping a robot when the publisher of forwarded velocities is lost (`Commander`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A terminal that gives each key as it is pressed, and is left as it was."""
+"""A terminal that gives each key as it is pressed, and is restored afterwards."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class KeyTerminal:
         self._undo = _watch_windows(self._took) if sys.platform == "win32" else self._watch(descriptor)
 
     def close(self) -> None:
-        """Give the terminal back as it was; again does nothing."""
+        """Restore the terminal; a second call does nothing."""
         undo, self._undo = self._undo, lambda: None
         undo()
 
@@ -77,7 +77,7 @@ class KeyTerminal:
 
 
 def _watch_windows(took: Callable[[bytes], None]) -> Callable[[], None]:
-    """Ask the console of Windows for keys, again and again: its keys cannot be waited for beside other things."""
+    """Poll the console of Windows for keys, which cannot be waited for together with other events."""
     import msvcrt
 
     console: Any = msvcrt  # mypy knows its functions on Windows only

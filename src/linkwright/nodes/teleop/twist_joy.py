@@ -1,4 +1,4 @@
-"""teleop_node of teleop_twist_joy: messages of a joystick become velocities while a button is held.
+"""teleop_node of teleop_twist_joy: publishes velocities for a joystick while a button is held.
 
 Parameters and defaults are those of the ROS node. Different on purpose: unless ``publish_stamped_twist`` is set it
 publishes what the topic's subscribers take; and when nobody publishes ``joy`` any more, the robot is stopped.
@@ -26,7 +26,7 @@ _TURBO_SCALES = {"linear.x": 1.0, "angular.yaw": 1.0}
 
 @dataclass(frozen=True, slots=True)
 class _Axis:
-    """What of a joystick moves along or about one axis of the robot.
+    """The joystick axis for one axis of the robot.
 
     Attributes:
         number: the joystick's axis, below 0 for none.
@@ -39,7 +39,7 @@ class _Axis:
     turbo_scale: float
 
     def velocity(self, axes: Sequence[float], *, turbo: bool) -> float:
-        """The velocity that a message asks for; 0 where the joystick has no such axis."""
+        """The velocity for a message; 0 if the joystick lacks the axis."""
         if not 0 <= self.number < len(axes):
             return 0.0
         return axes[self.number] * (self.turbo_scale if turbo else self.scale)
@@ -87,7 +87,7 @@ class TeleopTwistJoy(SingleNode):
             logger.info(f"Turbo on button {self._turbo_button}.")
 
     def close(self) -> None:
-        """Stop the robot where it was driven, and end."""
+        """Stop the robot, if it was driven, and close."""
         if self._drives:
             self._topic.stop()
         self._topic.close()
@@ -116,7 +116,7 @@ class TeleopTwistJoy(SingleNode):
             self._stop()
 
     def _stop(self) -> None:
-        """Publish zero once after something else."""
+        """Publish zero once after other velocities."""
         if self._drives:
             self._drives = False
             self._topic.stop()

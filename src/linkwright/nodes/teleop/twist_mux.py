@@ -1,4 +1,4 @@
-"""twist_mux: of several topics of velocities, the one with the highest priority goes out on ``cmd_vel_out``.
+"""twist_mux: forwards the topic of velocities with the highest priority to ``cmd_vel_out``.
 
 Parameters, rules and diagnostics are those of the ROS node. A topic counts until its ``timeout`` has passed since its
 last message; a lock that is on, or not heard of for its ``timeout``, shuts out all topics of lower priority. Different
@@ -29,7 +29,7 @@ _NANOSECONDS = 1e9
 
 
 class _Source:
-    """A topic that is listened to, of velocities or a lock."""
+    """An input: a topic of velocities, or of a lock."""
 
     def __init__(self, name: str, topic: str, timeout: float, priority: int) -> None:
         self.name, self.topic, self.timeout = name, topic, timeout
@@ -38,22 +38,22 @@ class _Source:
         self._heard_ns: int | None = None
 
     def hear(self, now_ns: int) -> None:
-        """A message has come."""
+        """Take a message."""
         self._heard_ns = now_ns
 
     def expired(self, now_ns: int) -> bool:
-        """Whether its last message is too old, or none ever came; never without a time-out."""
+        """Whether its last message is too old, or none came yet; never without a time-out."""
         if self.timeout == 0.0:
             return False
         return self._heard_ns is None or (now_ns - self._heard_ns) / _NANOSECONDS > self.timeout
 
     @property
     def silent(self) -> bool:
-        """Whether no message ever came."""
+        """Whether no message came yet."""
         return self._heard_ns is None
 
     def described(self, state: str) -> str:
-        """What diagnostics say of it."""
+        """Its line in the diagnostics."""
         return f" {state} (listening to {self.topic} @ {self.timeout:f}s with priority #{self.priority})"
 
 
@@ -139,7 +139,7 @@ class TwistMux(SingleNode):
 
 
 def _sources(node: Node, group: str) -> list[_Source]:
-    """What the parameters ``GROUP.NAME.*`` say, by name.
+    """The inputs of the parameters ``GROUP.NAME.*``, by name.
 
     Raises:
         LinkwrightError: NODE904.

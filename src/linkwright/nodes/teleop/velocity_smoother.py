@@ -1,4 +1,4 @@
-"""velocity_smoother of nav2: velocities from ``cmd_vel`` within limits, on ``cmd_vel_smoothed``.
+"""velocity_smoother of nav2: forwards ``cmd_vel`` within limits to ``cmd_vel_smoothed``.
 
 A managed node; parameters, defaults and rules are those of nav2. Different on purpose: unless
 ``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; and it stops
@@ -38,7 +38,7 @@ _LIMITS = {
 
 
 class _ManagedSmoother(ManagedNode):
-    """The node of the graph."""
+    """velocity_smoother as a managed node."""
 
     def declare(self) -> None:
         """Declare the parameters of nav2."""
@@ -63,7 +63,7 @@ class _ManagedSmoother(ManagedNode):
         self.add_post_set_parameters_callback(lambda _: self._follow())
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Configure it unless its parameters do not go together."""
+        """Configure it unless its parameters contradict each other."""
         problem = self._problem({})
         if problem is not None:
             self.get_logger().error(str(problem))
@@ -71,7 +71,7 @@ class _ManagedSmoother(ManagedNode):
         return super().on_configure(state)
 
     def configure(self) -> None:
-        """Read the parameters and join the topics."""
+        """Read the parameters and make the topics."""
         self._read()
         stamped = self._stamped
         self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
@@ -84,7 +84,7 @@ class _ManagedSmoother(ManagedNode):
             self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
 
     def activate(self) -> None:
-        """Begin to publish."""
+        """Start to publish."""
         self._start_timer()
 
     def deactivate(self) -> None:
@@ -95,7 +95,7 @@ class _ManagedSmoother(ManagedNode):
         self._last, self._command = [0.0] * len(_AXES), None
 
     def cleanup(self) -> None:
-        """Leave the topics."""
+        """Remove the topics."""
         self._end_timer()
         if self._output is not None:
             self._output.close()
@@ -129,7 +129,7 @@ class _ManagedSmoother(ManagedNode):
         return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
 
     def _follow(self) -> None:
-        """Obey changed parameters while it is at work; the topics stay those that it was configured with."""
+        """Apply changed parameters while it is active; the topics stay as configured."""
         if self._output is not None:
             before = self._frequency
             self._read()
@@ -137,7 +137,7 @@ class _ManagedSmoother(ManagedNode):
                 self._start_timer()
 
     def _problem(self, changed: Mapping[str, Any]) -> Phrase | None:
-        """What is wrong with the parameters once some of them have changed."""
+        """The problem of the parameters after a change."""
 
         def value(name: str) -> Any:
             return changed.get(name, self._value(name))
@@ -175,7 +175,7 @@ class _ManagedSmoother(ManagedNode):
         self._commanded_ns = self.get_clock().now().nanoseconds
 
     def _rest(self) -> None:
-        """Come to rest, as no more commands come; who sent them has not said stop."""
+        """Decelerate to zero when commands time out."""
         if self._command is not None and any(self._command):
             self._command = [0.0] * len(_AXES)
             self.get_logger().info(
@@ -187,7 +187,7 @@ class _ManagedSmoother(ManagedNode):
             )
 
     def _lose(self, publisher: EndpointInfo) -> None:
-        """Come to rest, as who commanded is lost."""
+        """Decelerate to zero when the publisher of commands is lost."""
         if self._command is not None and any(self._command):
             self._command = [0.0] * len(_AXES)
             self.get_logger().warning(phrase("{who}: the robot is stopped", who=who_was_lost(publisher)))
@@ -229,7 +229,7 @@ def _values(twist: Any) -> list[float]:
 
 
 def _spread(column: Sequence[float]) -> list[float]:
-    """Limits of x, y and yaw as those of all axes; the other three stay at 0."""
+    """Limits of x, y and yaw as those of all six axes; the other three are 0."""
     spread = [0.0] * len(_AXES)
     for axis, value in zip(_PLANAR, column, strict=True):
         spread[axis] = value

@@ -1,1 +1,1 @@
-"""The programs of topic_tools: they hand messages of any type from topic to topic."""
+"""The programs of topic_tools: they forward messages of any type between topics."""

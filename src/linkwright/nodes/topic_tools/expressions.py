@@ -1,4 +1,4 @@
-"""transform and relay_field of topic_tools: messages made of those of another topic, by Python expressions.
+"""transform and relay_field of topic_tools: messages computed by Python expressions from those of another topic.
 
 The expressions are as free as in topic_tools: who writes them on a command line or in a launch file may run programs
 anyway. Names of packages of messages stand for their types, ``std_msgs.msg.String``, other names for what
@@ -41,7 +41,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 class _ExpressionTool(SingleNode, ABC):
-    """A node that makes a message of each message of its input.
+    """A node that computes a message from each message of its input.
 
     Raises:
         LinkwrightError: its words mean nothing (NODE432), or its expression (NODE434).
@@ -71,11 +71,11 @@ class _ExpressionTool(SingleNode, ABC):
 
     @abstractmethod
     def _prepare(self) -> None:
-        """Read the expression."""
+        """Compile the expression."""
 
     @abstractmethod
     def _make(self, message: Any) -> Any:
-        """The message that is published for one that came."""
+        """The message to be published for one of the input."""
 
     def _parser(self) -> argparse.ArgumentParser:
         parser = _Parser(prog=self.PROGRAM, add_help=False)
@@ -128,7 +128,7 @@ class _ExpressionTool(SingleNode, ABC):
 
 
 class Transform(_ExpressionTool):
-    """The running transform: an expression in which the message, or a field of it, is ``m``, gives the new message."""
+    """The running transform: an expression over ``m``, the message or a field of it, gives the new message."""
 
     PROGRAM = "transform"
 
@@ -158,7 +158,7 @@ class Transform(_ExpressionTool):
 
 
 class RelayField(_ExpressionTool):
-    """The running relay_field: YAML whose texts are expressions in which the message is ``m`` gives the fields."""
+    """The running relay_field: YAML whose texts are expressions over the message ``m`` gives the fields."""
 
     PROGRAM = "relay_field"
 
@@ -191,7 +191,7 @@ class RelayField(_ExpressionTool):
 
 
 class _Types:
-    """A package of messages in an expression: ``std_msgs.msg.String``."""
+    """A package of message classes in an expression: ``std_msgs.msg.String``."""
 
     def __init__(self, package: str) -> None:
         self.msg = _Messages(package)
@@ -217,7 +217,7 @@ def _imported(name: str) -> Any:
 
 
 def _prepared(value: Any) -> Callable[[Any], Any]:
-    """What gives a value of YAML for a message: a text is an expression, or stands for itself where it is none."""
+    """Compile a value of YAML: a text is an expression, or stands for itself where it is none."""
     if isinstance(value, dict):
         fields = {name: _prepared(each) for name, each in value.items()}
         return lambda message: {name: each(message) for name, each in fields.items()}

@@ -1,4 +1,4 @@
-"""mux and demux of topic_tools: one of several topics to another, or a topic to one of several."""
+"""mux and demux of topic_tools: forwards one of several topics, or to one of several."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NO_TOPIC = "__none"
 
 
 class _Switch(TopicTool):
-    """A tool with several topics, one of which is selected; services add, delete, list and select them."""
+    """A tool with several topics, one of which is selected; services add, delete, list and select topics."""
 
     _KIND: ClassVar[str]
     """How the types of the services begin."""
@@ -64,11 +64,11 @@ class _Switch(TopicTool):
     @property
     @abstractmethod
     def _selected(self) -> str:
-        """The topic that is selected."""
+        """The name of the selected topic."""
 
     @abstractmethod
     def _change(self, selected: str) -> None:
-        """Select another one."""
+        """Select another topic."""
 
     def _look(self) -> None:
         if self._selected == NO_TOPIC:
@@ -138,7 +138,7 @@ class _Switch(TopicTool):
 
 
 class Mux(_Switch):
-    """The running mux: it hands on what comes on the selected one of its inputs.
+    """The running mux: forwards the selected one of its inputs.
 
     Raises:
         LinkwrightError: the parameter ``input_topics`` is missing (NODE431) or empty (NODE433).
@@ -161,7 +161,7 @@ class Mux(_Switch):
 
 
 class Demux(_Switch):
-    """The running demux: it hands on what comes to the selected one of its outputs.
+    """The running demux: forwards to the selected one of its outputs.
 
     Raises:
         LinkwrightError: the parameter ``output_topics`` is missing (NODE431) or empty (NODE433).

@@ -1,4 +1,4 @@
-"""relay, throttle, drop and delay of topic_tools: from one topic to another, all messages or some, now or later."""
+"""relay, throttle, drop and delay of topic_tools: forward all messages or some, at once or later."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.nodes.topic_tools.tool import TopicTool
 
 
 class _InputToOutput(TopicTool):
-    """A tool with one input and one output, which is named after the input unless it is said."""
+    """A tool with one input and one output, which is named after the input by default."""
 
     SUFFIX: ClassVar[str]
 
@@ -35,7 +35,7 @@ class _InputToOutput(TopicTool):
 
 
 class Relay(_InputToOutput):
-    """The running relay: it hands on every message.
+    """The running relay: forwards every message.
 
     Raises:
         LinkwrightError: the parameter ``input_topic`` is not given (NODE431), or the command line has words that mean
@@ -54,7 +54,7 @@ class Relay(_InputToOutput):
 
 
 class Throttle(_InputToOutput):
-    """The running throttle: it hands on so many messages, or bytes, a second, and drops the rest.
+    """The running throttle: forwards a number of messages, or bytes, a second, and drops the rest.
 
     Raises:
         LinkwrightError: a parameter is missing (NODE431) or means nothing (NODE433), or a word does (NODE432).
@@ -144,7 +144,7 @@ class Drop(_InputToOutput):
 
 
 class Delay(_InputToOutput):
-    """The running delay: it hands on every message later.
+    """The running delay: forwards every message later.
 
     Raises:
         LinkwrightError: the parameter ``input_topic`` is not given (NODE431), a delay is negative (NODE433), or the

@@ -1,4 +1,4 @@
-"""What the programs of topic_tools have in common: a topic whose type the graph tells, and one to publish on.
+"""The base of topic_tools: an input whose type the graph tells, and an output.
 
 Differences from topic_tools 1.3: a change of the graph is seen at once and not within 100 ms, and a source that comes
 back with another type is subscribed to anew, and a stop is sent when who sent the last velocity is lost.
@@ -21,7 +21,7 @@ from linkwright.nodes.teleop.standstill import VELOCITIES, send_stop
 
 
 class TopicTool(SingleNode, ABC):
-    """A node that hands messages on.
+    """A node that forwards messages.
 
     It publishes while somebody publishes on its input, with the same type, reliability and durability. A class sets
     `_input` and `_output` in `_declare`.
@@ -58,7 +58,7 @@ class TopicTool(SingleNode, ABC):
         super().close()
 
     def _options(self, options: NodeOptions, words: list[str]) -> NodeOptions:
-        """The options with what the words of the command line say."""
+        """The options with the words of the command line as parameters."""
         return options_from_words(options, words, self.WORDS, self.USAGE)
 
     @abstractmethod
@@ -67,14 +67,14 @@ class TopicTool(SingleNode, ABC):
 
     @abstractmethod
     def _hear(self, message: Any) -> None:
-        """Take in a message of the input."""
+        """Take a message of the input."""
 
     def _send(self, message: Any) -> None:
         if self._publisher is not None:
             self._publisher.publish(message)
 
     def _look(self) -> None:
-        """Have the publisher and the subscription that go with the graph as it is now."""
+        """Make the publisher and the subscription for the graph as it is now."""
         sources = self._sources()
         if not sources:
             self._stop()
@@ -101,7 +101,7 @@ class TopicTool(SingleNode, ABC):
         return subscription
 
     def _stop_output(self, lost: EndpointInfo) -> None:
-        """Have who obeys velocities that are handed on stop: who sent them is lost."""
+        """Publish a stop for followers of forwarded velocities, as the publisher is lost."""
         if self._publisher is not None and self._publisher.type_name in VELOCITIES:
             send_stop(self._node, self._publisher, lost)
 

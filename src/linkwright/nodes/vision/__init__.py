@@ -1,1 +1,1 @@
-"""Nodes that find things in pictures, and say where they are."""
+"""Nodes of object detection: boxes in pictures, positions in space, seeking."""

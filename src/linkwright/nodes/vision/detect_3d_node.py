@@ -1,4 +1,4 @@
-"""detect_3d_node: where the things are that a detector finds in pictures, in metres.
+"""detect_3d_node: positions in metres of detected objects.
 
 Source: yolo_ros 4 (the executable, the topics ``detections``, ``depth_image``, ``depth_info`` and ``detections_3d``,
 the parameters, and that pictures half a second apart belong together). Different on purpose: detections are those of
@@ -110,7 +110,7 @@ class Detect3DNode(SingleNode):
             self._markers.publish(_markers(self.FORM, found, places))
 
     def _places(self, message: Any) -> list[Place | None]:
-        """Where the detections are, in the optical frame of their picture."""
+        """The positions of detections, in the optical frame of their picture."""
         camera = self._cameras.get("colour") or self._cameras.get("depth")
         if camera is None:
             self._complain("no camera_info has come")
@@ -127,7 +127,7 @@ class Detect3DNode(SingleNode):
         return places
 
     def _depths_at(self, message: Any) -> NDArray[np.float64] | None:
-        """The depth image that belongs to detections, metres; None where there is none."""
+        """The depth image for detections, metres; None without one."""
         time_ns = message.header.stamp.nanoseconds
         image = min(self._depths, key=lambda each: abs(each.header.stamp.nanoseconds - time_ns), default=None)
         if image is None or abs(image.header.stamp.nanoseconds - time_ns) > _SLOP_NS:
@@ -148,7 +148,7 @@ class Detect3DNode(SingleNode):
         return depths if image.encoding == "32FC1" else depths * self._unit
 
     def _ground_below(self, message: Any) -> tuple[NDArray[np.float64], float] | None:
-        """Which way is up in the optical frame, and how high the camera is."""
+        """The direction up in the optical frame, and the height of the camera."""
         if not self._ground:
             return None
         header = message.header
@@ -159,7 +159,7 @@ class Detect3DNode(SingleNode):
         return np.array(rotate((-x, -y, -z, w), (0.0, 0.0, 1.0))), pose[2]
 
     def _placed(self, detection: Any, place: Place, pose: Transform, header: Any) -> Any:
-        """A detection with its place in the target frame: a box with x along the view and z up."""
+        """A detection with its position in the target frame: a box with x along the view and z up."""
         middle = compose(pose, (*place.centre, *_FORWARD))
         return self.FORM.placed(detection, header, middle, (place.depth, place.width, place.height))
 
@@ -170,7 +170,7 @@ class Detect3DNode(SingleNode):
 
 
 class YoloDetect3DNode(Detect3DNode):
-    """detect_3d_node of yolo_ros: yolo_msgs/msg/DetectionArray in and out, with places in ``bbox3d``."""
+    """detect_3d_node of yolo_ros: yolo_msgs/msg/DetectionArray in and out, with positions in ``bbox3d``."""
 
     FORM = YOLO_FORM
 

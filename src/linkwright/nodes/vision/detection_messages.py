@@ -1,4 +1,4 @@
-"""Detections as messages, and pictures as messages."""
+"""Converting detections and pictures to messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.vision.detections import Detections
 
 
 def vision_message(header: Any, found: Detections) -> Any:
-    """Detections as vision_msgs/msg/Detection2DArray: the class's name is its ``class_id``."""
+    """Convert detections to vision_msgs/msg/Detection2DArray: the class's name is its ``class_id``."""
     one, hypothesis = (
         get_message("vision_msgs/msg/Detection2D"),
         get_message("vision_msgs/msg/ObjectHypothesisWithPose"),
@@ -32,7 +32,7 @@ def vision_message(header: Any, found: Detections) -> Any:
 
 
 def yolo_message(header: Any, found: Detections) -> Any:
-    """Detections as yolo_msgs/msg/DetectionArray."""
+    """Convert detections to yolo_msgs/msg/DetectionArray."""
     one = get_message("yolo_msgs/msg/Detection")
     detections = []
     for index, (x, y, width, height) in enumerate(_centres(found)):
@@ -49,7 +49,7 @@ MESSAGES: Mapping[str, Callable[[Any, Detections], Any]] = {VISION: vision_messa
 
 
 def picture_message(header: Any, picture: NDArray[np.uint8]) -> Any:
-    """A picture, shape ``(height, width, 3)``, as sensor_msgs/msg/Image."""
+    """Convert a picture, shape ``(height, width, 3)``, to sensor_msgs/msg/Image."""
     message = get_message("sensor_msgs/msg/Image")(header=header, encoding="rgb8")
     message.height, message.width, _ = picture.shape
     message.step = 3 * message.width

@@ -1,4 +1,4 @@
-"""Detections of vision_msgs and yolo_msgs, as they are read, and as they are given ids and places."""
+"""Detections of vision_msgs and yolo_msgs: reading them, and adding ids and positions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.vision.detections import Detections
 
 
 class DetectionForm(ABC):
-    """How the messages of a package tell of detections.
+    """The form of a package's detection messages.
 
     Args:
         pictures: the type of message with detections in a picture.
@@ -26,7 +26,7 @@ class DetectionForm(ABC):
         self.pictures, self.places = pictures, places
 
     def read(self, message: Any) -> Detections:
-        """What a message says, in its order: the best hypothesis of each detection."""
+        """The detections of a message, in its order, each by its best hypothesis."""
         best = [self.best(each) for each in message.detections]
         names = tuple(dict.fromkeys(name for name, _ in best))
         return Detections(
@@ -37,30 +37,30 @@ class DetectionForm(ABC):
         )
 
     def with_id(self, detection: Any, number: int) -> Any:
-        """The detection with the id that a tracker gave it."""
+        """A detection with the id of a tracker."""
         tracked = copy(detection)
         tracked.id = str(number)
         return tracked
 
     @abstractmethod
     def best(self, detection: Any) -> tuple[str, float]:
-        """The class and the score that a detection most likely has; no class where it says none."""
+        """The class and the score of a detection's best hypothesis; an empty class for none."""
 
     @abstractmethod
     def box(self, detection: Any) -> NDArray[np.float64]:
-        """Left, top, right and bottom of a detection in a picture, pixels: shape ``(4,)``."""
+        """Left, top, right and bottom of a detection in pixels: shape ``(4,)``."""
 
     @abstractmethod
     def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
-        """The detection with its place: middle and size of a box in metres, in the frame of the header."""
+        """A detection with its position: centre and size of a box in metres, in the frame of the header."""
 
     @abstractmethod
     def place(self, detection: Any) -> Any:
-        """The box in metres of a detection with its place: a message with ``center`` and ``size``."""
+        """The box in metres of a detection with a position: a message with ``center`` and ``size``."""
 
 
 class _Vision(DetectionForm):
-    """vision_msgs: a detection has hypotheses, of which the class is a text."""
+    """vision_msgs: a detection has hypotheses, whose class is a text."""
 
     def best(self, detection: Any) -> tuple[str, float]:
         if not detection.results:
@@ -85,7 +85,7 @@ class _Vision(DetectionForm):
 
 
 class _Yolo(DetectionForm):
-    """yolo_msgs: a detection has one class, and its place beside its box in the picture."""
+    """yolo_msgs: a detection has one class, and its position beside its box."""
 
     def best(self, detection: Any) -> tuple[str, float]:
         return detection.class_name, float(detection.score)

@@ -1,4 +1,4 @@
-"""The node that finds things in a camera's pictures, and the names that users of other packages know it by.
+"""The detector node, and its names in other packages.
 
 Pictures are taken only while somebody listens to what is found in them; a thread looks at the latest one, so that a
 slow network never makes a queue. The same thread loads the detector, which may take seconds: until then no pictures are
@@ -81,7 +81,7 @@ _RATE_SLACK = 0.9
 
 @dataclass(frozen=True, slots=True)
 class _Task:
-    """A picture to be looked at, with which limits, and whether its boxes are to be drawn."""
+    """A picture for the detector, its limits, and whether boxes are to be drawn."""
 
     message: Any
     limits: Limits
@@ -199,7 +199,7 @@ class DetectorNode(SingleNode):
         return QoSProfile(depth=1, reliability=known[reliability])
 
     def _limits_of(self, changed: dict[str, Any], known: Sequence[str] | None) -> Limits:
-        """What the parameters say, with others in the place of some.
+        """The limits of the parameters, some of them replaced.
 
         Args:
             changed: the others, by name.
@@ -279,7 +279,7 @@ class DetectorNode(SingleNode):
     # --- in the worker's thread ----------------------------------------------------------------------------------
 
     def _load(self, model: str, options: DetectorOptions) -> Callable[[_Task], None] | None:
-        """Load the detector; what looks at a picture with it."""
+        """Load the detector; a function that runs it on a picture."""
         try:
             detector = make_detector(model, options)
         except LinkwrightError as error:
@@ -292,7 +292,7 @@ class DetectorNode(SingleNode):
         return partial(self._look, detector)
 
     def _look(self, detector: Detector, task: _Task) -> None:
-        """Find what is in a picture."""
+        """Detect objects in a picture."""
         try:
             image = self._unpacker.image(task.message, self._source.transport)
             picture = picture_of(image, self._ranges).rgb()
@@ -316,7 +316,7 @@ class DetectorNode(SingleNode):
             self._done.popleft()()
 
     def _begin(self, detector: Detector) -> None:
-        """Take pictures from now on."""
+        """Start to take pictures."""
         for note in detector.notes:
             self._node.get_logger().info(str(note))
         try:

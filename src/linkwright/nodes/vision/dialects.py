@@ -1,4 +1,4 @@
-"""What nodes that find things in pictures are called, and how their parameters and topics are named.
+"""Names of nodes, parameters and topics of the detectors of other packages.
 
 Sources: yolo_ros 4 (mgonzs13): node, parameters, defaults, topics, yolo_msgs; openrobotics_darknet_ros; yolov5_ros;
 yolov5_ros2 (fishros).
@@ -13,7 +13,7 @@ VISION, YOLO = "vision_msgs/msg/Detection2DArray", "yolo_msgs/msg/DetectionArray
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """Names of parameters, empty for those that a node has not, and of topics.
+    """Names of parameters, empty for those that a node lacks, and of topics.
 
     Attributes:
         model: the parameter that has the ONNX file or the detector.

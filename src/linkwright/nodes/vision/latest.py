@@ -1,4 +1,4 @@
-"""Work in a thread of its own, on the latest of what comes: slow work never makes a queue."""
+"""A worker thread for the latest item: slow work never makes a queue."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _SECONDS_FOR_THE_LAST = 10.0
 
 
 class LatestWorker(Generic[T]):
-    """Calls a function in a thread, with what was offered last when the call before it is done.
+    """Calls a function in a thread, with the item offered last.
 
     Args:
         prepare: makes that function, in the thread, which may take seconds; None where nothing is to be done. Neither
@@ -29,7 +29,7 @@ class LatestWorker(Generic[T]):
         self._thread.start()
 
     def offer(self, item: T) -> None:
-        """Have the function called with an item, unless another comes before it is its turn."""
+        """Offer an item, which replaces one that waits."""
         with self._changed:
             if not self._ended:
                 self._waiting[:] = [item]
@@ -37,11 +37,11 @@ class LatestWorker(Generic[T]):
 
     @property
     def waits(self) -> bool:
-        """Whether an item waits for its turn."""
+        """Whether an item waits."""
         return bool(self._waiting)
 
     def close(self) -> None:
-        """Call the function no more; a call that runs is waited for."""
+        """Stop; a running call is waited for."""
         with self._changed:
             self._ended = True
             self._waiting.clear()

@@ -1,4 +1,4 @@
-"""Going to a thing by nav2, around what stands in the way: the action ``navigate_to_pose``."""
+"""Driving to an object by nav2: the action ``navigate_to_pose``."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _ACTION = "nav2_msgs/action/NavigateToPose"
 
 
 class Nav2Trip:
-    """One goal at a time.
+    """One goal of nav2 at a time.
 
     Args:
         node: whose it is.
@@ -28,16 +28,16 @@ class Nav2Trip:
 
     @property
     def is_served(self) -> bool:
-        """Whether nav2 is there."""
+        """Whether nav2's server is there."""
         return self._client.server_is_ready()
 
     @property
     def is_under_way(self) -> bool:
-        """Whether a goal was sent and has not ended."""
+        """Whether a goal is active."""
         return self._trip is not None
 
     def begin(self, frame: str, robot: tuple[float, float], thing: tuple[float, float], distance: float) -> None:
-        """Send the goal: before a thing, on the robot's side of it, with a look at it.
+        """Send a goal: in front of an object, on the robot's side of it, facing it.
 
         Args:
             frame: of the places.
@@ -57,7 +57,7 @@ class Nav2Trip:
         self._client.send_goal_async(goal).add_done_callback(lambda future: self._answered(trip, future.result()))
 
     def cancel(self) -> None:
-        """Give up, if a goal is under way."""
+        """Cancel an active goal."""
         self._trip = None
         if self._goal is not None:
             self._goal.cancel_goal_async()

@@ -1,4 +1,4 @@
-"""object_seeker: looks for what it is told by name, goes there or follows it, and says what it sees.
+"""object_seeker: seeks an object by its name, drives to it or follows it, and tells what it sees.
 
 ``vision/go_to`` and ``vision/follow`` take a name, perhaps with a colour (``red ball``, 红色的球), ``vision/stop``
 ends it; what comes of it is said on ``/voice/response``. ``vision/describe`` answers what is seen. Below each of the
@@ -77,7 +77,7 @@ class ObjectSeeker(SingleNode):
         node.create_timer(_PERIOD, self._step)
 
     def close(self) -> None:
-        """Stop the robot, and end."""
+        """Stop the robot, and close."""
         if self._seeker.phase is not Phase.IDLE:
             self._velocity.stop()
         self._cancel_trip()
@@ -110,7 +110,7 @@ class ObjectSeeker(SingleNode):
         return self._node.get_clock().now().nanoseconds
 
     def _begin(self, language: str | None, follow: bool, message: Any) -> None:
-        """Look for what a message names; answers are in that language, or, where it is None, in that of the message."""
+        """Seek what a message names; answers are in that language, or, where it is None, in that of the message."""
         request = wanted(message.data)
         if request is None:
             self._node.get_logger().warning(f"'{message.data}' names nothing to go to; say 'ball' or 'red ball'")
@@ -161,7 +161,7 @@ class ObjectSeeker(SingleNode):
         self._velocity.publish((move.linear, 0.0, 0.0), (0.0, 0.0, move.angular))
 
     def _begin_trip(self) -> bool:
-        """Have nav2 go to the thing that was found; whether that is wanted, and nav2 there."""
+        """Drive to the found object by nav2; whether that is configured, and nav2 there."""
         trip, target = self._trip, self._target
         pose = self._poses.pose(self._fixed, self._base, 0)
         if trip is None or target is None or pose is None or self._seeker.follow or not trip.is_served:
@@ -202,7 +202,7 @@ class ObjectSeeker(SingleNode):
         )
 
     def _chosen(self, pose: Transform) -> Thing | None:
-        """Of the things that are seen, the one to go to: the same as before, or else the nearest."""
+        """The seen object to drive to: the same as before, or else the nearest."""
         assert self._wanted is not None, "it is asked for while it seeks"
         fitting = [
             each for each in self._seen.things if self._wanted.is_it(each.name, each.colour, each.shape, each.score)
@@ -216,7 +216,7 @@ class ObjectSeeker(SingleNode):
         return min(fitting, key=lambda each: hypot(*_within(pose, each)), default=None)
 
     def _free(self, now_ns: int) -> float:
-        """Metres from the robot's middle to what a laser sees in its way; 0 where the laser has fallen silent."""
+        """Metres from the robot's centre to a laser's nearest point ahead; 0 if the laser has fallen silent."""
         scan = self._scan
         if scan is None:
             return inf
@@ -242,7 +242,7 @@ class ObjectSeeker(SingleNode):
 
 
 def _within(pose: Transform, thing: Thing) -> tuple[float, float]:
-    """How far ahead and to the left of the robot a thing is, metres."""
+    """The distance of an object ahead and to the left of the robot, metres."""
     x, y, _, *turn = invert(pose)
     ahead, left, _ = rotate((turn[0], turn[1], turn[2], turn[3]), (thing.x, thing.y, 0.0))
     return ahead + x, left + y

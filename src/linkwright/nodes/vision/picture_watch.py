@@ -1,4 +1,4 @@
-"""Says why no pictures come to a node that waits for them: a wrong topic, another type, QoS, a camera that stopped."""
+"""Diagnosing missing pictures: a wrong topic, another type, QoS, a camera that stopped."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOST_TOPICS = 5
 
 
 class PictureWatch:
-    """Warns once when no picture has come for some seconds, and tells when they come again.
+    """Warns once when no picture has come for some seconds, and reports when they come again.
 
     After each time that they came again it waits twice as long, so that a camera that is slow is told of a few times
     only.
@@ -40,7 +40,7 @@ class PictureWatch:
         node.create_timer(_SECONDS, self._look, clock=clock)
 
     def came(self) -> None:
-        """A picture is there."""
+        """Note that a picture came."""
         self._came = True
 
     def _look(self) -> None:
@@ -63,7 +63,7 @@ class PictureWatch:
             logger.warning(localized(hint))
 
     def _reason(self) -> tuple[Phrase, Phrase | None]:
-        """Why no pictures come, and what to do."""
+        """The reason why no pictures come, and a hint."""
         topic, wanted = self._source.topic, self._source.message_type
         publishers = self._node.get_publishers_info_by_topic(topic)
         if not publishers:
@@ -83,7 +83,7 @@ class PictureWatch:
         return phrase("no picture has come on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None
 
     def _others(self) -> Phrase | None:
-        """Where pictures can be had."""
+        """The topics that have pictures."""
         passed = {self._source.topic, *(each.name for each in self._node.publishers)}
         topics = [
             name

@@ -1,4 +1,4 @@
-"""The things that are seen, with their colours, in a frame that does not move."""
+"""Detected objects with their colours, in a fixed frame."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _VOTES = 30
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """Something that is seen.
+    """A seen object.
 
     Attributes:
         name: its class.
@@ -47,7 +47,7 @@ class Thing:
 
 
 class SeenThings:
-    """Listens to detections with places, and looks which colour the things have in the pictures.
+    """Listens to detections with positions, and finds the colours of the objects in the pictures.
 
     Colours are those of the boxes that have the same id: topics ``tracking`` and ``image_raw``.
 
@@ -75,7 +75,7 @@ class SeenThings:
         node.create_subscription(get_message("vision_msgs/msg/Detection3DArray"), "detections_3d", self._see, _DEPTH)
 
     def _look(self, message: Any) -> None:
-        """Note the colours of things that have ids."""
+        """Record the colours of objects with ids."""
         time_ns = message.header.stamp.nanoseconds
         image = next((each for each in self._pictures if each.header.stamp.nanoseconds == time_ns), None)
         if image is None or not any(each.id for each in message.detections):

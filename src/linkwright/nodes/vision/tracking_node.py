@@ -1,4 +1,4 @@
-"""tracking_node: gives the things that a detector finds ids, the same from picture to picture.
+"""tracking_node: gives detected objects ids that stay from picture to picture.
 
 Source: yolo_ros 4 (the executable, the topics ``detections`` and ``tracking``); its parameters are in a file of
 ByteTrack's there, and parameters of the node here. Different on purpose: it needs no pictures, and both topics are

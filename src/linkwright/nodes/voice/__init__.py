@@ -1,1 +1,1 @@
-"""Nodes that hear commands and carry them out."""
+"""Nodes of voice control: capturing sound, recognising commands, carrying them out."""

@@ -1,4 +1,4 @@
-"""audio_capture: sound of a WAV file or of the system's microphone on audio_common's topics.
+"""audio_capture: publishes sound of a WAV file or of the microphone on audio_common's topics.
 
 Topics and parameters are those of the node of ros-drivers' audio_common: ``audio``, ``audio_stamped`` and, latched,
 ``audio_info``. Different on purpose: what is published is always 16 kHz, mono, S16LE, which is that node's default,
@@ -51,7 +51,7 @@ class AudioCapture(SingleNode):
             self._start()
 
     def close(self) -> None:
-        """Let go of the microphone."""
+        """Close the microphone."""
         if self._microphone is not None:
             self._microphone.close()
             self._microphone = None
@@ -130,7 +130,7 @@ class AudioCapture(SingleNode):
 
 
 class RobotAudioCapture(AudioCapture):
-    """The same for our robots, whose sound is below ``/audio``."""
+    """The same with topics of our robots, below ``/audio``."""
 
     DEFAULT_NAME = "audio_capture"
     NAMESPACE = NAMESPACE

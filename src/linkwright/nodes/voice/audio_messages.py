@@ -1,4 +1,4 @@
-"""Sound as audio_common_msgs: writing it, and reading it in whatever form a publisher has it.
+"""Converting sound to messages of audio_common_msgs, and back from any of their formats.
 
 audio_capture publishes the samples of all channels in turn, in GStreamer's formats (``S16LE``), and says on
 ``audio_info`` which. Who hears no AudioInfo takes 16 kHz, mono, S16LE, audio_capture's own defaults.
@@ -38,7 +38,7 @@ _FORMAT = re.compile(r"[SU]8|[SU](16|24|32)(LE|BE)|F(32|64)(LE|BE)")
 
 @dataclass(frozen=True, slots=True)
 class AudioForm:
-    """The form of the bytes of AudioData, as an AudioInfo says it.
+    """The format of AudioData's bytes, as an AudioInfo declares it.
 
     Attributes:
         channels: whose samples come in turn.
@@ -65,7 +65,7 @@ class AudioForm:
 
     @classmethod
     def of(cls, info: Any) -> AudioForm:
-        """What an AudioInfo says.
+        """Read the format of an AudioInfo.
 
         Raises:
             LinkwrightError: VOICE411 sound of this form is not read, such as MP3.
@@ -82,7 +82,7 @@ def _unreadable(why: Phrase) -> LinkwrightError:
 
 
 class AudioReader:
-    """Makes a stream of AudioData into the samples that engines take: mono, 16 bits, 16 kHz.
+    """Converts a stream of AudioData to the samples of engines: mono, 16 bits, 16 kHz.
 
     Args:
         form: of what comes.
@@ -96,11 +96,11 @@ class AudioReader:
 
     @property
     def form(self) -> AudioForm:
-        """The form of what comes."""
+        """The format of the stream."""
         return self._form
 
     def read(self, data: bytes | bytearray | memoryview | NDArray[np.uint8] | Sequence[int]) -> Samples:
-        """The samples that follow from the field ``data`` of the next AudioData; a cut sample waits for its rest."""
+        """The samples of the next AudioData's field ``data``; a cut sample waits for its rest."""
         whole = self._rest + bytes(data)
         if self._is_as_engines_take_it:  # ten times a second, all day
             used = len(whole) // 2 * 2
@@ -119,7 +119,7 @@ def _sample_bytes(form: AudioForm) -> int:
 
 
 def _values(data: bytes, form: AudioForm) -> NDArray[np.float64]:
-    """The samples as they come, full scale at 1; bytes beyond the last whole one are left out."""
+    """The samples in the stream's channels and rate, full scale at 1; bytes beyond the last whole one are left out."""
     size, kind = _sample_bytes(form), form.sample_format[0]
     order = ">" if form.sample_format.endswith("BE") else "<"
     data = data[: len(data) // size * size]
@@ -138,7 +138,7 @@ def _values(data: bytes, form: AudioForm) -> NDArray[np.float64]:
 
 
 def audio_info(form: AudioForm) -> Any:
-    """The AudioInfo of a form; its bit rate is in kbit/s, as audio_capture has it."""
+    """The AudioInfo of a format; its bit rate is in kbit/s, as audio_capture has it."""
     info = get_message(AUDIO_INFO)()
     info.channels, info.sample_rate, info.sample_format = form.channels, form.rate, form.sample_format
     info.bitrate = form.channels * form.rate * 8 * _sample_bytes(form) // 1000
@@ -147,14 +147,14 @@ def audio_info(form: AudioForm) -> Any:
 
 
 def audio_data(data: bytes) -> Any:
-    """An AudioData."""
+    """An AudioData of samples."""
     message = get_message(AUDIO)()
     message.data = np.frombuffer(data, np.uint8)
     return message
 
 
 def audio_stamped(data: bytes, stamp: Any, frame_id: str = "") -> Any:
-    """An AudioDataStamped.
+    """An AudioDataStamped of samples.
 
     Args:
         data: the samples' bytes.

@@ -1,4 +1,4 @@
-"""Publishing sound as audio_common's audio_capture does."""
+"""Publishing sound on the topics of audio_common's audio_capture."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ class AudioTopics:
         self._stamps = SampleStamps()
 
     def restart(self) -> None:
-        """What is published next does not follow what was published before."""
+        """Start a new stream, unrelated to what was published before."""
         self._stamps.restart()
 
     def publish(self, samples: Samples, lost: float = 0.0) -> None:
-        """Publish the next block of the stream, whose last sample was heard now or some time ago.
+        """Publish the next block of the stream, whose last sample was recorded now or some time ago.
 
         Args:
             samples: the block.
@@ -56,6 +56,6 @@ class AudioTopics:
         self._plain.publish(audio_data(data))
 
     def close(self) -> None:
-        """Leave the topics."""
+        """Remove the topics."""
         for publisher in (self._plain, self._stamped, self._info):
             self._node.destroy_publisher(publisher)

@@ -1,4 +1,4 @@
-"""What is said, and what comes of it: commands are understood, asked back about, carried out and answered."""
+"""The dialogue: understanding, asking back, carrying out and answering commands."""
 
 from __future__ import annotations
 
@@ -66,11 +66,11 @@ class Conversation:
 
     @property
     def is_busy(self) -> bool:
-        """Whether something goes on that a stop would end."""
+        """Whether something is active that a stop would end."""
         return self._driver.is_moving or self._requests.is_active
 
     def take(self, text: str) -> bool:
-        """Do what a text says, or ask back; whether it was understood."""
+        """Carry out the command of a text, or ask back; whether it was understood."""
         answer = self._commands.answer(text) if self._asked is not None else None
         if self._asked is not None and answer is not None:
             understood, asked_for = self._asked
@@ -94,7 +94,7 @@ class Conversation:
         return True
 
     def stop(self, text: str = "") -> None:
-        """Stop, whatever goes on.
+        """Stop everything.
 
         Args:
             text: what was said, which is answered; empty where nobody said anything.
@@ -112,21 +112,21 @@ class Conversation:
             self._say(chosen(stop.response, self._language) or text)
 
     def rest(self, why: Phrase) -> None:
-        """Stand still because nobody says how to go on."""
+        """Stop driving because the speaker is lost."""
         self._driver.stop()
         self.answer(why)
 
     def answer(self, text: Phrase) -> None:
-        """Say something in the language that was spoken last."""
+        """Answer in the language that was spoken last."""
         self._say(localized(text, "zh" if self._language.startswith("zh") else "en"))
 
     def drive_ended(self, ending: Ending) -> None:
-        """A way is done, or takes too long."""
+        """Handle the end of a drive: done, or out of time."""
         if ending == "stuck":
             self.answer(phrase("I am stuck, and stop"))
 
     def goal_ended(self, reached: bool, reason: str) -> None:
-        """A goal was reached, or not."""
+        """Handle the end of a goal: reached, or not."""
         if reached:
             self.answer(phrase("I am done"))
         elif reason:
@@ -135,7 +135,7 @@ class Conversation:
             self.answer(phrase("I could not do it"))
 
     def _answer_in(self, language: str) -> None:
-        """Answer in the language that somebody speaks."""
+        """Answer in a given language."""
         if language != ANY:
             self._language = language
 
@@ -154,7 +154,7 @@ class Conversation:
             self._say(str(filled(chosen(found.command.response, self._language) or text, values)))
 
     def _done(self, found: Understood) -> Phrase | None:
-        """Do it; None, or why it cannot be done."""
+        """Carry out an action; None, or the reason why it cannot be done."""
         action, values = found.command.action, found.values
         if found.command.moves:
             self._make_way(found)
@@ -180,7 +180,7 @@ class Conversation:
         return None
 
     def _make_way(self, found: Understood) -> None:
-        """End the motion whose place another one takes."""
+        """End the motion that another one replaces."""
         action = found.command.action
         self._requests.leave(but=action.action if isinstance(action, GoTo) else "")
         if not isinstance(action, Drive) and self._driver.is_moving:

@@ -1,4 +1,4 @@
-"""Driving as commands say it: for ever, for a time, a distance or an angle, by odometry where it is heard."""
+"""Driving by commands: endlessly, for a time, a distance or an angle, by odometry where there is any."""
 
 from __future__ import annotations
 
@@ -59,11 +59,11 @@ class Driver:
 
     @property
     def is_endless(self) -> bool:
-        """Whether it drives without an end of its own."""
+        """Whether it drives without an end."""
         return self._drive is not None and self._left is None
 
     def begin(self, drive: Drive, values: Values) -> None:
-        """Drive, in place of what was driven before.
+        """Start to drive, in place of what was driven before.
 
         Args:
             drive: how.
@@ -81,19 +81,19 @@ class Driver:
         self._timer.reset()
 
     def stop(self) -> None:
-        """Stand still; it is said again even where nothing moves."""
+        """Stop; a zero velocity is published even where nothing moves."""
         self._drive = None
         self._timer.cancel()
         self._topic.review(may_change=False)
         self._topic.stop()
 
     def scale(self, factor: float) -> float:
-        """Be faster or slower, within bounds; what all speeds are multiplied by from now on."""
+        """Scale the speed, within bounds; returns the factor of all speeds from now on."""
         self._scale = min(max(self._scale * factor, _SCALES[0]), _SCALES[1])
         return self._scale
 
     def set_speed(self, speed: float) -> float:
-        """Drive at a speed, in m/s; the one that it is within the bounds."""
+        """Set the speed in m/s; returns the one within the bounds."""
         self.scale(speed / (self._usual_speed * self._scale))
         return self._usual_speed * self._scale
 
@@ -127,18 +127,18 @@ class Driver:
         self._ended(ending)
 
     def _rate(self) -> float:
-        """How much of the distance or angle a second takes."""
+        """The rate at which the distance or angle is covered."""
         assert self._drive is not None, "it drives"
         if self._kind == "angle":
             return abs(self._drive.turn) * self._turn_speed * self._scale
         return hypot(self._drive.x, self._drive.y) * self._speed * self._scale
 
     def _expected(self) -> float:
-        """Seconds that a distance or angle takes."""
+        """The expected duration in seconds of a distance or angle."""
         return self._left / self._rate() if self._left is not None and self._kind != "duration" else 0.0
 
     def _publish(self, part: float) -> None:
-        """Publish a part of the velocity."""
+        """Publish the velocity scaled by a factor."""
         assert self._drive is not None, "it drives"
         self._part = part
         speed, turn = part * self._speed * self._scale, part * self._turn_speed * self._scale
@@ -149,7 +149,7 @@ class Driver:
 
 
 class _Odometer:
-    """The way since it was last looked at."""
+    """Measures the motion since the last call."""
 
     def __init__(self) -> None:
         self._heard_ns: int | None = None

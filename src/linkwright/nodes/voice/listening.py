@@ -1,4 +1,4 @@
-"""An engine in a thread of its own: sound goes in, and what was heard comes back to the node."""
+"""Running an engine of speech in a thread of its own."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _NEAR = 0.2  # s: engines do not know to the frame where a word begins
 
 
 class Listener:
-    """Hands sound to an engine.
+    """Passes sound to an engine, and results to the node.
 
     Args:
         node: whose callbacks `heard` and `failed` are.
@@ -54,7 +54,7 @@ class Listener:
         self._thread.start()
 
     def hear(self, samples: Samples) -> bool:
-        """Take a block of sound; whether the engine keeps up, else it is dropped."""
+        """Pass a block of sound; False if the engine lags behind and the block was dropped."""
         if self._sound.qsize() >= _MOST_WAITING:
             self.note_gap(samples.size / RATE)
             return False
@@ -63,19 +63,19 @@ class Listener:
         return True
 
     def note_gap(self, seconds: float) -> None:
-        """So much of the sound before what comes next is missing."""
+        """Record missing sound, in seconds, before the next block."""
         self._gaps.append((self._handed / RATE, seconds))
 
     def lost_in(self, heard: Heard) -> float:
-        """The seconds of sound that were missing in what was heard, or just before or after it."""
+        """The seconds of sound that were missing in a result, or just before or after it."""
         return sum(seconds for at, seconds in self._gaps if heard.start - _NEAR <= at <= heard.end + _NEAR)
 
     def finish(self) -> None:
-        """The utterance has ended."""
+        """End the utterance."""
         self._sound.put(True)
 
     def close(self) -> None:
-        """End the engine."""
+        """Close the engine."""
         self._sound.put(None)
         self._thread.join()
 

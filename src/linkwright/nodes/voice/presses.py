@@ -1,4 +1,4 @@
-"""Presses of the button: who held it and was not understood is told so, once, when all of it was heard."""
+"""Presses of the talk button: one without any understood command is answered, once, when its sound was processed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SAY_IT_AGAIN = phrase("I did not hear all of that: say it again")
 
 @dataclass(slots=True)
 class _Press:
-    """What became of what was said.
+    """The results of one press.
 
     Attributes:
         is_settled: something of it was done or answered.
@@ -27,32 +27,32 @@ class _Press:
 
 
 class Presses:
-    """Those that the engine has not heard to their end. It is some time behind, so the next may have begun."""
+    """Presses whose sound the engine still processes. It lags behind, so the next may have begun."""
 
     def __init__(self) -> None:
         self._presses: deque[_Press] = deque()
 
     def begin(self) -> None:
-        """The button was pressed."""
+        """Record that the button was pressed."""
         self._presses.append(_Press())
 
     def settle(self) -> None:
-        """Something that was said was done, or answered."""
+        """Record that something was done or answered."""
         if self._presses:
             self._presses[0].is_settled = True
 
     def note_gap(self) -> None:
-        """Some sound was lost since the button was pressed last."""
+        """Record lost sound since the last press."""
         if self._presses:
             self._presses[-1].has_gaps = True
 
     def note_unknown(self, heard: Heard) -> None:
-        """Something was said that is none of the commands."""
+        """Record speech that is no command."""
         if self._presses:
             self._presses[0].unknown = heard
 
     def end(self) -> Phrase | None:
-        """All of the oldest was heard; what is to be answered to it, if anything is."""
+        """End the oldest press, whose sound was processed; the answer to it, if any."""
         if not self._presses:
             return None
         press = self._presses.popleft()

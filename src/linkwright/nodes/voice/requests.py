@@ -1,4 +1,4 @@
-"""What commands ask of others: goals of actions, services, messages, launch files."""
+"""Requests of commands to other nodes: goals of actions, services, messages, launch files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _GRACE = 5.0
 
 
 class Goals:
-    """Goals of one action, of which one at a time is ours.
+    """Goals of one action, one at a time.
 
     Args:
         node: sends them.
@@ -54,7 +54,7 @@ class Goals:
         self._client.send_goal_async(goal).add_done_callback(partial(self._accepted, self._number))
 
     def leave(self) -> None:
-        """Have our goal canceled."""
+        """Cancel our goal."""
         handle, self._handle = self._handle, None
         self._number += 1
         if self.is_active and handle is not None:
@@ -62,7 +62,7 @@ class Goals:
         self.is_active = False
 
     def cancel_all(self) -> None:
-        """Have all goals of the action canceled, whoever sent them."""
+        """Cancel all goals of the action, whoever sent them."""
         self.leave()
         if self._cancel_all.service_is_ready():
             self._cancel_all.call_async(self._cancel_all.srv_type.Request())
@@ -89,7 +89,7 @@ class Goals:
 
 
 def pose_goal(node: Node, place: Place) -> Any:
-    """The goal that sends a robot to a place."""
+    """A goal of navigate_to_pose for a place."""
     goal = get_action(NAVIGATE).Goal()
     goal.pose.header.frame_id = place.frame
     goal.pose.header.stamp = node.get_clock().now().to_msg()
@@ -99,7 +99,7 @@ def pose_goal(node: Node, place: Place) -> Any:
 
 
 class Requests:
-    """Clients and publishers for all that some commands ask of others.
+    """Clients and publishers for all requests of commands.
 
     Args:
         node: asks.
@@ -117,11 +117,11 @@ class Requests:
 
     @property
     def is_active(self) -> bool:
-        """Whether a goal or a launch file of ours goes on."""
+        """Whether a goal or a launch file of ours is active."""
         return self._is_launched or any(goals.is_active for goals in self._goals.values())
 
     def prepare(self, action: object) -> None:
-        """Have what an action needs, so that it is connected when it is wanted."""
+        """Make the clients and publishers of an action, so that they are connected when they are needed."""
         if isinstance(action, GoTo):
             self._goals.setdefault(action.action, Goals(self._node, NAVIGATE, action.action, self._ended))
         elif isinstance(action, SendGoal) and action.action not in self._goals:
@@ -133,7 +133,7 @@ class Requests:
             self._publishers[action.topic] = self._node.create_publisher(kind, action.topic, _DEPTH)
 
     def send_pose(self, action: str, place: Place) -> bool:
-        """Send the robot to a place; whether there is a server."""
+        """Navigate to a place; whether there is a server."""
         goals = self._goals[action]
         if goals.is_served:
             goals.send(pose_goal(self._node, place))
@@ -175,20 +175,20 @@ class Requests:
         self._launched = subprocess.Popen(command, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed words, no shell
 
     def leave(self, but: str = "") -> None:
-        """End our goals, but those of one action, and our launch file."""
+        """Cancel our goals, but those of one action, and end our launch file."""
         for name, goals in self._goals.items():
             if name != but:
                 goals.leave()
         self._end_launch()
 
     def cancel_all(self) -> None:
-        """End our launch file, and all goals of the actions that commands know, whoever sent them."""
+        """End our launch file, and cancel all goals of the actions that commands use, whoever sent them."""
         for goals in self._goals.values():
             goals.cancel_all()
         self._end_launch()
 
     def close(self) -> None:
-        """End what goes on, and wait for it."""
+        """End everything, and wait for it."""
         self.leave()
         if self._ending is not None:
             self._ending.join()
@@ -198,7 +198,7 @@ class Requests:
         return self._launched is not None and self._launched.poll() is None
 
     def _end_launch(self) -> None:
-        """Interrupt the launch file; it is not waited for here."""
+        """Interrupt the launch file without waiting for it."""
         launched, self._launched = self._launched, None
         if launched is None or launched.poll() is not None:
             return
@@ -218,12 +218,12 @@ class Requests:
 
 
 def _word(value: Any) -> str:
-    """A value of a launch argument as it is typed."""
+    """The text of a launch argument's value."""
     return str(value).lower() if isinstance(value, bool) else shown(value)
 
 
 def _see_end(launched: subprocess.Popen[bytes]) -> None:
-    """Wait for a launch file that was interrupted to end, and make it end where it does not."""
+    """Wait for an interrupted launch file to end, and kill it if it does not."""
     try:
         launched.wait(_GRACE)
     except subprocess.TimeoutExpired:

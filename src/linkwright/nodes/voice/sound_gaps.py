@@ -1,4 +1,4 @@
-"""Stamps of sound by which a reader knows that some of it is missing.
+"""Detecting missing sound by stamps of blocks.
 
 AudioDataStamped has no number that counts messages. A source of ours stamps each block with the end of the one before,
 and follows the clock slowly, so that a jump ahead means that sound was lost on the way.
@@ -21,17 +21,17 @@ _JUMP = 50 * 10**6
 
 
 class SampleStamps:
-    """Stamps the blocks of a stream of sound, in nanoseconds of a clock."""
+    """Computes stamps of the blocks of a stream, in nanoseconds of a clock."""
 
     def __init__(self) -> None:
         self._next: int | None = None
 
     def restart(self) -> None:
-        """What comes next does not follow what came before."""
+        """Start a new stream, unrelated to the one before."""
         self._next = None
 
     def stamp(self, samples: int, now: int, lost: float = 0.0) -> int:
-        """When the first sample of a block was heard.
+        """The stamp of a block's first sample.
 
         Args:
             samples: how many it has.
@@ -50,7 +50,7 @@ class SampleStamps:
 
 
 class SoundGaps:
-    """Finds out from stamps whether sound is missing before a block, where who publishes counts samples."""
+    """Detects missing sound before a block from stamps, if its publisher counts samples."""
 
     def __init__(self) -> None:
         self._next: int | None = None
@@ -58,12 +58,12 @@ class SoundGaps:
         self._small = 0  # jumps too small to be told by themselves
 
     def restart(self) -> None:
-        """What comes next need not follow what came before; who publishes is taken to stamp it in the same way."""
+        """Start a new stream, whose publisher is taken to stamp it in the same way."""
         self._next = None
         self._small = 0
 
     def missing(self, stamp: int, samples: int) -> float:
-        """The seconds of sound that are missing before a block.
+        """The seconds of sound missing before a block.
 
         Args:
             stamp: of its first sample, nanoseconds.

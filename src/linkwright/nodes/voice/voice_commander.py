@@ -1,4 +1,4 @@
-"""voice_commander of my_robot_voice: what is said becomes velocities, goals, services and messages.
+"""voice_commander of my_robot_voice: turns spoken commands into velocities, goals, services and messages.
 
 Sound comes as ``audio/audio_stamped``, is recognised by an engine of `linkwright.speech`, and means what the file of
 commands says. It counts while ``voice/listen`` says that a button is held, or always with ``open_listening``.
@@ -79,7 +79,7 @@ class VoiceCommander(SingleNode):
             self._start()
 
     def close(self) -> None:
-        """Leave a robot that stands still."""
+        """Stop the robot, and close."""
         if self._listener is not None:
             self._listener.close()
         if self._conversation.is_busy:
@@ -219,7 +219,7 @@ class VoiceCommander(SingleNode):
             self._presses.note_unknown(heard)
 
     def _is_done_or_answered(self, heard: Heard) -> bool:
-        """Do what was said, or ask for it again; False where neither is called for."""
+        """Carry out a recognised text, or ask for it again; False where neither applies."""
         lost = 0.0 if self._listener is None else self._listener.lost_in(heard)
         is_certain = heard.confidence >= self._confidence
         if is_certain and lost <= _MOST_LOST and self._take(heard.text, by_voice=True):
@@ -235,18 +235,18 @@ class VoiceCommander(SingleNode):
         return True
 
     def _press_heard(self) -> None:
-        """All was heard that was said while the button was held."""
+        """Handle the end of a press of the button whose sound was processed."""
         answer = self._presses.end()
         if answer is not None and not self._open:
             self._conversation.answer(answer)
 
     @property
     def _is_addressed(self) -> bool:
-        """Whether what is heard was said to the robot; the end of it comes after the button was let go."""
+        """Whether a result was said to the robot; its end comes after the button was let go."""
         return self._held or not self._open
 
     def _stop_early(self, text: str) -> None:
-        """Stop from what was heard so far, unless it is another command in which that word is."""
+        """Stop by a partial result, unless that word belongs to another command."""
         if not self._commands.is_stop(text) or self._commands.is_other(text):
             return
         if self._conversation.is_busy or (self._held and not self._stopped):
@@ -279,7 +279,7 @@ class VoiceCommander(SingleNode):
     # --- what is said --------------------------------------------------------------------------------------------
 
     def _take(self, text: str, *, by_voice: bool) -> bool:
-        """Do what a text says; whether it was understood."""
+        """Carry out the command of a text; whether it was understood."""
         if not by_voice:
             self._said["text"](text)
         understood = self._conversation.take(text)
@@ -296,7 +296,7 @@ class VoiceCommander(SingleNode):
             self._conversation.rest(phrase("nobody says anything, so I stop"))
 
     def _look(self) -> None:
-        """Stop where the source of sound has left while it had the robot drive on."""
+        """Stop when the source of sound was lost while its commands had the robot drive on."""
         if self._spoken and self._driver.is_endless and not self._audio.get_publisher_count():
             self._deaf()
 

@@ -1,1 +1,1 @@
-"""The nodes of slam_toolbox: they make a map of laser scans and find the robot in it."""
+"""The nodes of slam_toolbox: mapping and localization with laser scans."""

@@ -28,17 +28,17 @@ from linkwright.nodes.settings import tell_unknown
 
 
 class _Managed(ManagedNode):
-    """Jazzy's node on the graph."""
+    """The node of Jazzy, which is managed."""
 
     kind: type[AsyncSlamToolbox]
 
     def declare(self) -> None:
-        """Only a lifecycle manager is bonded with."""
+        """Declare ``use_lifecycle_manager``: only with one a bond is formed."""
         if not self.declare_parameter("use_lifecycle_manager", False).value:
             self._beats = 0.0
 
     def configure(self) -> None:
-        """Read the parameters and join the graph.
+        """Read the parameters and start the mapper.
 
         Raises:
             LinkwrightError: see `AsyncSlamToolbox`.
@@ -46,7 +46,7 @@ class _Managed(ManagedNode):
         self._toolbox, self._services = self.kind.open(self)
 
     def activate(self) -> None:
-        """Begin to map."""
+        """Start mapping."""
         self._toolbox.start()
 
     def deactivate(self) -> None:
@@ -54,7 +54,7 @@ class _Managed(ManagedNode):
         self._toolbox.stop()
 
     def cleanup(self) -> None:
-        """Forget the map."""
+        """Drop the map."""
         if hasattr(self, "_toolbox"):
             self._services.close()
             self._toolbox.close()
@@ -62,7 +62,7 @@ class _Managed(ManagedNode):
 
 
 class AsyncSlamToolbox(SingleNode):
-    """The running node.
+    """The running node, which skips scans that it has no time for.
 
     Raises:
         LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201), SciPy is not installed (NAV101), or the
@@ -92,7 +92,7 @@ class AsyncSlamToolbox(SingleNode):
 
     @classmethod
     def open(cls, node: Node) -> tuple[Toolbox, ToolboxServices]:
-        """Read the parameters of a node, and make what works for it."""
+        """Read the parameters of a node, and make its toolbox."""
         toolbox = Toolbox(node, settings_of(node), keeps_all=cls.KEEPS_ALL, localizes=cls.LOCALIZES)
         return toolbox, ToolboxServices(toolbox, has_queue=cls.KEEPS_ALL, switches=cls.SWITCHES)
 
@@ -106,13 +106,13 @@ class AsyncSlamToolbox(SingleNode):
 
 
 class SyncSlamToolbox(AsyncSlamToolbox):
-    """The running node, which puts all scans into the map, however long that takes."""
+    """The running node, which processes all scans, however long that takes."""
 
     KEEPS_ALL = True
 
 
 class LocalizationSlamToolbox(AsyncSlamToolbox):
-    """The running node, which finds the robot in a saved map."""
+    """The running node, which localizes the robot in a saved map."""
 
     LOCALIZES = True
 

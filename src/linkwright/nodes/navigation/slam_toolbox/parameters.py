@@ -36,7 +36,7 @@ _WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What a node is told; lengths in metres, angles in radians, times in nanoseconds where the name says so.
+    """The parameters as one object; lengths in metres, angles in radians, times in nanoseconds where the name says so.
 
     Attributes:
         odom_frame: the frame of odometry.
@@ -82,7 +82,7 @@ class Settings:
 
 
 class _Declared:
-    """Declares parameters of a node, which may be declared already, and reads them."""
+    """Declares parameters of a node, unless they are declared, and reads them."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -116,7 +116,7 @@ class _Declared:
 
 
 def settings_of(node: Node) -> Settings:
-    """Declare the parameters of a node and read them; they may be declared already.
+    """Declare, unless they are declared, and read the parameters of a node.
 
     Raises:
         LinkwrightError: NODE433 for a value that means nothing, GRAPH201 for one of another type.
@@ -169,7 +169,7 @@ def _tell_replaced(node: Node) -> None:
 
 
 def _start(node: Node) -> Floats | None:
-    """Where the robot is in a map that is given; the node is told what it would not expect, as slam_toolbox does."""
+    """The initial pose in a saved map; surprising values are logged, as slam_toolbox does."""
     for name, kind in (("map_start_pose", ParameterType.DOUBLE_ARRAY), ("map_start_at_dock", ParameterType.BOOL)):
         if not node.has_parameter(name):
             node.declare_parameter(name, kind)

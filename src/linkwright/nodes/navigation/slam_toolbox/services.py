@@ -16,7 +16,7 @@ from linkwright.nodes.navigation.slam_toolbox.toolbox import Toolbox
 
 
 class ToolboxServices:
-    """What others ask a node to do, from when it is configured to when it is cleaned up.
+    """The services of a node while it is configured.
 
     Args:
         toolbox: does the work.
@@ -49,7 +49,7 @@ class ToolboxServices:
             self._parts.append(node.create_subscription(kind, "/initialpose", self._on_initial_pose, 1))
 
     def close(self) -> None:
-        """Take them off the graph."""
+        """Remove the services."""
         for part in self._parts:
             part.destroy()
 

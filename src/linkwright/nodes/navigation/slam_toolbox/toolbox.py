@@ -1,4 +1,4 @@
-"""What all nodes of slam_toolbox do: scans in; the map, the pose, and where odometry lies in the map, out.
+"""The work of slam_toolbox's nodes: processes scans; publishes the map, the pose, and the transform of odometry.
 
 Work that takes long is done in steps of some milliseconds, between which other callbacks run. A scan that comes
 meanwhile is dropped, unless the node is the synchronous one.
@@ -47,7 +47,7 @@ _COMPLAINTS = 5.0
 
 
 class Toolbox:
-    """The work of a node, from when it is configured to when it is cleaned up.
+    """The work of a node while it is configured.
 
     Args:
         node: on the graph.
@@ -98,7 +98,7 @@ class Toolbox:
         self._jumped = node.create_guard_condition(self._time_jumped)
 
     def start(self) -> None:
-        """Listen to scans, and publish."""
+        """Subscribe to scans, and publish."""
         node, settings = self.node, self.settings
         scans = get_message("sensor_msgs/msg/LaserScan")
         self._active = [
@@ -113,7 +113,7 @@ class Toolbox:
             self._begin(self._drawn())
 
     def stop(self) -> None:
-        """Stop listening and publishing; the map stays."""
+        """Stop; the map stays."""
         if self._active:
             self._jumps.unregister()
         for part in self._active:
@@ -123,7 +123,7 @@ class Toolbox:
         self.queue.clear()
 
     def close(self) -> None:
-        """Let go of everything."""
+        """Remove everything that was made."""
         self.stop()
         self._drop_work()
         self._listener.unregister()
@@ -139,7 +139,7 @@ class Toolbox:
     # --- what services and topics ask for ----------------------------------------------------------------------------
 
     def reset(self) -> None:
-        """Begin a new map; who localises keeps it and begins anew in it."""
+        """Start a new map; when localizing, restart in the same map."""
         self._drop_work()
         self._pending = None
         self.queue.clear()
@@ -151,7 +151,7 @@ class Toolbox:
         self._published = False
 
     def load(self, name: str, start: Floats | None) -> None:
-        """Go on with a saved graph, from a pose of shape (3,), or from where its first scan was taken.
+        """Load a saved graph, at a pose of shape (3,), or where its first scan was taken.
 
         Raises:
             LinkwrightError: NAV501, it cannot be read.
@@ -166,17 +166,17 @@ class Toolbox:
             self._begin(self._drawn())
 
     def place(self, pose: Floats) -> None:
-        """Have the robot searched around a pose of the map, of shape (3,)."""
+        """Search the robot around a pose of the map, of shape (3,)."""
         self._drop_work()
         self.queue.clear()
         self.mapper.begin_session(pose)
 
     def grid(self) -> Grid | None:
-        """The map as it is; None while there is none."""
+        """The map now; None if there is none."""
         return self.mapper.occupancy.grid()
 
     def map_message(self) -> Any | None:
-        """The map as nav_msgs/OccupancyGrid; None while there is none."""
+        """The map as nav_msgs/OccupancyGrid; None if there is none."""
         grid = self.grid()
         if grid is None:
             return None
@@ -197,7 +197,7 @@ class Toolbox:
             self._look()
 
     def _look(self) -> None:
-        """Take the scan that waits, if it is known where the robot was."""
+        """Take the waiting scan once its transform is known."""
         if self._pending is None:
             return
         message, since_ns = self._pending
@@ -312,7 +312,7 @@ class Toolbox:
     # --- what is published again and again ---------------------------------------------------------------------------
 
     def publish_map(self) -> None:
-        """Publish the map, its size, and the graph, as far as there is a map."""
+        """Publish the map, its metadata, and the graph, if there is a map."""
         message = self.map_message()
         if message is None:
             return
@@ -340,10 +340,10 @@ class Toolbox:
         self.reset()
 
     def pause(self, paused: bool) -> None:
-        """Stop taking in scans, or go on."""
+        """Pause taking scans, or resume."""
         self.node.set_parameters([Parameter("paused_new_measurements", value=paused)])
 
 
 def _planar(pose: Transform) -> Floats:
-    """The pose in the plane of one in space."""
+    """The planar pose of a pose in space."""
     return np.array((pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]))
