@@ -14,7 +14,7 @@ _CLOCK = "/clock"
 
 
 def examine_clocks(seen: Observation) -> Iterator[Diagnostic]:
-    """What is wrong with time."""
+    """Find problems of stamps and of simulated time."""
     yield from _simulated(seen)
     yield from _stamps(seen)
 

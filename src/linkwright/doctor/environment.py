@@ -21,7 +21,7 @@ _OVER_ZENOH = phrase(
 
 
 def examine_environment(seen: Observation) -> Iterator[Diagnostic]:
-    """Settings that keep nodes from seeing each other, and a graph with nobody in it."""
+    """Find settings that keep nodes from seeing each other, and report an empty graph."""
     if not seen.over_zenoh:
         yield from _domain(seen.environment.get("ROS_DOMAIN_ID", ""))
     if seen.nodes:

@@ -14,7 +14,7 @@ _ORDER = (Severity.ERROR, Severity.WARNING, Severity.INFO)
 
 
 def examine(seen: Observation) -> list[Diagnostic]:
-    """What is wrong with a running graph, the worst first: what, why, and how to mend it (codes ``DOC...``)."""
+    """Run all examinations; the findings (codes ``DOC...``), the worst first."""
     robots, found = robots_in(seen)
     found += examine_environment(seen)
     found += examine_frames(seen, robots)

@@ -16,7 +16,7 @@ _WORLD, _WORLD_POSES = "world", "/world_poses"
 
 
 def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """What is wrong with frames."""
+    """Find problems of frames and their transforms."""
     yield from _contradictions(seen)
     yield from _numbers(seen)
     circle = _circle(seen.transforms)
@@ -92,7 +92,7 @@ def _numbers(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
-    """The frames on a way from parent to parent that comes back to its start; empty when there is none."""
+    """The frames of a cycle of parents that a frame is in; empty if it is in none."""
     parent = {each.child: each.parent for each in transforms}
     done: set[str] = set()
     for start in parent:
@@ -108,7 +108,7 @@ def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
 
 
 def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
-    """Why the frames of a robot's links are not there; frames with the same reason together."""
+    """Findings on missing frames of a robot's links; frames with the same reason together."""
     there = {each.child for each in seen.transforms}
     without = [joint for joint in robot.joints if robot.frame(joint.child) not in there]
     if not without:
@@ -314,7 +314,7 @@ def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Di
 
 
 def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """Where there are transforms, messages in frames that have none; those of robots are told of as such."""
+    """Findings on messages in frames without a transform; those of robots are named as such."""
     if not seen.transforms:
         return
     known = {name for each in seen.transforms for name in (each.parent, each.child)}
@@ -341,7 +341,7 @@ def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Itera
 
 
 def _another(roots: Sequence[str]) -> Phrase:
-    """What to do about a fixed frame that is none of the frames."""
+    """A hint for a fixed frame that does not exist."""
     if not roots:
         return phrase("choose another Fixed Frame")
     if len(roots) == 1:

@@ -1,4 +1,4 @@
-"""What was observed of a running graph, as plain data for the examinations."""
+"""Observations of a running graph, as plain data for the examinations."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class StampSeen:
 
 @dataclass(frozen=True, slots=True)
 class FrameSeen:
-    """A frame that messages of one node on one topic are in.
+    """A frame of the messages of one node on one topic.
 
     Attributes:
         topic: where they came.
@@ -97,7 +97,7 @@ class FrameSeen:
 
 @dataclass(frozen=True, slots=True)
 class DriversSeen:
-    """Several nodes that sent velocities which contradict each other at the same time, on one topic.
+    """Nodes that sent contradicting velocities at the same time on one topic.
 
     Attributes:
         topic: where they came, as Twist or TwistStamped.
@@ -110,7 +110,7 @@ class DriversSeen:
 
 @dataclass(frozen=True, slots=True)
 class ClockSeen:
-    """What ``/clock`` told.
+    """The messages of ``/clock``.
 
     Attributes:
         ticks: how many times.
@@ -125,7 +125,7 @@ class ClockSeen:
 
 @dataclass(frozen=True, slots=True)
 class FixedFrame:
-    """A frame that a viewer shows everything in.
+    """The fixed frame of a viewer.
 
     Attributes:
         name: of the frame.
@@ -138,7 +138,7 @@ class FixedFrame:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """All that was seen.
+    """Everything that was observed.
 
     Attributes:
         seconds: for how long was looked.

@@ -23,7 +23,7 @@ _PADDING = 4
 
 
 def report(seen: Observation) -> str:
-    """The whole report."""
+    """All sections of the report."""
     return sections_text(
         [
             ("NETWORK CONFIGURATION", _network()),
@@ -39,7 +39,7 @@ def report(seen: Observation) -> str:
 
 
 def sections_text(sections: Iterable[Section]) -> str:
-    """Sections as ros2 doctor prints them."""
+    """Format sections as ros2 doctor does."""
     lines = []
     for title, items in sections:
         lines.append(f"\n   {title}")
@@ -63,7 +63,7 @@ def _network() -> list[tuple[str, str]]:
 
 
 def _address(interface: str) -> str:
-    """The IPv4 address of an interface; empty where it has none or the system does not tell."""
+    """The IPv4 address of an interface; empty if it has none or the system does not tell."""
     if not sys.platform.startswith("linux"):
         return ""
     import fcntl

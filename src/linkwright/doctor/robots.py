@@ -1,4 +1,4 @@
-"""Problems of robots: their descriptions, and the joint states published for them."""
+"""Problems of robots: their descriptions and joint states."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOVING = frozenset({"revolute", "continuous", "prismatic"})
 
 @dataclass(frozen=True, slots=True)
 class RobotSeen:
-    """A robot as a topic describes it.
+    """A robot whose description was observed on a topic.
 
     Attributes:
         topic: the topic.
@@ -50,7 +50,7 @@ class RobotSeen:
         return f"{self.prefix}{link}"
 
     def leader(self, joint: Joint) -> str:
-        """The name of the joint whose state places a joint: its own, or of the one it follows."""
+        """The name of the joint whose state positions a joint: its own, or that of the one it mimics."""
         followed: set[str] = set()
         while joint.mimic is not None and joint.name not in followed and joint.mimic.joint in self.model.joints:
             followed.add(joint.name)
@@ -59,7 +59,7 @@ class RobotSeen:
 
 
 def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
-    """The robots that can be read from the descriptions, and what is wrong with the others."""
+    """Read the robots from their descriptions, with findings on those that cannot be read."""
     robots: dict[tuple[str, str], RobotSeen] = {}
     found = []
     for each in seen.descriptions:
@@ -85,7 +85,7 @@ def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
 
 
 def _prefix(robot: Robot, seen: Observation) -> str:
-    """What stands before the names of most links in the frames that were seen; nothing where none does."""
+    """The prefix of most links' names among the observed frames; empty for none."""
     frames = {name for each in seen.transforms for name in (each.parent, each.child)}
     if any(link in frames for link in robot.links):
         return ""
@@ -94,7 +94,7 @@ def _prefix(robot: Robot, seen: Observation) -> str:
 
 
 def examine_robots(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    """What is wrong with descriptions and joint states."""
+    """Find problems of descriptions and joint states."""
     yield from _several_descriptions(seen)
     yield from _contradictions(seen)
     if len(robots) == 1:

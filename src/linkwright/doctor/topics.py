@@ -21,7 +21,7 @@ _MOST_DIFFERENT = 3
 
 
 def examine_topics(seen: Observation) -> Iterator[Diagnostic]:
-    """What is wrong with nodes, topics and services."""
+    """Find problems of nodes, topics and services."""
     yield from _same_names(seen)
     yield from _types(seen)
     yield from _qos(seen)
@@ -156,7 +156,7 @@ def _remedy(policy: QoSPolicyKind) -> Phrase:
 
 
 def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
-    """What an endpoint says of a policy, in the names that code and command lines have for it."""
+    """The value of a policy at an endpoint, in the names that code and command lines have for it."""
     value = getattr(endpoint.qos, policy.name.lower())
     if policy is QoSPolicyKind.LIVELINESS:
         return f"{value.name} ({endpoint.qos.liveliness_lease_duration})"
@@ -164,7 +164,7 @@ def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
 
 
 def _misnamed(seen: Observation) -> Iterator[tuple[str, str, list[EndpointInfo], str]]:
-    """Topics that nobody publishes, with type and subscriptions, and the published one that is probably meant."""
+    """Topics without a publisher, with type and subscriptions, and the published one that is probably meant."""
     published: dict[str, set[str]] = {}
     for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
         published.setdefault(endpoint.name, set()).add(endpoint.type_name)
@@ -210,7 +210,7 @@ def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
-    """Velocities that are meant to move something, and reach nobody."""
+    """Findings on velocities that nobody receives."""
     heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
     told = {like for _, _, _, like in _misnamed(seen)}
     taking = {
@@ -245,7 +245,7 @@ def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
-    """Several nodes that contradicted each other on one topic while it was looked."""
+    """Findings on nodes that contradicted each other on one topic."""
     for each in seen.disputed:
         yield Diagnostic(
             "DOC208",
@@ -261,7 +261,7 @@ def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _alike(name: str, candidates: list[str]) -> str | None:
-    """The candidate that is probably meant: one with the same last part in another namespace, or a near spelling."""
+    """The candidate that is probably meant: with the same last part in another namespace, or of similar spelling."""
     last = name.rpartition("/")[2]
     same_end = [each for each in candidates if each.rpartition("/")[2] == last]
     near = nearest(name, [each for each in candidates if abs(len(each) - len(name)) <= _MOST_DIFFERENT])
@@ -308,7 +308,7 @@ def _unserved(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def examine_lifecycle(seen: Observation) -> Iterator[Diagnostic]:
-    """Managed nodes that do nothing yet."""
+    """Findings on managed nodes that are not active."""
     waiting: dict[str, list[str]] = {}
     for node, state in seen.lifecycle.items():
         if state in ("unconfigured", "inactive"):

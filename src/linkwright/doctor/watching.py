@@ -77,7 +77,7 @@ async def observe(
     fixed_frames: Sequence[FixedFrame] = (),
     environment: Mapping[str, str] | None = None,
 ) -> Observation:
-    """What is seen of a graph.
+    """Observe a graph.
 
     Args:
         graph: joined with what runs outside; on the running event loop.
@@ -119,7 +119,7 @@ async def observe(
 
 
 class _Watcher:
-    """Subscribes to what can be told something from, and takes notes."""
+    """Subscribes to topics of interest, and records observations."""
 
     def __init__(self, graph: Graph, node: Node) -> None:
         self._graph = graph
@@ -143,7 +143,7 @@ class _Watcher:
         return [each for each in self._graph.endpoints() if not _is_tool(node_of(each)) and node_of(each) != self._own]
 
     async def until_named(self) -> None:
-        """Wait until it is known of every endpoint whose it is: of one just made that is told a moment after it.
+        """Wait until the node of every endpoint is known: of a new one it is discovered a moment later.
 
         Another command's endpoints would be taken for a part of what runs until then.
         """
@@ -158,7 +158,7 @@ class _Watcher:
         return self._node.get_fully_qualified_name()
 
     def subscribe(self) -> None:
-        """Subscribe to topics of interest that were not there before; who drives may be a tool (``topic pub``)."""
+        """Subscribe to new topics of interest; the publisher of velocities may be a tool (``topic pub``)."""
         for endpoint in self._graph.endpoints():
             key = (endpoint.name, endpoint.type_name)
             if _is_tool(node_of(endpoint)) and endpoint.type_name not in (TWIST, TWIST_STAMPED):
@@ -192,7 +192,7 @@ class _Watcher:
             self._listen(endpoint, lambda data, info: self._on_stamped(topic, data, info, driving=driving), raw=True)
 
     def _listen(self, endpoint: EndpointInfo, callback: Any, *, raw: bool = False) -> None:
-        """Subscribe so that every publisher matches; latched ones are asked for what they keep."""
+        """Subscribe with a profile that matches every publisher; latched ones are asked for their last messages."""
         offers = [each.qos for each in self._publishers(endpoint.name)]
         latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
         reliable = all(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
@@ -266,7 +266,7 @@ class _Watcher:
     # --- what is made of it ------------------------------------------------------------------------------------------
 
     def transforms(self) -> tuple[TransformSeen, ...]:
-        """The transforms, by parent and child; who sent them on one topic, as a bridge may hand on those of another."""
+        """The transforms, by parent and child; their senders by one topic, as a bridge may forward those of another."""
         return tuple(
             TransformSeen(parent, child, max(map(tuple, map(sorted, senders.values())), key=len), is_static, valid)
             for (parent, child), (senders, is_static, valid) in sorted(self._transforms.items())
@@ -280,7 +280,7 @@ class _Watcher:
         )
 
     def disputed(self) -> tuple[DriversSeen, ...]:
-        """Who contradicted each other, by topic."""
+        """The nodes that contradicted each other, by topic."""
         found = []
         for topic, dispute in sorted(self._disputes.items()):
             drivers = drivers_of(self._graph, publishers_of(self._graph, dispute.parties))
@@ -289,7 +289,7 @@ class _Watcher:
         return tuple(found)
 
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
-        """The stamps against the clock that their sender goes by: simulated time, where it follows or makes that.
+        """The stamps relative to the clock of their senders: simulated time, where they follow or make that.
 
         One that does not may hand stamps on that others made, so the nearer clock counts.
         """
@@ -307,25 +307,25 @@ class _Watcher:
         return tuple(found)
 
     def frames_seen(self) -> tuple[FrameSeen, ...]:
-        """The frames that messages are in, by topic and sender; what names none is left out."""
+        """The frames of messages, by topic and sender; empty ones are left out."""
         named = sorted(each for each in self._frames.items() if each[1])
         return tuple(FrameSeen(topic, sender, frame) for (topic, sender), frame in named)
 
     # --- what is asked -----------------------------------------------------------------------------------------------
 
     async def sim_time(self) -> dict[str, bool]:
-        """``use_sim_time`` of each node that answers."""
+        """``use_sim_time`` of each node that responds."""
         kind = "rcl_interfaces/srv/GetParameters"
         answers = await self._ask_all(kind, "get_parameters", names=["use_sim_time"])
         return {node: bool(answer.values[0].bool_value) for node, answer in answers.items() if answer.values}
 
     async def lifecycle(self) -> dict[str, str]:
-        """The state of each managed node that answers."""
+        """The state of each managed node that responds."""
         answers = await self._ask_all("lifecycle_msgs/srv/GetState", "get_state")
         return {node: answer.current_state.label for node, answer in answers.items()}
 
     async def fixed_frames(self) -> list[FixedFrame]:
-        """The Fixed Frame of each viewer that has it as a parameter, as Linkwright's has."""
+        """The fixed frame of each viewer that has it as a parameter, as Linkwright's has."""
         subscriptions = [each for each in self.endpoints() if each.kind is EndpointKind.SUBSCRIPTION]
         viewers = {node_of(each) for each in subscriptions if each.type_name == _TF}
         package = "rcl_interfaces/srv"
@@ -336,7 +336,7 @@ class _Watcher:
         return [FixedFrame(answer.values[0].string_value, f"'{node}'") for node, answer in sorted(answers.items())]
 
     async def _ask_all(self, kind: str, service: str, among: set[str] | None = None, **fields: Any) -> dict[str, Any]:
-        """The answers of the nodes that serve something and answer in time, by their full names."""
+        """The responses of the nodes with a service, as far as they come in time, by their full names."""
         from linkwright.messages import get_service
 
         served = {
@@ -363,14 +363,14 @@ async def _result(future: Future[Any]) -> Any:
 
 
 def _frame_of(data: bytes) -> str:
-    """The frame in the header that a message begins with, as CDR; the rest of the message is not read."""
+    """The frame in the header at the beginning of a message in CDR; the rest of the message is not read."""
     start = _CDR_HEADER + _STAMP[0].size
     size = int.from_bytes(data[start : start + 4], "little" if data[1] & 1 else "big")
     return data[start + 4 : start + 4 + size].rstrip(b"\0").decode(errors="replace").lstrip("/")
 
 
 def _is_tool(full_name: str) -> bool:
-    """Whether a node is one of a command that looks at the graph, which is no part of what runs."""
+    """Whether a node belongs to a command that looks at the graph."""
     return full_name.rpartition("/")[2].startswith("_ros2cli")
 
 
