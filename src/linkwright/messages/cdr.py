@@ -106,7 +106,7 @@ def _unwritable(message: object, fault: Exception) -> MessageDataError:
 
 
 def _bad_field(message: Message, path: str) -> str | None:
-    """Which field has a value that it could not be given now, and why, in the words of the checks on assignment."""
+    """The field whose value could not be assigned now, and why, in the words of the checks on assignment."""
     for field in definition_of(type(message)).fields:
         here = f"{path}.{field.name}" if path else field.name
         try:

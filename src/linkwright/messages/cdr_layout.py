@@ -1,4 +1,4 @@
-"""What both directions of the CDR code know: alignment as far as it is known beforehand, sizes, and runs of fields.
+"""Layout of CDR that reader and writer share: alignment as far as it is known beforehand, sizes, runs of fields.
 
 CDR (OMG, classic, "XCDR1") puts each primitive at a multiple of its size, counted from behind the four header bytes.
 Behind text or a sequence the place is known only in part, such as "a multiple of four": generated code then pads where
@@ -20,7 +20,7 @@ DEEPEST_LOOP = 5
 
 
 class Place(NamedTuple):
-    """What is known of a position: that it leaves `rest` when divided by `modulus` (1, 2, 4 or 8)."""
+    """What is known of a position: its remainder `rest` when divided by `modulus` (1, 2, 4 or 8)."""
 
     modulus: int
     rest: int
@@ -34,7 +34,7 @@ class Place(NamedTuple):
         return (-self.rest) % size if self.modulus >= size else None
 
     def met(self, other: Place) -> Place:
-        """What holds at both places."""
+        """The knowledge that holds at both places."""
         modulus = min(self.modulus, other.modulus)
         while (self.rest - other.rest) % modulus:
             modulus //= 2
@@ -46,7 +46,7 @@ ANYWHERE = Place(1, 0)
 
 
 class Facts(NamedTuple):
-    """What is known of a structure.
+    """Facts on a structure.
 
     Attributes:
         least: the fewest bytes it takes on the wire, padding left out.
@@ -63,7 +63,7 @@ _facts: dict[str, Facts] = {}
 
 
 def facts(structure: Structure) -> Facts:
-    """What is known of a structure."""
+    """The facts on a structure."""
     found = _facts.get(structure.type_name)
     if found is None:
         each = [field_facts(field) for field in structure.wire_fields]
@@ -73,7 +73,7 @@ def facts(structure: Structure) -> Facts:
 
 
 def field_facts(field: Field) -> Facts:
-    """What is known of a field."""
+    """The facts on a field."""
     kind = field.type
     primitive = PRIMITIVES.get(kind.base)
     if kind.container is Container.SEQUENCE:

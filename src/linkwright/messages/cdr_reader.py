@@ -44,7 +44,7 @@ Order = Literal["<", ">"]
 
 
 def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") -> Callable[[bytes], Any]:
-    """The function that makes a message of bytes, header included.
+    """Compile the function that makes a message of bytes, header included.
 
     Args:
         structure: what is read.
@@ -61,7 +61,7 @@ def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") 
 
 
 def _compile_part(structure: Structure, class_of: ClassOf, order: Order) -> Callable[..., Any]:
-    """The function that reads a nested structure at a place and returns it and where it ends."""
+    """Compile the function that reads a nested structure at a place, and returns it and its end."""
     found = _parts.get((structure.type_name, order))
     if found is None:
         code = _ReaderCode(ANYWHERE, class_of, order, known=None)
@@ -100,7 +100,7 @@ class _ReaderCode:
     # --- structures and fields ------------------------------------------------------------------------------
 
     def made(self, structure: Structure) -> str:
-        """A new object of the structure's class, in a variable."""
+        """Make an object of the structure's class, in a variable."""
         name = f"m{next(self._names)}"
         self._line(f"{name} = new({self._given(self._class_of(structure), 'C')})")
         return name
@@ -229,7 +229,7 @@ class _ReaderCode:
         self.place = ANYWHERE
 
     def _repeated(self, field: Field, target: str, length: str) -> None:
-        """A loop. Its beginning is known as far as it is the same the first and every further time."""
+        """Write a loop; its beginning has the alignment that is known for the first and all further rounds."""
         one = FieldType(field.type.base, field.type.string_bound)
         self._move_on()
         values, value = f"l{next(self._names)}", f"x{next(self._names)}"
@@ -277,7 +277,7 @@ class _ReaderCode:
             self.place = self.place.after(padding)
 
     def end_run(self) -> None:
-        """Unpack what has been collected."""
+        """Unpack the collected fields."""
         if not self._run:
             return
         form = struct.Struct(self._order + "".join(code for code, _ in self._run))
@@ -304,7 +304,7 @@ class _ReaderCode:
         return "p" if self._known is None else str(self._known)
 
     def _move_on(self) -> None:
-        """End the run; from here on the place is in `p` alone."""
+        """End the run; from here on the position is in `p` alone."""
         self.end_run()
         if self._known is not None:
             self._line(f"p = {self._known}")

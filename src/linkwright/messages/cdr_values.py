@@ -1,4 +1,4 @@
-"""What generated CDR code calls at run time: texts and sequences of texts on the wire, and the faults of bad data.
+"""Run-time support of generated CDR code: texts and sequences of texts, and the errors of bad data.
 
 Publishers send the same names again and again. So the bytes of a short text, and of a list of texts, are remembered
 when they were written, and the list of texts when its bytes were read: the names of twelve joints cost one comparison.
@@ -111,7 +111,7 @@ def read_texts(data: bytes, at: int, count: int) -> tuple[list[str], int]:
 
 
 def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
-    """The numbers that lie in a part of a message; checks that the message is that long."""
+    """The numbers in a part of a message; checks that the message is that long."""
     if end > len(data):
         truncated()
     if end - start <= _COPIED_AT_ONCE:
@@ -122,7 +122,7 @@ def read_numbers(code: str, data: bytes, start: int, end: int) -> array[Any]:
 
 
 def read_bools(data: bytes, start: int, end: int) -> list[bool]:
-    """The bools that lie in a part of a message; checks that the message is that long."""
+    """The bools in a part of a message; checks that the message is that long."""
     raw = data[start:end]
     if len(raw) < end - start:
         truncated()
@@ -132,7 +132,7 @@ def read_bools(data: bytes, start: int, end: int) -> list[bool]:
 
 
 def read_bytes(data: bytes, start: int, end: int) -> list[bytes]:
-    """Single bytes that lie in a part of a message; checks that the message is that long."""
+    """The single bytes in a part of a message; checks that the message is that long."""
     if end > len(data):
         truncated()
     return [data[at : at + 1] for at in range(start, end)]
@@ -162,26 +162,26 @@ def write_wide_text(text: str) -> bytes:
 
 
 def truncated() -> None:
-    """The data ends before the message does, or a length in it is nonsense."""
+    """The error for data that end before the message does, or for an impossible length in them."""
     raise DataFaultError(phrase("the data ends in the middle of the message, or a length in it is wrong"))
 
 
 def unterminated() -> None:
-    """A text without the NUL that belongs behind it."""
+    """The error for a text without NUL at its end."""
     raise DataFaultError(phrase("a text in it does not end where its length says"))
 
 
 def bad_bool(value: int) -> None:
-    """A byte that is neither of the two."""
+    """The error for a bool that is neither 0 nor 1."""
     raise DataFaultError(phrase("a bool in it is {value}", value=value))
 
 
 def too_long(name: str, bound: int) -> None:
-    """More than a bound allows."""
+    """The error for more values than a bound allows."""
     raise DataFaultError(phrase("'{name}' is longer than its bound of {bound}", name=name, bound=bound))
 
 
 def check_bounds(name: str, texts: list[str], bound: int) -> None:
-    """See to it that none of the texts is longer than a bound."""
+    """Check that none of the texts is longer than a bound."""
     if any(len(text) > bound for text in texts):
         too_long(name, bound)

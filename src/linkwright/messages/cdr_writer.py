@@ -51,7 +51,7 @@ _parts: dict[str, Callable[..., int]] = {}
 
 
 def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
-    """The function that turns a message of this structure into bytes."""
+    """Compile the function that turns a message of this structure into bytes."""
     code = _WriterCode(START)
     code.pack("I", str(_HEADER), place=START)
     code.structure(structure, "m", 0)
@@ -61,7 +61,7 @@ def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
 
 
 def _compile_part(structure: Structure) -> Callable[..., int]:
-    """The function that appends the pieces of a nested structure to a list and returns where they end."""
+    """Compile the function that appends the pieces of a nested structure to a list and returns their end."""
     found = _parts.get(structure.type_name)
     if found is None:
         code = _WriterCode(ANYWHERE)
@@ -230,7 +230,7 @@ class _WriterCode:
         self._piece(self._named(piece), ANYWHERE)
 
     def _repeated(self, values: str, write: Callable[[str], None]) -> None:
-        """A loop. Its beginning is known as far as it is the same the first and every further time."""
+        """Write a loop; its beginning has the alignment that is known for the first and all further rounds."""
         self.flush()
         self.sync()
         before = self.place
@@ -267,13 +267,13 @@ class _WriterCode:
             self._advance(padding)
 
     def pack(self, code: str, value: str, place: Place | None = None) -> None:
-        """One primitive, at a place that is aligned for it; with `place` it counts as not being there."""
+        """Pack one primitive at an aligned place; with `place` it is not counted."""
         self._run.append((code, value))
         if place is None:
             self._advance(struct.calcsize("<" + code))
 
     def flush(self) -> None:
-        """Put what there is into the list of pieces."""
+        """Append the collected fields to the list of pieces."""
         self._end_run()
         if self._pieces:
             self._uses_list = True
@@ -281,7 +281,7 @@ class _WriterCode:
             self._pieces = []
 
     def sync(self) -> None:
-        """Let the variable `p` say where we are."""
+        """Set the variable `p` to the position."""
         if self._unsynced:
             numbers = sum(int(each) for each in self._unsynced if each.isdigit())
             terms = [each for each in self._unsynced if not each.isdigit()]

@@ -40,7 +40,7 @@ _fixed_as_humble = True
 
 
 def keep_to_ros(*, as_humble: bool) -> None:
-    """Take from now on, in this process, only what the classes of ROS 2 take.
+    """Accept, in this process, only what the classes of ROS 2 accept from now on.
 
     Args:
         as_humble: constructors convert what they are given for fixed arrays, as up to Humble; else they check it.
@@ -50,12 +50,12 @@ def keep_to_ros(*, as_humble: bool) -> None:
 
 
 def refuse_arguments(names: Iterable[str]) -> NoReturn:
-    """For a constructor that was given names of no field."""
+    """Refuse arguments of a constructor that name no field."""
     raise AssertionError("Invalid arguments passed to constructor: " + ", ".join(sorted(names)))
 
 
 def check_int(name: str, value: Any, low: int, high: int) -> int:
-    """An integer in its range; bools are integers, numpy's are none (as in rclpy)."""
+    """Check an integer in its range; bools are integers, numpy's are none (as in rclpy)."""
     if not isinstance(value, int):
         raise AssertionError(f"The '{name}' field must be of type 'int'")  # noqa: TRY004 - rclpy\'s
     if not low <= value <= high:
@@ -65,7 +65,7 @@ def check_int(name: str, value: Any, low: int, high: int) -> int:
 
 
 def check_float(name: str, value: Any, high: float) -> float:
-    """A float in its range; integers are none (as in rclpy)."""
+    """Check a float in its range; integers are none (as in rclpy)."""
     if not isinstance(value, float):
         raise AssertionError(f"The '{name}' field must be of type 'float'")  # noqa: TRY004 - rclpy\'s
     if (value < -high or value > high) and not math.isinf(value):
@@ -75,21 +75,21 @@ def check_float(name: str, value: Any, high: float) -> float:
 
 
 def check_bool(name: str, value: Any) -> bool:
-    """A bool."""
+    """Check a bool."""
     if not isinstance(value, bool):
         raise AssertionError(f"The '{name}' field must be of type 'bool'")  # noqa: TRY004 - rclpy\'s
     return value
 
 
 def check_byte(name: str, value: Any) -> bytes:
-    """Bytes of length 1."""
+    """Check bytes of length 1."""
     if not (isinstance(value, (bytes, bytearray)) and len(value) == 1):
         raise AssertionError(f"The '{name}' field must be of type 'bytes' or 'ByteString' with length 1")
     return bytes(value)
 
 
 def check_text(name: str, value: Any, bound: int | None) -> str:
-    """Text no longer than its bound."""
+    """Check a text and its bound."""
     if bound is None:
         if not isinstance(value, str):
             raise AssertionError(f"The '{name}' field must be of type 'str'")
@@ -99,14 +99,14 @@ def check_text(name: str, value: Any, bound: int | None) -> str:
 
 
 def check_message(name: str, value: Any, cls: type) -> Any:
-    """A message of the field's class."""
+    """Check a message of the field's class."""
     if not isinstance(value, cls):
         raise AssertionError(f"The '{name}' field must be a sub message of type '{cls.__name__}'")  # noqa: TRY004 - rclpy\'s
     return value
 
 
 def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
-    """Several bools, bytes, texts or messages; the list that was given is kept."""
+    """Check several bools, bytes, texts or messages; the list is kept."""
     if cls is bool and not _keeps_to_ros and is_array(value) and value.dtype.kind == "b":
         value = value.ravel().tolist()
     if not (
@@ -120,7 +120,7 @@ def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
 
 
 def check_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
-    """A fixed number of numbers, kept as a numpy array."""
+    """Check a fixed number of numbers, kept as a numpy array."""
     import numpy as np
 
     primitive = cast(Primitive, kind.primitive)
@@ -134,7 +134,7 @@ def check_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
 
 
 def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
-    """Any number of numbers, kept as an ``array.array``; one of the right type is kept as it is."""
+    """Check any number of numbers, kept as an ``array.array``; one of the right type is kept as it is."""
     primitive = cast(Primitive, kind.primitive)
     assert primitive.array_code is not None
     if isinstance(value, array):
@@ -153,7 +153,7 @@ def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 
 def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
-    """What a constructor makes of numbers: as rclpy's, it takes integers for floats."""
+    """Convert numbers for a constructor, which takes integers for floats, as rclpy's does."""
     assert kind.primitive is not None
     code = kind.primitive.array_code
     assert code is not None
@@ -165,7 +165,7 @@ def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
 
 
 def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
-    """What a constructor makes of numbers for a fixed array."""
+    """Convert numbers for a constructor of a fixed array."""
     import numpy as np
 
     primitive = cast(Primitive, kind.primitive)
@@ -263,7 +263,7 @@ def _from_buffer(name: str, value: bytes | bytearray | memoryview, kind: FieldTy
 
 
 def _wanted(kind: FieldType, python: type) -> str:
-    """What a field of several values must be, in rclpy's words."""
+    """The description of a valid value of a field with several, in rclpy's words."""
     words = ["a set or sequence"]
     if kind.container is Container.ARRAY:
         words.append(f"with length {kind.size}")

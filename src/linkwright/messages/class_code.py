@@ -1,4 +1,4 @@
-"""Writes the Python code of a message class: constructor and setters, each as short as its field allows.
+"""Generating the Python code of a message class: constructor and setters, each as short as its field allows.
 
 Setters and constructors test for the usual case in line (``value.__class__ is float``) and leave all others to
 `linkwright.messages.checks`. A field's property reads its slot by a C function, so a read costs what a read costs.
@@ -16,7 +16,7 @@ from linkwright.messages.definition import Container, Field, Structure
 
 
 def build_class(structure: Structure, base: type, classes: dict[str, type], module: str) -> type:
-    """The class of a structure.
+    """Build the class of a structure.
 
     Args:
         structure: what it holds.
@@ -65,7 +65,7 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
 
 
 class _FieldCode:
-    """The code about one field."""
+    """The code for one field."""
 
     def __init__(self, field: Field, classes: dict[str, type], scope: dict[str, Any]) -> None:
         self.field = field
@@ -87,7 +87,7 @@ class _FieldCode:
         return "" if keyword.iskeyword(self.name) else f"{self.name}=U, "
 
     def initial(self) -> str:
-        """The lines of the constructor about this field."""
+        """The lines of the constructor for this field."""
         name = argument = self.name
         lines = ""
         if keyword.iskeyword(name):
@@ -137,13 +137,13 @@ class _FieldCode:
         return f"    if not ({self._usual('value')}): value = Checks.{check}\n"
 
     def _usual_length(self) -> str:
-        """The further test for several values whose number is bounded."""
+        """The expression that tests the length of several values with a bound."""
         if self.kind.size is None:
             return ""
         return f" and len(value) {'==' if self.kind.container is Container.ARRAY else '<='} {self.kind.size}"
 
     def _usual(self, value: str) -> str:
-        """The test for the usual case of a single value, in which it is kept as it is."""
+        """The expression that tests for the usual case of a single value, which is kept as it is."""
         kind, primitive = self.kind, self.kind.primitive
         if primitive is None:
             return f"{value}.__class__ is C_{self.name}"
@@ -164,7 +164,7 @@ class _FieldCode:
         return self.kind.container is Container.ONE
 
     def _default(self) -> Any:
-        """The default value that the definition gives, as the field holds it; None where it gives none."""
+        """The default value of the definition, as the field holds it; None without one."""
         value = self.field.default
         if value is None or self._is_plain():
             return value

@@ -70,7 +70,7 @@ def class_of(structure: Structure) -> type[Any]:
 
 
 def add_class(message_class: type[Message]) -> None:
-    """Have a class that was written by hand stand for its type."""
+    """Register a class that was written by hand for its type."""
     _classes[message_class.TYPE_NAME] = message_class
 
 
@@ -156,7 +156,7 @@ def _make_action(action: Action) -> type:
 
 
 class _LazyClass:
-    """A class attribute that is a message class, made when somebody looks."""
+    """A class attribute with a message class, made on first access."""
 
     def __init__(self, structure: Structure) -> None:
         self._structure = structure

@@ -1,4 +1,4 @@
-"""Messages as plain data and as comma-separated values, the way rosidl_runtime_py has them."""
+"""Converting messages to plain data and to comma-separated values, as rosidl_runtime_py does."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def to_csv(message: Message, *, truncate_length: int | None = None, no_arr: bool
 
 
 def abbreviated(kind: FieldType, value: Any) -> str:
-    """What an array or a sequence is, instead of what it holds: ``<sequence type: double, length: 12>``."""
+    """The type and length of an array or sequence, in place of its values: ``<sequence type: double, length: 12>``."""
     primitive = PRIMITIVES.get(kind.base)
     name = kind.base if primitive is None else primitive.idl_name
     if kind.container is Container.ARRAY:
@@ -73,7 +73,7 @@ def abbreviated(kind: FieldType, value: Any) -> str:
 
 
 def abbreviated_text(text: str) -> str:
-    """How long a text is, instead of what it says."""
+    """The length of a text, in place of it."""
     return f"<string length: <{len(text)}>>"
 
 

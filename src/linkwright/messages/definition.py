@@ -71,7 +71,7 @@ EMPTY_MEMBER = "structure_needs_at_least_one_member"
 
 
 class Container(Enum):
-    """How many values a field holds."""
+    """The kinds of containers in fields."""
 
     ONE = "one"
     ARRAY = "array"
@@ -95,7 +95,7 @@ class FieldType(NamedTuple):
 
     @property
     def primitive(self) -> Primitive | None:
-        """What is known of the base type; None for another structure."""
+        """The primitive type; None for another structure."""
         return PRIMITIVES.get(self.base)
 
     @property
@@ -105,7 +105,7 @@ class FieldType(NamedTuple):
         return self.container is not Container.ONE and primitive is not None and primitive.array_code is not None
 
     def spelled(self, package: str | None = None) -> str:
-        """As a ``.msg`` file of `package` has it, such as ``geometry_msgs/Point[<=3]`` or ``string<=10``."""
+        """The type as in a ``.msg`` file of `package`, such as ``geometry_msgs/Point[<=3]`` or ``string<=10``."""
         text = self.base
         if "/" in text:
             owner, _, name = text.split("/")
@@ -119,7 +119,7 @@ class FieldType(NamedTuple):
         return text
 
     def described(self) -> str:
-        """As ``get_fields_and_field_types`` has it, such as ``sequence<double, 3>`` or ``geometry_msgs/Point[3]``."""
+        """The type as ``get_fields_and_field_types`` has it: ``sequence<double, 3>``, ``geometry_msgs/Point[3]``."""
         primitive = self.primitive
         if primitive is not None:
             text = primitive.idl_name
@@ -158,7 +158,7 @@ class Constant(NamedTuple):
 
 
 class Structure(NamedTuple):
-    """What a message holds; requests, goals and the like are such structures too.
+    """The content of a message; requests, goals and the like are such structures too.
 
     Attributes:
         type_name: such as ``geometry_msgs/msg/Point`` or ``std_srvs/srv/SetBool_Request``.
@@ -172,7 +172,7 @@ class Structure(NamedTuple):
 
     @property
     def wire_fields(self) -> tuple[Field, ...]:
-        """The fields with rosidl's filler where there would be none."""
+        """The fields, with rosidl's filler if there are none."""
         return self.fields or (Field(EMPTY_MEMBER, FieldType("uint8")),)
 
     @property
@@ -224,7 +224,7 @@ _GOAL_ID = Field("goal_id", FieldType("unique_identifier_msgs/msg/UUID"))
 
 
 def event_of(service: Service) -> Structure:
-    """What a service's introspection topic carries (REP 2012)."""
+    """The message of a service's introspection topic (REP 2012)."""
     return Structure(
         service.type_name + "_Event",
         (
@@ -236,7 +236,7 @@ def event_of(service: Service) -> Structure:
 
 
 def send_goal_of(action: Action) -> Service:
-    """The service that asks an action server to take a goal."""
+    """The service of an action server that accepts goals."""
     name = action.type_name + "_SendGoal"
     return Service(
         name,
@@ -249,7 +249,7 @@ def send_goal_of(action: Action) -> Service:
 
 
 def get_result_of(action: Action) -> Service:
-    """The service that answers with a goal's status and result once it has come to its end."""
+    """The service of an action server that returns a goal's status and result after its end."""
     name = action.type_name + "_GetResult"
     return Service(
         name,
@@ -262,14 +262,14 @@ def get_result_of(action: Action) -> Service:
 
 
 def feedback_message_of(action: Action) -> Structure:
-    """What the feedback topic carries: the feedback, and which goal it is of."""
+    """The message of an action's feedback topic: the feedback, and the id of its goal."""
     return Structure(
         action.type_name + "_FeedbackMessage", (_GOAL_ID, Field("feedback", FieldType(action.feedback.type_name)))
     )
 
 
 def parts_of(definition: Definition) -> dict[str, Definition]:
-    """Everything rosidl makes of an interface file: type name -> definition, itself included."""
+    """Everything that rosidl makes of an interface file: type name -> definition, itself included."""
     parts: dict[str, Definition] = {definition.type_name: definition}
     if isinstance(definition, Service):
         for structure in (definition.request, definition.response, event_of(definition)):

@@ -1,4 +1,4 @@
-"""Which distribution of ROS 2 is meant, where they differ."""
+"""The distribution of ROS 2 to follow where they differ."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def is_before_kilted(variables: Mapping[str, str] = os.environ) -> bool:
 
 
 def checks_fields_as_ros(variables: Mapping[str, str] = os.environ) -> bool:
-    """Whether values of fields are to be judged as ROS 2 judges them, without what we take beyond it.
+    """Whether values of fields are checked as ROS 2 does, without what we accept beyond it.
 
     So it is for who names Humble or an earlier distribution, and where ``ROS_PYTHON_CHECK_FIELDS`` asks for it, as in
     the newer ones, which else take what comes.

@@ -1,4 +1,4 @@
-"""Definitions that come with data: recordings carry those of their messages.
+"""Definitions that recordings carry for their messages.
 
 The text of one message comes first, then those of the messages in it, each after a line of ``=`` and one that names it
 (``MSG: geometry_msgs/Point``; ``IDL:`` for those in IDL). That is MCAP's ``ros2msg`` and ``ros2idl``, and rosbag2's in
@@ -17,7 +17,7 @@ _NEXT = re.compile(r"^={10,}\s*\n(MSG|IDL): *(\S+) *\n?", re.MULTILINE)
 
 
 def add_definitions(type_name: str, text: str, origin: str, *, idl: bool = False) -> None:
-    """Make a message known by the definitions that come with it, and those in it.
+    """Register the definition of a message, and of those in it, from data.
 
     Interfaces that come with Linkwright and those of the workspace go before, and of two texts for one name the first.
     The texts are read when their messages are asked for, and what is wrong with them is told then.

@@ -10,25 +10,25 @@ class InterfaceNotFoundError(LinkwrightError):
 
 
 class DefinitionError(LinkwrightError):
-    """An interface file that cannot be used; one diagnostic for each mistake in it."""
+    """An interface file cannot be used; one diagnostic for each mistake in it."""
 
 
 class MessageDataError(LinkwrightError, ValueError):
-    """Bytes that are no message of the type, or a message that cannot be written as bytes."""
+    """Bytes are no message of the type, or a message cannot be written as bytes."""
 
 
 class FieldValueError(LinkwrightError, ValueError):
-    """Values, as a user writes them in YAML, that do not fit the fields of a message."""
+    """Values of YAML do not fit the fields of a message."""
 
 
 class UnknownFieldError(FieldValueError, AttributeError):
-    """A field that the message does not have."""
+    """A message lacks a field."""
 
 
 class WrongValueError(FieldValueError, TypeError):
-    """A value that a field cannot have."""
+    """A field cannot have a value."""
 
 
 def data_error(code: str, message: Phrase, hint: Phrase | None = None) -> MessageDataError:
-    """The error for bytes or for a message on its way to them."""
+    """The error for bytes that cannot be read, or for a message that cannot be written."""
     return MessageDataError(Diagnostic(code, message, hint=hint))

@@ -51,11 +51,11 @@ def set_fields(
 
 
 class _Unfit(Exception):  # noqa: N818 - becomes a diagnostic
-    """A value that a field cannot have; says what it should have been."""
+    """A value does not fit a field; says what it should have been."""
 
 
 class _Setter:
-    """Sets fields and keeps what is wrong with them, all of it."""
+    """Sets fields and collects all mistakes."""
 
     def __init__(self, expand_header: bool, expand_time: bool) -> None:
         self._expand_header = expand_header

@@ -58,7 +58,7 @@ class _Token(NamedTuple):
 
 
 def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
-    """What an ``.idl`` file defines.
+    """Parse an ``.idl`` file.
 
     Args:
         source: the text of the file.
@@ -114,7 +114,7 @@ class _Reader:
     # --- definitions ----------------------------------------------------------------------------------------
 
     def definitions(self, scope: tuple[str, ...]) -> None:
-        """Read what stands in a module, or in the file."""
+        """Parse the content of a module, or of the file."""
         while self._now.kind != "end" and self._now.text != "}":
             self._annotations()
             word = self._take("name")
@@ -335,7 +335,7 @@ class _Reader:
 
 
 def _plain(token: _Token) -> str:
-    """A value as the files of the other language have it."""
+    """A literal in the form of ``.msg`` files."""
     if token.kind == "text":
         return token.text.removeprefix("L")
     if token.kind == "number" and not token.text.lower().startswith(("0x", "-0x")):

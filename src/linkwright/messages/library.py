@@ -93,7 +93,7 @@ class Library:
         return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
 
     def carry(self, type_name: str, source: SourceText) -> None:
-        """Note the text of a message that data brought along; the first of a name counts.
+        """Register the text of a message that came with data; the first of a name is kept.
 
         Args:
             type_name: the message's.
@@ -137,7 +137,7 @@ class Library:
         raise InterfaceNotFoundError(self._unknown(name, kinds))
 
     def _load(self, full: str) -> Definition | None:
-        """Read the file of an interface, and take note of all that rosidl makes of it."""
+        """Read the file of an interface, and register all that rosidl makes of it."""
         package, kind, name = full.split("/")
         base = f"{package}/{kind}/{name.partition('_')[0]}"
         if base in self._sources:
@@ -180,12 +180,12 @@ class Library:
         return share is not None and interface_file(share, *rest.split("/")) is not None
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """What may have been meant by the name of a message that there is not."""
+        """A hint for the name of a missing message: similar names."""
         name = split_name(type_name)
         return None if name is None else self._unknown(name, ("msg",)).hint
 
     def _check(self, definition: Definition, source: SourceText, above: tuple[str, ...]) -> None:
-        """See to it that no structure contains itself, and that the files of all within are right."""
+        """Check that no structure contains itself, and that the files of all nested ones are valid."""
         if definition.type_name in self._checked:
             return
         for structure in structures_of(definition):
@@ -202,7 +202,7 @@ class Library:
     # --- the workspace --------------------------------------------------------------------------------------
 
     def _finder(self) -> PackageFinder:
-        """The finder in force. One of our own is kept for a while: it has read the folders of the workspace."""
+        """The finder in use. One of our own is kept for a while: it has read the folders of the workspace."""
         finder = active_finder()
         if finder is None:
             now, folder = time.monotonic(), os.getcwd()  # noqa: PTH109
@@ -260,7 +260,7 @@ class Library:
 
 
 class _Trusted:
-    """For the files that come with Linkwright: what they name is there, a test has seen to it."""
+    """Stands for the checks of files that come with Linkwright, which a test makes."""
 
     def has_message(self, type_name: str) -> bool:
         """True."""
@@ -272,7 +272,7 @@ class _Trusted:
 
 
 def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
-    """What a file defines, whichever of the two languages it is written in."""
+    """Parse a file, whichever of the two languages it is written in."""
     if source.name.endswith(".idl"):
         from linkwright.messages.idl import parse_idl
 
@@ -281,7 +281,7 @@ def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
 
 
 def not_of_kind(definition: Definition, kind: str) -> Diagnostic:
-    """What to say about an interface that is there but is no message, service or action, as was wanted."""
+    """A hint for an interface that exists but is no message, service or action, as was wanted."""
     name = definition.type_name
     is_a = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[type(definition)]
     return Diagnostic(

@@ -1,4 +1,4 @@
-"""Default values and constants as interface files write them."""
+"""Parsing default values and constants of interface files."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0", "\\": "\\", '"': '"', "'
 
 
 class LiteralFault(Exception):  # noqa: N818 - not an error of the program; the parser turns it into a diagnostic
-    """A text that is no value of the type; says why."""
+    """A text is no value of the type; says why."""
 
 
 def read_default(text: str, kind: FieldType) -> object:
-    """The default value that a field's line gives: one value, or a tuple of them.
+    """Parse the default value of a field's line: one value, or a tuple of them.
 
     Raises:
         LiteralFault: the text is no value of the type.
@@ -56,7 +56,7 @@ def read_default(text: str, kind: FieldType) -> object:
 
 
 def read_constant(text: str, type_name: str) -> Value:
-    """The value of a constant.
+    """Parse the value of a constant.
 
     Raises:
         LiteralFault: the text is no value of the type.

@@ -10,13 +10,13 @@ from linkwright.messages.definition import Structure
 
 
 def definition_of(message_class: type[Any]) -> Structure:
-    """The definition that a class of messages was made from: its fields, their types, its constants."""
+    """The definition of a message class: its fields, their types, its constants."""
     found: Structure = message_class._definition
     return found
 
 
 class _SlotTypes:
-    """``SLOT_TYPES`` of a class, made when somebody looks."""
+    """``SLOT_TYPES`` of a class, made on first access."""
 
     def __get__(self, instance: object, owner: type[Message]) -> tuple[Any, ...]:
         from linkwright.messages.slot_types import slot_types
@@ -101,7 +101,7 @@ class Message:
 
 
 def _remade(type_name: str, values: tuple[Any, ...]) -> Message:
-    """A message from its slots' values: how copies and pickles come back, without a look for modules by their names."""
+    """Remake a message from its slots' values: for copies and pickles, without a look for modules by their names."""
     cls = Message._class_named(type_name)
     message: Message = object.__new__(cls)
     for slot, value in zip(cls.__slots__, values, strict=True):

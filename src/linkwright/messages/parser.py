@@ -42,7 +42,7 @@ _WITH_MORE_PARTS = {
 
 
 class _Section:
-    """One structure while its lines are read."""
+    """A structure whose lines are being parsed."""
 
     def __init__(self) -> None:
         self.fields: list[Field] = []
@@ -51,17 +51,17 @@ class _Section:
 
 
 class KnownMessages(Protocol):
-    """Answers which messages there are that a file may be made of."""
+    """The interface that answers which messages exist."""
 
     def has_message(self, type_name: str) -> bool:
         """Whether there is a message of this full name."""
 
     def hint_for(self, type_name: str) -> Phrase | None:
-        """What may have been meant by the name of a message that there is not."""
+        """A hint for the name of a missing message: similar names."""
 
 
 def parse_interface(source: SourceText, type_name: str, known: KnownMessages) -> Definition:
-    """What an interface file defines.
+    """Parse an interface file.
 
     Args:
         source: the text of the file.

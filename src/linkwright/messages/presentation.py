@@ -1,4 +1,4 @@
-"""Interfaces for display: the text of a definition, and a prototype to fill in."""
+"""Texts of interfaces for display: definitions, and prototypes to fill in."""
 
 from __future__ import annotations
 

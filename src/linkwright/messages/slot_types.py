@@ -1,4 +1,4 @@
-"""The types of fields as rosidl_parser has them, for ``SLOT_TYPES``: what code written for rclpy looks at."""
+"""The types of fields as rosidl_parser has them, for ``SLOT_TYPES``, which code written for rclpy reads."""
 
 from __future__ import annotations
 

@@ -216,7 +216,7 @@ def _poses(transforms: list[Any]) -> NDArray[np.float64]:
 
 @cache
 def _ordinary_writer() -> Callable[[Message], bytes]:
-    """What writes the transforms one by one, compiled from the definition on first use."""
+    """The function that writes the transforms one by one, compiled from the definition on first use."""
     from linkwright.messages.cdr_writer import compile_writer
 
     return compile_writer(definition_of(TFMessage))
@@ -224,7 +224,7 @@ def _ordinary_writer() -> Callable[[Message], bytes]:
 
 @cache
 def _ordinary_reader() -> Callable[[bytes], TFMessage]:
-    """What reads the transforms one by one, compiled from the definition on first use."""
+    """The function that reads the transforms one by one, compiled from the definition on first use."""
     from linkwright.messages.cdr_reader import compile_reader
 
     return compile_reader(definition_of(TFMessage), class_of)

@@ -30,7 +30,7 @@ class _Nanoseconds(Message):
 
     @property
     def nanoseconds(self) -> int:
-        """All of it in nanoseconds."""
+        """The whole value in nanoseconds."""
         count: int = self.sec * NANOSECONDS_PER_SECOND + self.nanosec
         return count
 

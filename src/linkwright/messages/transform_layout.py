@@ -1,4 +1,4 @@
-"""The bytes of transforms between the same frames: the same each time, but for stamps and numbers.
+"""Layouts of transforms between the same frames, whose bytes differ in nothing but stamps and numbers.
 
 A `TransformLayout` knows where those stand. So a message is written by filling a template, and one that was received
 is recognised by comparing the rest with the template; in both directions the time for a transform is a few
@@ -26,7 +26,7 @@ _by_length: dict[int, list[TransformLayout]] = {}
 
 
 class TransformLayout:
-    """Where stamps and poses stand in a TFMessage of certain frames.
+    """The positions of stamps and poses in a TFMessage of certain frames.
 
     Args:
         parents: the frame each transform is given in.
@@ -58,7 +58,7 @@ class TransformLayout:
         self._poses = np.array(poses, dtype=np.intp)[:, None] + np.arange(7)
 
     def with_one_stamp(self, stamp_ns: int, poses: NDArray[np.float64]) -> bytes:
-        """The message of these poses, all at one moment.
+        """The message of these poses with one stamp for all.
 
         Args:
             stamp_ns: nanoseconds since the epoch.
@@ -77,7 +77,7 @@ class TransformLayout:
         return self._finished(words, poses)
 
     def with_stamps(self, stamps: Sequence[tuple[int, int]], poses: NDArray[np.float64]) -> bytes:
-        """The message of these poses, each at its own moment: seconds and nanoseconds."""
+        """The message of these poses, each with its own stamp: seconds and nanoseconds."""
         words = self._words.copy()
         words.view(np.uint32)[self._stamps] = np.array([sec for sec, _ in stamps], np.int32).view(np.uint32)
         words.view(np.uint32)[self._stamps + 1] = np.array([nanosec for _, nanosec in stamps], np.uint32)
@@ -88,7 +88,7 @@ class TransformLayout:
         return _HEADER + words.tobytes()[: self.length - len(_HEADER)]
 
     def remember(self) -> None:
-        """Look for this layout in messages that are received."""
+        """Register this layout for messages that are received."""
         same_length = _by_length.setdefault(self.length, [])
         if self not in same_length:
             if len(_by_length) > _MOST_KEPT:
@@ -142,7 +142,7 @@ class ReceivedTransforms(NamedTuple):
 
 
 def layout_for(parents: tuple[str, ...], children: tuple[str, ...]) -> TransformLayout:
-    """The layout of a message with these frames; kept for the next time."""
+    """The layout of a message with these frames; cached."""
     key = (parents, children)
     layout = _layouts.get(key)
     if layout is None:
@@ -169,6 +169,6 @@ def matching_layout(data: bytes) -> ReceivedTransforms | None:
 
 
 def _mask(text: str) -> bytes:
-    """Ones for the length and the text, zeros for what fills it up: that may be anything."""
+    """Ones for the length and the text, zeros for the padding, which may be anything."""
     length = 4 + len(text.encode()) + 1
     return b"\xff" * length + bytes(-length % 4)

@@ -23,7 +23,7 @@ _LONGEST_REMEMBERED = 200
 
 
 class _Options(NamedTuple):
-    """What is left out."""
+    """The options of a text."""
 
     truncate_length: int | None
     no_arr: bool
@@ -55,7 +55,7 @@ def to_yaml(
 
 
 class _Writer:
-    """Writes one message. A way is the containers that a value lies in, ``m`` for mappings and ``s`` for lists."""
+    """Writes one message. A path is the containers of a value, ``m`` for mappings and ``s`` for lists."""
 
     def __init__(self, options: _Options, lines: list[str]) -> None:
         self._options = options
@@ -135,7 +135,7 @@ _plans: dict[str, list[_Step]] = {}
 
 
 def _plan(cls: type[Message]) -> list[_Step]:
-    """How the fields of a class are written."""
+    """The way to write the fields of a class."""
     plan = _plans.get(cls.TYPE_NAME)
     if plan is None:
         plan = _plans[cls.TYPE_NAME] = [_step(field) for field in definition_of(cls).fields]
@@ -148,7 +148,7 @@ def _step(field: Field) -> _Step:
 
 
 def _number_text(kind: FieldType) -> Callable[[Any], str] | None:
-    """What writes one value of a type, where that needs no thought."""
+    """The function that writes one value of a type without further tests; None where there is none."""
     primitive = kind.primitive
     writers: dict[type, Callable[[Any], str]] = {int: str, float: _float_text, bool: _bool_text}
     return None if primitive is None else writers.get(primitive.python)
