@@ -1,4 +1,4 @@
-"""Surfaces as convex pieces, which is what engines of physics let touch."""
+"""Convex decomposition of surfaces, for physics engines."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _MOST_CORNERS = 2000
 
 
 def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
-    """A surface that stands still as convex pieces.
+    """Decompose a static surface into convex pieces.
 
     A part that is nearly convex is one piece: its hull. Of another one each flat face, or where that is not convex
     each triangle, is a plate that reaches `THICKNESS` inwards, so that rooms stay rooms and tables have legs. Where
@@ -78,7 +78,7 @@ def _components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
 
 
 def _joined(groups: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """The least number of each set of numbers that groups (rows) join, for all numbers below a count."""
+    """The least index in each set of indices that groups (rows) connect, for all indices below a count."""
     labels = np.arange(count)
     while True:
         least = labels[groups].min(axis=1)
@@ -101,7 +101,7 @@ def _is_nearly_convex(vertices: Array, faces: Faces, corners: Array) -> bool:
 
 
 def _plates(vertices: Array, faces: Faces, most: int) -> list[Array]:
-    """A plate for each flat face, or so many that it is known that there are more than so many."""
+    """A plate for each flat face, or one more than a limit."""
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)

@@ -59,7 +59,7 @@ class _Hull:
         self._add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
 
     def grown(self) -> Faces:
-        """Take in points until none is outside."""
+        """Add points until none is outside."""
         while self.outside:
             face, candidates = self.outside.popitem()
             normal, level = self.planes[face]

@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia tensor of a rigid body, and what can be worked out from them."""
+"""Mass, centre of mass and inertia tensor of a rigid body, and quantities that follow from them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class PrincipalAxes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MassProperties:
-    """What dynamics knows of a rigid body, in some frame, for links the link's.
+    """Mass properties of a rigid body, in some frame, for links the link's.
 
     Attributes:
         mass: in kg.
@@ -93,7 +93,7 @@ class MassProperties:
 
 
 def combine(parts: Iterable[MassProperties]) -> MassProperties:
-    """The body made of several, all in one frame; where they overlap, their masses add up."""
+    """The body that several make, all in one frame; where they overlap, their masses add up."""
     bodies = list(parts)
     mass = sum(body.mass for body in bodies)
     if not mass > 0:

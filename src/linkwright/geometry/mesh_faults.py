@@ -1,4 +1,4 @@
-"""What is wrong with a mesh file that its parser refuses, in the words of the file: which line, element or number.
+"""Diagnosing mesh files that their parser refuses: which line, element or number is wrong.
 
 The parser says it in words of its own, or of Python. This looks only into files that it could not read, for the
 faults that files have: cut short, not what their ending says, numbers that are none, names of what is not there.
@@ -28,7 +28,7 @@ _NUMBERS_OF = {"matrix": 16, "translate": 3, "scale": 3, "rotate": 4}
 
 
 def fault_in(data: bytes, kind: str) -> Phrase | None:
-    """What is wrong with a mesh file; None where nothing is found.
+    """Find the fault of a mesh file; None if none is found.
 
     Args:
         data: the file.

@@ -1,4 +1,4 @@
-"""The parser of mesh files: the one place that knows trimesh."""
+"""Parsing mesh files: the one module that imports trimesh."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class PlacedMesh(NamedTuple):
 
 
 class BadMeshError(Exception):
-    """A mesh file cannot be used; says why.
+    """A mesh file cannot be used; the text says why.
 
     Attributes:
         why: a phrase, in the words of the file.
@@ -98,7 +98,7 @@ def placed_meshes(data: bytes, kind: str, **options: Any) -> list[PlacedMesh]:
 
 
 def told_triangles(path: Path) -> int | None:
-    """How many triangles a file says that it has, found without parsing it, as that of a large one takes a minute.
+    """The number of triangles that a file declares, without parsing it, which takes a minute for a large one.
 
     At least as many are read from it. None for what only parsing tells (COLLADA, glTF), and for what cannot be read.
     """
@@ -173,7 +173,7 @@ def _without_broken_materials(data: bytes) -> bytes:
 
 
 def said_by_parser(error: Exception) -> Phrase:
-    """Why a parser of foreign bytes failed, where nobody knows better: its own first line."""
+    """The first line of a parser's error, where nothing better is known."""
     if isinstance(error, FileNotFoundError):
         return phrase("the file '{name}' that it names is not there", name=str(error.filename or error))
     lines = str(error).strip().splitlines()
@@ -181,7 +181,7 @@ def said_by_parser(error: Exception) -> Phrase:
 
 
 def beside(path: str) -> Any:
-    """What gives the parser the files beside a mesh file; None for STL, which names none."""
+    """The resolver that gives the parser the files beside a mesh file; None for STL, which names none."""
     if path.lower().endswith(".stl"):
         return None
     from trimesh.resolvers import FilePathResolver

@@ -1,4 +1,4 @@
-"""Mesh files with their look: triangles by material, by the rules of RViz, which the page follows too."""
+"""Mesh files with their materials: triangles by material, by the rules of RViz, which the page follows too."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class MeshPart:
     names: frozenset[str] = frozenset()
 
     def moved(self, offset: Array) -> MeshPart:
-        """The same elsewhere, by an offset in m, shape (3,)."""
+        """The part moved by an offset in m, shape (3,)."""
         return replace(self, triangles=replace(self.triangles, positions=self.triangles.positions + offset))
 
 
@@ -119,7 +119,7 @@ def _triangles(placed: PlacedMesh, matrix: Array, *, smooth: bool) -> Triangles:
 
 
 def _normals(mesh: Any, positions: Array, faces: Any, matrix: Array) -> Array | None:
-    """The normals of the file, else those that its triangles have at each corner together."""
+    """The normals of the file, else those of the triangles, averaged at each corner."""
     if "vertex_normals" in mesh._cache.cache and len(mesh.vertex_normals) == len(positions):
         normals = np.asarray(mesh.vertex_normals, dtype=np.float64) @ np.linalg.pinv(matrix[:3, :3])
     else:

@@ -29,7 +29,7 @@ class Placement(NamedTuple):
         return x + self.position[0], y + self.position[1], z + self.position[2]
 
     def inside(self, outer: Placement) -> Placement:
-        """This frame in the frame that `outer` is given in, where this one is given in that of `outer`."""
+        """This frame in the outer frame of `outer`, given this one in its inner frame."""
         return Placement(product(outer.rotation, self.rotation), outer.point(self.position))
 
     def seen_from(self, other: Placement) -> Placement:
@@ -40,7 +40,7 @@ class Placement(NamedTuple):
 
 
 def placement(pose: Pose) -> Placement:
-    """The placement that a pose says."""
+    """Convert a pose."""
     return Placement(rotation(pose), pose.xyz)
 
 
@@ -66,7 +66,7 @@ def transposed(matrix: Matrix) -> Matrix:
 
 
 def turned(matrix: Matrix, vector: Vector3) -> Vector3:
-    """A vector after a rotation."""
+    """A rotated vector."""
     return dot(matrix[0], vector), dot(matrix[1], vector), dot(matrix[2], vector)
 
 

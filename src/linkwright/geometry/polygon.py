@@ -1,4 +1,4 @@
-"""Polygons in a plane: as triangles, and what is in them."""
+"""Polygons in a plane: triangulation, and points inside."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
 
 
 def within_polygon(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which points lie in a polygon: those from which a ray crosses its border an odd number of times.
+    """Which points lie in a polygon, by the number of its edges that a ray crosses (even-odd rule).
 
     Args:
         points: of shape (..., 2).

@@ -1,4 +1,4 @@
-"""STL as nearly all files are, without colours: read here, as importing trimesh takes longer than to read most."""
+"""Reading the usual STL files, without colours: importing trimesh takes longer than reading most."""
 
 from __future__ import annotations
 

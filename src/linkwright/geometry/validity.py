@@ -94,7 +94,7 @@ def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
 
 
 def problems(properties: MassProperties) -> list[Phrase]:
-    """What keeps mass properties from being those of a body, in words; empty when they can be."""
+    """The reasons why mass properties cannot be those of a body, in words; empty for valid ones."""
     found = []
     if not properties.mass > 0:
         found.append(phrase("the mass is not positive"))

@@ -37,5 +37,5 @@ def cross(first: Vector3, second: Vector3) -> Vector3:
 
 
 def length(vector: Vector3) -> float:
-    """How long a vector is."""
+    """The Euclidean length."""
     return sqrt(dot(vector, vector))

@@ -1,4 +1,4 @@
-"""How the mass properties in a file compare with those computed from the shapes."""
+"""Comparing the mass properties in a file with those computed from the shapes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.geometry.validity import problems
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What the file says against what its shapes say.
+    """The mass properties of a file beside those of the shapes.
 
     Attributes:
         mass: in kg, in the file.
@@ -32,7 +32,7 @@ class Comparison:
 
 
 def compare(present: MassProperties, computed: MassProperties) -> Comparison:
-    """Compare what a file says with what was computed, both in the link frame.
+    """Compare the mass properties of a file with computed ones, both in the link frame.
 
     The moments are compared for each kg, so that a difference in mass is not told twice.
     """

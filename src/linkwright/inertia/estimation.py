@@ -1,4 +1,4 @@
-"""The mass properties of a link, from the shapes it has."""
+"""Estimating the mass properties of a link from its shapes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _NOTHING = 1e-18
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What the shapes of a link tell of its mass properties.
+    """The estimate of a link, and what was left out of it.
 
     Attributes:
         link: the link's name.

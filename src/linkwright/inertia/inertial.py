@@ -1,4 +1,4 @@
-"""From an ``<inertial>`` to mass properties and back."""
+"""Converting ``<inertial>`` to mass properties and back."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def has_mass(inertial: Inertial) -> bool:
 
 
 def from_inertial(inertial: Inertial) -> MassProperties:
-    """What an ``<inertial>`` says, in the link frame."""
+    """Convert an ``<inertial>`` to mass properties in the link frame."""
     i = inertial
     tensor = np.array(((i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)), dtype=np.float64)
     return MassProperties(i.mass, np.zeros(3), tensor).moved(i.origin)
 
 
 def to_inertial(properties: MassProperties) -> Inertial:
-    """The ``<inertial>`` of a body whose frame is the link's; its axes are those of the link."""
+    """Convert mass properties in the link's frame to an ``<inertial>``; its axes are those of the link."""
     tensor = properties.inertia
     x, y, z = (float(part) for part in properties.center)
     ixx, ixy, ixz, iyy, iyz, izz = (float(tensor[i, j]) for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)))

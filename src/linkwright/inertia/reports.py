@@ -45,7 +45,7 @@ _BASES = {
 def as_text(
     robot: Robot, estimates: Sequence[Estimate], written: Written | None = None, detailed: Collection[str] = ()
 ) -> str:
-    """A table of what the file says of the links, the worst first, and a verdict on each; in the reader's language.
+    """A table of the links' mass properties, the worst first, and a verdict on each; in the reader's language.
 
     Args:
         robot: the robot.

@@ -24,11 +24,11 @@ _EXPRESSION = re.compile(r"\$[{(](?!find\b)")
 
 
 class NotWritableError(Exception):
-    """A link's ``<inertial>`` is not written in a file as plain text; the text of the error says why, as a clause."""
+    """A link's ``<inertial>`` is not plain text of a file; the text of the error says why, as a clause."""
 
 
 def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[Replacement]]:
-    """What to change in which source, so that a link has these mass properties.
+    """The edits of sources that give a link these mass properties.
 
     An ``<inertial>`` that is there keeps its formatting and comments; only values are exchanged and what it lacks is
     added. A new one comes first in the link.
@@ -149,7 +149,7 @@ def _changed_attributes(text: str, element: Element, attributes: Attributes) -> 
 
 
 def _says_the_same(written: str, value: str) -> bool:
-    """Whether numbers in the file are those to be written, up to the digits that are written."""
+    """Whether numbers in the file are equal to those to be written, to the digits that are written."""
     try:
         there = [float(word) for word in written.split()]
     except ValueError:

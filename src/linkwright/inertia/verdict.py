@@ -1,4 +1,4 @@
-"""What the ``<inertial>`` of a link is worth beside its shapes, in words."""
+"""Judging the ``<inertial>`` of a link beside its shapes, in words."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _ORDER = tuple(Standing)
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What is to be said of a link's ``<inertial>``.
+    """The verdict on a link's ``<inertial>``.
 
     Attributes:
         standing: how good it is.
@@ -62,13 +62,13 @@ class Verdict:
 
     @property
     def place(self) -> tuple[int, float]:
-        """What to sort by to have the worst first."""
+        """The sort key for the worst first."""
         return _ORDER.index(self.standing), -self.badness
 
 
 @dataclass(frozen=True, slots=True)
 class _Reason:
-    """One thing that is wrong with an ``<inertial>``."""
+    """A problem of an ``<inertial>``."""
 
     standing: Standing
     words: Phrase
@@ -76,7 +76,7 @@ class _Reason:
 
 
 def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
-    """The verdict on a link.
+    """Judge a link.
 
     Args:
         link: the link.

@@ -1,4 +1,4 @@
-"""Writing computed ``<inertial>`` elements into the files that links are written in."""
+"""Writing computed ``<inertial>`` elements into the source files of links."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _BYTE_ORDER_MARK = "\ufeff"
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """What came of writing.
+    """The result of writing.
 
     Attributes:
         files: the files that were changed, in the order of their links.
@@ -35,7 +35,7 @@ class Written:
 
 
 def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> Written:
-    """Put mass properties into the files that the links are written in; all else in them stays as it is.
+    """Write mass properties into the source files of links; all else in them stays.
 
     Args:
         robot: read from a file, maybe through xacro.
@@ -55,7 +55,7 @@ def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> W
 
 
 def write_edits(edits_of: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> Written:
-    """Change files in several places, each file once.
+    """Apply edits in several places, to each file once.
 
     Args:
         edits_of: name -> what to change in which text, as it was read; it may raise `NotWritableError`.

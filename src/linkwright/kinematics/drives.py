@@ -1,4 +1,4 @@
-"""Which motion of a robot goes with which turning of its wheels.
+"""Kinematics of drives: the motion of a robot from the rotation of its wheels, and back.
 
 The robot goes forward (x) and to the left (y), and turns to the left around z. A function that takes velocities in m/s
 and rad/s takes ways in m and angles in rad as well, where the wheels' angles do not change on the way.
@@ -26,12 +26,12 @@ class DifferentialDrive:
     right_radius: float
 
     def wheel_speeds(self, forward: float, turning: float) -> tuple[float, float]:
-        """How fast the left and the right wheel turn in rad/s."""
+        """The angular velocities of the left and the right wheel in rad/s."""
         aside = turning * self.separation / 2.0
         return (forward - aside) / self.left_radius, (forward + aside) / self.right_radius
 
     def motion(self, left: float, right: float) -> tuple[float, float]:
-        """The velocity forward in m/s and around z in rad/s of wheels that turn so fast."""
+        """The velocity forward in m/s and around z in rad/s for angular velocities of the wheels."""
         left, right = left * self.left_radius, right * self.right_radius
         return (left + right) / 2.0, (right - left) / self.separation
 
@@ -49,7 +49,7 @@ class MecanumDrive:
     radius: float
 
     def wheel_speeds(self, forward: float, sideways: float, turning: float) -> tuple[float, float, float, float]:
-        """How fast the front left, front right, rear left and rear right wheel turn in rad/s."""
+        """The angular velocities of the front left, front right, rear left and rear right wheel in rad/s."""
         aside = turning * self.arm
         return (
             (forward - sideways - aside) / self.radius,
@@ -61,7 +61,7 @@ class MecanumDrive:
     def motion(
         self, front_left: float, front_right: float, rear_left: float, rear_right: float
     ) -> tuple[float, float, float]:
-        """The velocity forward and to the left in m/s and around z in rad/s, of wheels that turn so fast.
+        """The velocity forward and to the left in m/s and around z in rad/s for angular velocities of the wheels.
 
         Of speeds that no motion without sliding has it is the nearest one (least squares).
         """
@@ -75,7 +75,7 @@ class MecanumDrive:
 
 @dataclass(frozen=True, slots=True)
 class CarDrive:
-    """An axle that drives and another one that steers; the robot is the middle of the first.
+    """A driven axle and a steered one; the robot's frame is in the middle of the first.
 
     Attributes:
         wheelbase: between the axles in m, positive.
@@ -94,35 +94,35 @@ class CarDrive:
         return 0.0 if forward == 0.0 else atan(turning * self.wheelbase / forward)
 
     def steering_angles(self, angle: float) -> tuple[float, float]:
-        """The angles of the left and the right wheel in rad that go with one in the middle."""
+        """The angles of the left and the right wheel in rad, from one in the middle."""
         slope = tan(angle)
         return steered_apart(slope, self.steering_track * slope / self.wheelbase)
 
     def middle_angle(self, left: float, right: float) -> float:
-        """The angle of a wheel in the middle in rad: the mean of what the left and the right one say."""
+        """The angle of a wheel in the middle in rad: the mean of those that left and right correspond to."""
         half = self.steering_track / 2.0
         of_left = atan2(self.wheelbase * sin(left), self.wheelbase * cos(left) + half * sin(left))
         of_right = atan2(self.wheelbase * sin(right), self.wheelbase * cos(right) - half * sin(right))
         return (of_left + of_right) / 2.0
 
     def wheel_speeds(self, forward: float, angle: float) -> tuple[float, float]:
-        """How fast the left and the right wheel turn in rad/s, with the steering at an angle in rad."""
+        """The angular velocities of the left and the right wheel in rad/s, with the steering at an angle in rad."""
         speed, aside = forward / self.radius, self._aside(angle)
         return speed * (1.0 - aside), speed * (1.0 + aside)
 
     def motion(self, left: float, right: float, angle: float) -> tuple[float, float]:
-        """The velocity forward in m/s, the mean of what two wheels say that turn so fast, and around z in rad/s."""
+        """The velocity forward in m/s, the mean of two wheels, and around z in rad/s."""
         aside = self._aside(angle)
         forward = (left / (1.0 - aside) + right / (1.0 + aside)) * self.radius / 2.0
         return forward, forward * tan(angle) / self.wheelbase
 
     def _aside(self, angle: float) -> float:
-        """How much slower the inner wheel is than the middle, as a share."""
+        """The difference of the inner wheel's speed from the middle, as a share."""
         return self.traction_track / 2.0 * tan(angle) / self.wheelbase
 
 
 def steered_apart(slope: float, track: float) -> tuple[float, float]:
-    """The angles of the left and the right steered wheel in rad, so that both roll about one point.
+    """The angles of the left and the right steered wheel in rad with which both roll about one point.
 
     Args:
         slope: the tangent of the angle of a wheel in the middle; to the left positive.
@@ -133,7 +133,7 @@ def steered_apart(slope: float, track: float) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True)
 class TricycleDrive:
-    """One wheel in front that drives and is steered, two behind that follow; the robot is the middle of those.
+    """A driven and steered wheel in front, two behind that follow; the robot's frame is in the middle of those.
 
     Attributes:
         wheelbase: from the wheel to the axle behind in m.
@@ -144,7 +144,7 @@ class TricycleDrive:
     radius: float
 
     def wheel(self, forward: float, turning: float) -> tuple[float, float]:
-        """How fast the wheel turns in rad/s, and its angle in rad; across for a turn on the spot."""
+        """The angular velocity of the wheel in rad/s, and its angle in rad; across for a rotation on the spot."""
         across = turning * self.wheelbase
         rim = hypot(forward, across)
         if forward == 0.0:
@@ -152,6 +152,6 @@ class TricycleDrive:
         return copysign(rim, forward) / self.radius, atan(across / forward)
 
     def motion(self, speed: float, angle: float) -> tuple[float, float]:
-        """The velocity forward in m/s and around z in rad/s, of a wheel that turns so fast at an angle in rad."""
+        """The velocity forward in m/s and around z in rad/s, for the wheel's angular velocity and angle in rad."""
         rim = speed * self.radius
         return rim * cos(angle), rim * sin(angle) / self.wheelbase

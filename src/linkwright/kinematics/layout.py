@@ -1,4 +1,4 @@
-"""A robot laid out for computing: which links move as one body, the constants between the bodies, who follows whom.
+"""A robot laid out for computing: its bodies, the constants between them, and which joints mimic others.
 
 Links joined by fixed joints move as one. So only moving joints matter: each carries a body, whose own frame lies in the
 joint with z along the joint's axis. Then a joint turns its body about z or slides it along z, whatever its axis is:
@@ -110,7 +110,7 @@ def _align_z(axis: tuple[float, float, float]) -> Array | None:
 
 @dataclass(frozen=True, slots=True)
 class Following:
-    """Position = factor * position of `leader` + offset; a joint that moves by itself is its own leader."""
+    """A mimic joint: position = factor * position of `leader` + offset; a free joint is its own leader."""
 
     leader: str
     factor: float = 1.0

@@ -1,4 +1,4 @@
-"""Following a velocity that is wanted, no faster, sharper or more suddenly than is allowed."""
+"""Limits of velocity, acceleration and jerk."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ UNBOUNDED: Bounds = (-inf, inf)
 
 
 class SpeedLimiter:
-    """Follows a wanted velocity within bounds: of its second derivative first, then of its first, then its own.
+    """Limits a velocity: its second derivative first, then its first, then itself.
 
     Args:
         velocity: in m/s or rad/s.
@@ -46,11 +46,11 @@ class SpeedLimiter:
         self.restart()
 
     def restart(self) -> None:
-        """Stand still."""
+        """Restart at zero."""
         self.speed = self._before = 0.0
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """The velocity so many seconds after the last one."""
+        """The limited velocity, so many seconds after the last one."""
         speed = self.speed
         change, changed = wanted - speed, speed - self._before
         if not self._brakes_freely or (change - changed) * change > 0.0:

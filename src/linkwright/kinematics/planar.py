@@ -1,4 +1,4 @@
-"""Where a body is that moves in a plane."""
+"""Poses in a plane, and motions of them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _STRAIGHT = 1e-6
 
 @dataclass(slots=True)
 class PlanarPose:
-    """A place in a plane in m, and a heading in rad."""
+    """A position in a plane in m, and a heading in rad."""
 
     x: float = 0.0
     y: float = 0.0
     yaw: float = 0.0
 
     def advance(self, forward: float, sideways: float, turn: float) -> None:
-        """Go some way forward and to the left in m, straight, in the middle of a turn by an angle in rad.
+        """Move forward and to the left in m, straight, in the middle of a rotation by an angle in rad.
 
         Source: the method of Runge and Kutta of the second order, as in gazebo_ros_diff_drive.
         """
@@ -30,7 +30,7 @@ class PlanarPose:
         self.yaw += turn
 
     def follow_arc(self, forward: float, sideways: float, turn: float) -> None:
-        """Go on for a while at one velocity: some way forward and to the left in m while turning by an angle in rad.
+        """Move on an arc: forward and to the left in m while rotating by an angle in rad.
 
         The way is an arc of a circle, without an error of integration. Source: diff_drive_controller, where it is
         for ways forward only.
