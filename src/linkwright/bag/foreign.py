@@ -23,7 +23,7 @@ _LENGTH, _ID = struct.Struct("<I"), 2
 
 
 def patches_of(path: Path) -> dict[int, bytes]:
-    """What the library is to see elsewise of a finished file with an index: offset -> bytes."""
+    """The patches that make a finished file with an index readable for the library: offset -> bytes."""
     with path.open("rb") as file:
         patches = header_patch(file)
         file.seek(-HEAD.size - FOOTER_BODY.size - len(MAGIC), 2)
@@ -40,7 +40,7 @@ def patches_of(path: Path) -> dict[int, bytes]:
 
 
 def header_patch(file: BinaryIO) -> dict[int, bytes]:
-    """The patch that makes the profile ``ros2``; it takes the room of the name of the program that wrote the file."""
+    """The patch that sets the profile to ``ros2``, in the room of the name of the program that wrote the file."""
     file.seek(len(MAGIC))
     head = file.read(HEAD.size)
     if len(head) < HEAD.size:
@@ -56,7 +56,7 @@ def header_patch(file: BinaryIO) -> dict[int, bytes]:
 
 
 def schema_patch(place: int, body: bytes) -> dict[int, bytes]:
-    """The patch that takes a schema's text away where it is in a language that is none of ROS 2's.
+    """The patch that removes a schema's text in a language that is none of ROS 2's.
 
     Args:
         place: of its body in the file.
@@ -70,12 +70,12 @@ def schema_patch(place: int, body: bytes) -> dict[int, bytes]:
 
 
 def known_schema(body: bytes) -> bytes:
-    """The body of a schema's record as the library is to see it."""
+    """The body of a schema's record, as the library can read it."""
     return body[:_ID] + schema_patch(0, body).get(_ID, body[_ID:])
 
 
 def _texts(body: bytes, place: int, count: int) -> list[bytes] | None:
-    """Texts that follow one another, each behind its length; None where they are not whole."""
+    """Texts that follow one another, each behind its length; None if they are cut off."""
     found = []
     for _ in range(count):
         if place + _LENGTH.size > len(body):

@@ -1,4 +1,4 @@
-"""The messages of the last minutes in memory, as many as go into so many bytes: a recording whose ends both move on."""
+"""The messages of the last minutes in memory, within a number of bytes, as a recording that can be played."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _Kept = tuple[int, int, bytes]
 
 
 class _Track:
-    """The messages of one topic. What is needed to show a moment outlives what is dropped: the last message before it.
+    """The messages of one topic. The last message before those that were dropped is kept, for the state at a time.
 
     Args:
         name: of the topic.
@@ -53,7 +53,7 @@ class _Track:
         return 0 if replaced is None else _size(replaced[2])
 
     def replace(self, number: int, packed: Packed) -> int:
-        """Have a message packed, by its number; returns the bytes that are free now."""
+        """Replace a message by its packed form, by its number; returns the bytes that are free now."""
         place = bisect_left(self.kept, number, lo=self.first, key=lambda each: each[1])
         if place == len(self.kept) or self.kept[place][1] != number:
             return 0  # it was dropped meanwhile
@@ -62,7 +62,7 @@ class _Track:
         return len(data) - len(packed)
 
     def until(self, at_ns: int, count: int) -> list[_Kept]:
-        """The last messages up to a time, so many at most."""
+        """The last messages up to a time, up to a number."""
         end = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
         return self.kept[max(self.first, end - count) : end]
 
@@ -73,7 +73,7 @@ class _Track:
 
 
 class History:
-    """Keeps what it is given until newer messages take its place; it can be played while it goes on being filled.
+    """Keeps messages until newer ones take their room; it can be played while it is being filled.
 
     Messages may be added in any thread. Their times never go back, whatever the clock does. Large ones are packed
     where that makes them smaller, see `shrinking`.
@@ -100,7 +100,7 @@ class History:
         self._shrinker = Shrinker(self._replace)
 
     def add(self, topic: str, data: bytes, at_ns: int | None = None) -> None:
-        """Keep a message that came now, or at another time after those that are kept."""
+        """Add a message received now, or at another time after those that are kept."""
         size = _size(data)
         if size > self.most_bytes:
             return
@@ -119,7 +119,7 @@ class History:
         self._shrinker.offer((track, number), data)
 
     def close(self) -> None:
-        """Keep what is kept as it is; nothing more is packed."""
+        """Stop packing; the messages are kept as they are."""
         self._shrinker.close()
 
     def _replace(self, key: tuple[_Track, int], packed: Packed) -> None:
@@ -136,11 +136,11 @@ class History:
 
     @property
     def end_ns(self) -> int:
-        """Now: what is shown of the present is the last of each topic."""
+        """Now: the state of the present is the last message of each topic."""
         return max(self._newest_ns, self._now_ns())
 
     def messages(self, topics: Collection[str], start_ns: int) -> Iterator[Recorded]:
-        """The messages of some topics from a time on; when there are no more, it may be asked again later."""
+        """The messages of some topics from a time on; after its end it may be continued when others came."""
         return _Onward(self, topics, start_ns)
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
@@ -171,7 +171,7 @@ class History:
             return max((each[0][0] for each in last if each), default=None)
 
     def part(self, start_ns: int, end_ns: int) -> list[Recorded]:
-        """What came from one time to another, both included, in its order.
+        """The messages from one time to another, both included, in the order of their times.
 
         Before it stands what is needed to show its beginning, see `state_at`, as if that had come then. Messages are as
         they are kept: many that are packed would be too large together, see `whole`.
@@ -203,7 +203,7 @@ class History:
 
 
 class _Onward(Iterator[Recorded]):
-    """Messages in the order of their times. It ends where there are no more, and goes on when there are."""
+    """Messages in the order of their times; after its end it continues when others came."""
 
     def __init__(self, history: History, topics: Collection[str], start_ns: int) -> None:
         self._history = history

@@ -1,4 +1,4 @@
-"""Single messages of an MCAP file by its indexes: the last ones before a time, without reading what lies between.
+"""Finding single messages of an MCAP file by its indexes, without reading what lies between.
 
 The index of chunks at the end of the file tells which chunks have messages of a channel, and where the index of each of
 these is; that gives times and places within the chunk (the MCAP specification). So one chunk is unpacked for a message,
@@ -73,7 +73,7 @@ class McapLookup:
         return [(stamp, self._message(chunk, offset)) for stamp, chunk, offset in found]
 
     def counts(self, channel: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
-        """How many messages of a channel came in a time: its beginning and end, nanoseconds, and the number.
+        """The numbers of messages of a channel by parts of the time: beginning and end, nanoseconds, and the number.
 
         Args:
             channel: its number.
@@ -132,6 +132,6 @@ class _ChannelChunks:
             self._latest_ends.append(max(each.message_end_time, self._latest_ends[-1] if self._latest_ends else 0))
 
     def backwards(self, at_ns: int) -> Iterator[tuple[ChunkInfo, int]]:
-        """Those that begin up to a time, from the last one back; with each the latest end of it and those before it."""
+        """The chunks that begin up to a time, backwards; each with the latest end of it and those before it."""
         for place in range(bisect_right(self._starts, at_ns) - 1, -1, -1):
             yield self.chunks[place], self._latest_ends[place]

@@ -1,4 +1,4 @@
-"""What must be known of a recording to show a moment of it: the last message of each topic, and transforms."""
+"""The state of a recording at a time: the last message of each topic, and transforms."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Recorded = tuple[str, int, bytes]
 
 
 class Moments:
-    """Looks into an open recording at single moments.
+    """Finds the state of an open recording at any time.
 
     Args:
         reader: of the library, open.
@@ -70,7 +70,7 @@ class Moments:
         return max((stamp for _, stamp, _ in self._latest(topics, at_ns - 1)), default=None)
 
     def counts(self, parts: int) -> dict[str, list[int]]:
-        """How many messages each topic has in equal parts of the recording; empty for a file without an index.
+        """The numbers of messages of each topic in equal parts of the recording; empty for a file without an index.
 
         Of a long recording the messages of a chunk, or of a short time, count as if they were spread evenly over it.
         """
@@ -92,7 +92,7 @@ class Moments:
 
     @cached_property
     def _lookups(self) -> list[tuple[Any, McapLookup | RowLookup]]:
-        """The files with an index, if all of them have one and their messages are not packed singly; else none."""
+        """The lookups of the files, if all have an index and no singly packed messages; else none."""
         storage: Any = self._reader.storage
         found: list[tuple[Any, McapLookup | RowLookup]] = []
         for each in getattr(storage, "storages", [storage]):
@@ -134,7 +134,7 @@ class Moments:
         ]
 
     def _latest_without_index(self, topics: Collection[str], at_ns: int) -> Iterator[Recorded]:
-        """Look at longer and longer times before, until all are found."""
+        """Read longer and longer times before, until all are found."""
         missing = set(topics)
         end, length = at_ns + 1, _FIRST_WINDOW_NS
         while missing and end > self._reader.start_time:

@@ -1,4 +1,4 @@
-"""What recordings are called."""
+"""File names of recordings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compressed files of recordings without the metadata that say so, as a copy of the file alone, or a kill, leaves them.
+"""Compressed files of recordings whose metadata are missing, after a copy of the file alone or a kill.
 
 rosbag2 compresses files as a whole, or their messages one by one; that, ``metadata.yaml`` alone says.
 """
@@ -27,7 +27,7 @@ _MAGIC = b"\x28\xb5\x2f\xfd"
 
 
 def unpacked(path: Path, folder: Path) -> Path:
-    """A file in a folder that is what another one is, uncompressed; of one that was cut off, as much as there is.
+    """Decompress a file into a folder; of one that was cut off, as much as there is.
 
     Raises:
         zstd.ZstdError: it is not compressed with zstd.
@@ -40,7 +40,7 @@ def unpacked(path: Path, folder: Path) -> Path:
 
 
 def unpack_messages(reader: Reader) -> None:
-    """Have the reader of a single file unpack messages, if the first one is packed.
+    """Let the reader of a single file decompress messages, if the first one is packed.
 
     Args:
         reader: of the library, open.

@@ -1,4 +1,4 @@
-"""Shows a recording at any of its times, forward or from one time to another: play, pause, seek, step, speed, loop.
+"""Playing a recording from any of its times: play, pause, seek, step, speed, loop.
 
 The same for a recording in a file and for what came in the last minutes: messages go out as bytes, with the time at
 which they were received, and whoever listens need not know that they are not new.
@@ -26,7 +26,7 @@ SLOWEST, FASTEST = 0.1, 10.0
 
 
 class Recording(Protocol):
-    """What can be played: messages by their times, nanoseconds since the epoch."""
+    """The interface of recordings to be played: messages by their times, nanoseconds since the epoch."""
 
     @property
     def start_ns(self) -> int:
@@ -40,20 +40,20 @@ class Recording(Protocol):
         """The messages of some topics from a time on, in the order of their times."""
 
     def state_at(self, topics: Collection[str], at_ns: int, /) -> list[Recorded]:
-        """What must be known to show a moment: the last message of each topic, and transforms."""
+        """The state at a time: the last message of each topic, and transforms."""
 
     def time_before(self, topics: Collection[str], at_ns: int, /) -> int | None:
         """When the last message before a time was received; None where there is none."""
 
 
 class Output(Protocol):
-    """Where messages go."""
+    """The interface of destinations of messages."""
 
     def wanted(self) -> frozenset[str]:
-        """The topics of the recording that somebody listens to."""
+        """The topics of the recording that have subscriptions."""
 
     def tell_time(self, stamp_ns: int, /) -> None:
-        """Tell which time it is, nanoseconds since the epoch."""
+        """Set the time of the playback, nanoseconds since the epoch."""
 
     def publish(self, topic: str, stamp_ns: int, data: bytes, /) -> None:
         """Publish a message that was received at a time, nanoseconds since the epoch."""
@@ -110,7 +110,7 @@ class Playback:
         return self._recording.end_ns
 
     def play(self) -> None:
-        """Have time go on; at the end, from the beginning."""
+        """Play; at the end, from the beginning."""
         if self.playing:
             return
         if self._aim() >= self.end_ns:
@@ -121,23 +121,23 @@ class Playback:
         self._tell()
 
     def pause(self) -> None:
-        """Have time stand still."""
+        """Pause."""
         if self.playing:
             self._stop()
             self._tell()
 
     def set_speed(self, speed: float) -> None:
-        """Play faster or slower, within `SLOWEST` and `FASTEST`."""
+        """Set the speed, within `SLOWEST` and `FASTEST`."""
         self.speed = min(FASTEST, max(SLOWEST, speed))
         self._tell()
 
     def set_loop(self, loop: bool) -> None:
-        """Begin anew at the end, or stay there."""
+        """Set whether to start again at the end."""
         self.loop = loop
         self._tell()
 
     def seek(self, stamp_ns: int) -> None:
-        """Show another time: as soon as the loop is free, the newest of several only.
+        """Jump to another time: once the loop is free, and only to the newest of several.
 
         Time is told at once, and clocks that go back have their listeners forget what they know; so what is to be known
         then is published a turn of the loop later.
@@ -148,7 +148,7 @@ class Playback:
             asyncio.get_running_loop().call_soon(self._begin_landing)
 
     def step(self, forward: bool, topic: str = "") -> None:
-        """Pause, and show the time of the next message, or of the one before.
+        """Pause, and step to the next message, or to the one before.
 
         Args:
             forward: whether to the next one.
@@ -171,7 +171,7 @@ class Playback:
             self._fail(error)
 
     def _step_to_next_of(self, topic: str) -> None:
-        """Show what came until the next message of a topic; where that is too much for a turn, go there at once."""
+        """Play up to the next message of a topic; where that is too much for a turn, jump there."""
         following = next(self._recording.messages({topic}, self._aim() + 1), None)
         if self._target_ns is None:
             self._open_stream()  # of a file, only one can be read at a time
@@ -182,13 +182,13 @@ class Playback:
         self._tell()
 
     def take_over(self, stamp_ns: int) -> None:
-        """Go on from a time whose state listeners know already."""
+        """Continue from a time whose state listeners have already."""
         self.position_ns, self._target_ns = stamp_ns, None
         self._wanted = self._output.wanted()
         self._open_stream()
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """The messages of some topics of so much time up to the one that is shown; none of more bytes."""
+        """The messages of some topics in a duration before the playback's time; none if they exceed some bytes."""
         found: list[Recorded] = []
         size = 0
         try:
@@ -206,7 +206,7 @@ class Playback:
         return found
 
     def review(self) -> None:
-        """Look who listens: a topic that nobody listened to before begins with its last message."""
+        """Update the subscriptions: a topic with new ones begins with its last message."""
         wanted = self._output.wanted()
         if wanted == self._wanted or self._target_ns is not None:
             return
@@ -219,7 +219,7 @@ class Playback:
             self._fail(error)
 
     def close(self) -> None:
-        """Stop for good."""
+        """Stop and release the recording."""
         self._stop()
         self.changed.clear()
         self._stream, self._next = iter(()), None
@@ -251,7 +251,7 @@ class Playback:
         self._tell()
 
     def _open_stream(self) -> None:
-        """Go on after all that was published."""
+        """Continue after all that was published."""
         self._stream = self._recording.messages(self._wanted, self.position_ns + 1) if self._wanted else iter(())
         self._next = next(self._stream, None)
 
@@ -276,7 +276,7 @@ class Playback:
         self._set_alarm()
 
     def _show_until(self, stamp_ns: int) -> None:
-        """Publish what was received until a time, or as much of it as goes in one turn."""
+        """Publish the messages up to a time, or as many as go in one turn."""
         self._output.tell_time(stamp_ns)
         if self._next is None:
             self._next = next(self._stream, None)  # what is still being recorded has more now

@@ -21,7 +21,7 @@ _AT_ONCE = 200
 
 @dataclass(frozen=True)
 class PlayOptions:
-    """How a recording is played.
+    """Options of playing.
 
     Attributes:
         rate: how fast; 2.0 is twice as fast as it was recorded.
@@ -96,12 +96,12 @@ class Player:
 
     @property
     def publishers(self) -> tuple[Publisher[Any], ...]:
-        """What it publishes with."""
+        """Its publishers."""
         return tuple(self._publishers.values())
 
     @property
     def rate(self) -> float:
-        """How fast it plays."""
+        """The rate."""
         return self._rate
 
     @property
@@ -110,7 +110,7 @@ class Player:
         return self._paused
 
     def start(self) -> None:
-        """Begin to play."""
+        """Start."""
         self._begin()
 
     def pause(self) -> None:
@@ -119,19 +119,19 @@ class Player:
             self.toggle_paused()
 
     def resume(self) -> None:
-        """Go on, if it is paused."""
+        """Resume, if it is paused."""
         if self._paused:
             self.toggle_paused()
 
     def toggle_paused(self) -> None:
-        """Pause, or go on."""
+        """Pause, or resume."""
         self._anchor()
         self._paused = not self._paused
         self._logger.info("Pausing play." if self._paused else "Resuming play.")
         self._schedule()
 
     def set_rate(self, rate: float) -> None:
-        """Play faster or slower from now on.
+        """Set the rate.
 
         Raises:
             ValueError: the rate is not positive, or not finite.
@@ -148,7 +148,7 @@ class Player:
         return self.burst(1) == 1
 
     def burst(self, count: int) -> int:
-        """Publish so many messages at once while paused, or with 0 all of this round; how many there were."""
+        """Publish a number of messages while paused, or with 0 all of this round; returns their number."""
         published = 0
         while (
             self._paused and self._next is not None and not self._is_beyond_end() and (published < count or not count)
@@ -161,7 +161,7 @@ class Player:
         return published
 
     def seek(self, time_ns: int) -> None:
-        """Go on from another time in the recording, nanoseconds since the epoch."""
+        """Jump to another time in the recording, nanoseconds since the epoch."""
         self._anchor()
         self._read_from(max(time_ns, self._bag.start_ns))
         self._end_or_schedule()
@@ -174,7 +174,7 @@ class Player:
             self._alarm = None
 
     def now_ns(self) -> int:
-        """The time in the recording that is played now, nanoseconds since the epoch."""
+        """The time in the recording now, nanoseconds since the epoch."""
         if self._paused:
             return self._position_ns
         return self._position_ns + max(0, round((self._steady_ns() - self._since_ns) * self._rate))
@@ -234,7 +234,7 @@ class Player:
         self._alarm = self._node.handle.dispatcher.call_at(self._since_ns + max(0, wait_ns), self._run)
 
     def _anchor(self) -> None:
-        """Take now as the origin of the playing time, because its rate is about to change."""
+        """Take now as the origin of the playing time, because the rate is about to change."""
         self._position_ns = self.now_ns()
         self._since_ns = self._steady_ns()
 

@@ -1,4 +1,4 @@
-"""The services with which other programs control a player, those of rosbag2's: ``/rosbag2_player/pause`` and so on."""
+"""The services that control a player, those of rosbag2: ``/rosbag2_player/pause`` and so on."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SERVICES = (
 
 
 class PlayerServices:
-    """Puts a player's services below the name of its node.
+    """Offers a player's services below the name of its node.
 
     Names, types and what is refused are those of ``rosbag2_transport::Player``.
 
@@ -68,7 +68,7 @@ class PlayerServices:
         return response
 
     def _play(self, _: Any, response: Any) -> Any:
-        """Refused, as by rosbag2 while it plays: when it does not, the program has ended."""
+        """Refuse to play, as rosbag2 does while it plays; when it does not, the program has ended."""
         self._logger.warning("Asked to play while playing; nothing is done")
         response.success = False
         return response

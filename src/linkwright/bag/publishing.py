@@ -22,7 +22,7 @@ _LATCHED_QOS = QoSProfile(100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 def make_publishers(
     node: Node, topics: Iterable[BagTopic], overrides: Mapping[str, QoSProfile] | None = None
 ) -> dict[str, Publisher[Any]]:
-    """A publisher for each topic, with the quality of service it was recorded with; the log tells of unknown types.
+    """Make a publisher for each topic, with the quality of service it was recorded with; unknown types are logged.
 
     Args:
         node: that publishes.
@@ -42,7 +42,7 @@ def make_publishers(
 
 
 def untyped(bag: BagReader) -> list[Diagnostic]:
-    """What is to be told of topics that cannot be played, as no definition of their type can be read (BAG114)."""
+    """The finding on topics that cannot be played, as the definition of their type is missing (BAG114)."""
     names = [f"{topic.name} ({topic.type_name})" for topic in bag.topics if not _is_known(topic.type_name)]
     if not names:
         return []

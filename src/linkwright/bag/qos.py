@@ -1,4 +1,4 @@
-"""Quality of service in recordings: as they store it, and as recording and playing derive it.
+"""Quality of service in recordings: storing it, and deriving it for recording and playing.
 
 The rules by which profiles are derived are those of rosbag2 (``rosbag2_transport/qos.cpp``).
 """
@@ -38,7 +38,7 @@ _DURATIONS = ("deadline", "lifespan", "liveliness_lease_duration")
 
 
 def to_bag(qos: QoSProfile) -> Qos:
-    """A profile as the library writes it into a recording."""
+    """Convert a profile to that of the library."""
     from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 
     def time(duration: Duration) -> QosTime:
@@ -58,7 +58,7 @@ def to_bag(qos: QoSProfile) -> Qos:
 
 
 def from_bag(qos: Qos) -> QoSProfile:
-    """A profile that a recording gives."""
+    """Convert a profile of a recording."""
 
     def policy(kind: Any, value: Any) -> Any:
         return kind.__members__.get(value.name, kind.SYSTEM_DEFAULT)
@@ -110,7 +110,7 @@ def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def _offered(qos: QoSProfile) -> tuple[object, ...]:
-    """What of a profile tells with which subscriptions it is compatible."""
+    """The part of a profile that decides which subscriptions are compatible."""
     times = (qos.deadline.nanoseconds, qos.liveliness_lease_duration.nanoseconds)
     return (qos.reliability, qos.durability, qos.liveliness, *times)
 

@@ -1,4 +1,4 @@
-"""Reading a recording: what is in it, and its messages in the order of their times."""
+"""Reading a recording: its topics, and its messages in the order of their times."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ class BagReader:
         return reader
 
     def _finished(self, target: Path) -> Any:
-        """What is to be opened: the target, or its file with what it lacks, and without what the library refuses."""
+        """The target for the library, or its file with missing parts added and refused ones removed."""
         if target.is_file() and target.suffix == PACKED:
             from linkwright.bag.packed import unpacked
 
@@ -164,7 +164,7 @@ class BagReader:
 
     @property
     def findings(self) -> list[Diagnostic]:
-        """What is to be told of it.
+        """The findings on it.
 
         That it has no end (BAG109), as it was killed or cut off in a copy; topics that are not ROS 2's (BAG112); that
         it holds no messages (BAG113).
@@ -236,7 +236,7 @@ class BagReader:
         return self._read(self._reader.messages(connections, start=start_ns))
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
-        """What must be known to show a moment: the last message of each topic, and transforms; see `Moments`.
+        """The state at a time: the last message of each topic, and transforms; see `Moments`.
 
         Raises:
             LinkwrightError: BAG102, the messages cannot be read.
@@ -252,7 +252,7 @@ class BagReader:
         return self._look(lambda: self._moments.time_before(topics, at_ns))
 
     def counts(self, parts: int) -> dict[str, list[int]]:
-        """How many messages each topic has in equal parts of the recording; empty for a file without an index."""
+        """The numbers of messages of each topic in equal parts of the recording; empty for a file without an index."""
         return self._moments.counts(parts) if self._reader.message_count else {}
 
     def _look(self, what: Callable[[], T]) -> T:
@@ -285,7 +285,7 @@ class BagReader:
 
 
 def _storage_targets(path: Path, called: str) -> list[Path]:
-    """What the library is to open: the folder, or its files where the metadata are missing."""
+    """The paths for the library: the folder, or its files where the metadata are missing."""
     if not path.exists():
         raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=called)))
     if path.is_file() or (path / "metadata.yaml").exists():

@@ -1,4 +1,4 @@
-"""Recording: subscribes to topics as they appear and writes down what comes."""
+"""Recording: subscribes to topics as they appear and writes their messages."""
 
 from __future__ import annotations
 
@@ -72,12 +72,12 @@ class Recorder:
         return self._count
 
     def toggle_paused(self) -> None:
-        """Pause, or go on."""
+        """Pause, or resume."""
         self.paused = not self.paused
         self._logger.info("Pausing recording." if self.paused else "Resuming recording.")
 
     def close(self) -> None:
-        """Write the rest and close the recording; report the requested topics that are not in it."""
+        """Write what is queued and close the recording; report the requested topics that are not in it."""
         self._flushing.cancel()
         if self._looking is not None:
             self._looking.cancel()

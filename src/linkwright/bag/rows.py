@@ -1,4 +1,4 @@
-"""Single messages of an SQLite recording: the last ones before a time, without reading what lies between.
+"""Finding single messages of an SQLite recording, without reading what lies between.
 
 rosbag2's files have an index of times and none of topics. One pass over the rows, which reads no message, tells in
 which parts of the time each topic has messages; whoever looks for one looks into a part that has one.
@@ -48,7 +48,7 @@ class RowLookup:
         return sorted(found, key=lambda row: row[0])
 
     def counts(self, topic: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
-        """How many messages of a topic came in a time: its beginning and end, nanoseconds, and the number.
+        """The numbers of messages of a topic by parts of the time: beginning and end, nanoseconds, and the number.
 
         Args:
             topic: its number.
@@ -75,7 +75,7 @@ class RowLookup:
                 return
 
     def _spans(self, topic: int, start_ns: int, end_ns: int) -> list[tuple[int, int]]:
-        """First and last nanoseconds of what parts with messages of a topic have of a time; neighbours are one."""
+        """The spans in ns of a time in which a topic has messages, as far as they are known; neighbours are merged."""
         spans: list[tuple[int, int]] = []
         for part in self._parts.get(topic, {}):
             begin_ns = self._begin_ns(part)

@@ -19,7 +19,7 @@ _TOLD_EVERY = 1000
 
 @dataclass(frozen=True, slots=True)
 class KeptTopic:
-    """What is known of a topic whose messages are kept.
+    """The type and quality of service of a topic in memory.
 
     Attributes:
         type_name: such as ``std_msgs/msg/String``.
@@ -54,7 +54,7 @@ def save_messages(
 
 
 def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
-    """When ``/clock`` told an earlier time than before, for the last time; None where it never did."""
+    """The last time at which ``/clock`` went back; None if it never did."""
     found, now = None, None
     for name, stamp_ns, data in messages:
         if name == CLOCK_TOPIC:
@@ -66,7 +66,7 @@ def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
 
 
 def in_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
-    """The messages with the times that ``/clock`` told when they came, in place of those of the system.
+    """The messages with the times of ``/clock`` when they came, in place of the system's.
 
     What came before the first of ``/clock`` has its time; where there is none, all stay as they are.
     """

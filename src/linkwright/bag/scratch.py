@@ -1,4 +1,4 @@
-"""A folder for copies of recordings, which may be larger than the memory."""
+"""Temporary folders for copies of recordings, which may exceed the memory."""
 
 from __future__ import annotations
 
@@ -11,6 +11,6 @@ _ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder is made below it, under a
 
 
 def scratch_folder() -> TemporaryDirectory[str]:
-    """A new folder that is gone when it is cleaned up, where TMPDIR says or on the disk."""
+    """A temporary folder, where TMPDIR says or on the disk."""
     chosen = None if os.environ.get("TMPDIR") or not os.access(_ON_DISK, os.W_OK) else _ON_DISK
     return TemporaryDirectory(prefix="linkwright_bag_", dir=chosen)

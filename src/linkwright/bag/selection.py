@@ -1,4 +1,4 @@
-"""Which topics are recorded."""
+"""Selecting the topics to be recorded."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
 
 @dataclass(frozen=True)
 class TopicSelection:
-    """What ``bag record`` is told about topics.
+    """The options of ``bag record`` on topics.
 
     Attributes:
         everything: every topic that is not hidden.
@@ -51,7 +51,7 @@ class TopicSelection:
 
     @property
     def is_empty(self) -> bool:
-        """Whether it names nothing at all to record."""
+        """Whether it selects nothing at all."""
         return not (self._takes_what_comes or self.names or self.services)
 
     @property
@@ -61,7 +61,7 @@ class TopicSelection:
 
     @property
     def named(self) -> frozenset[str]:
-        """The topics that are asked for by name."""
+        """The topics that are selected by name."""
         return frozenset((*self.names, *(name + EVENT_TOPIC_SUFFIX for name in self.services)))
 
     @property

@@ -1,4 +1,4 @@
-"""The files of a recording without the ``metadata.yaml`` that lists them, read as one: in the order of their times."""
+"""Reading the files of a recording without ``metadata.yaml`` as one, in the order of their times."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class SeveralReader(Reader):
 
 
 class _Storages:
-    """What the library calls a storage: the connections of several files, and their messages.
+    """The storage interface of the library over several files.
 
     Attributes:
         storages: of the single files.
@@ -62,15 +62,15 @@ class _Storages:
         )
 
     def open(self) -> None:
-        """The files are open."""
+        """Do nothing: the files are open."""
 
     def close(self) -> None:
-        """Whoever opened the files closes them."""
+        """Do nothing: the files are closed by whoever opened them."""
 
     def messages(
         self, connections: Collection[Connection], start: int | None = None, stop: int | None = None
     ) -> Generator[_Message, None, None]:
-        """The messages of all files by their times; a file is begun when its time has come."""
+        """The messages of all files by their times; a file is opened when its time has come."""
         wanted = {_key(each): each for each in connections}
         waiting = [each for each in self._readers if each.message_count and (start is None or each.end_time > start)]
         waiting.reverse()

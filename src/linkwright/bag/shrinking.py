@@ -1,4 +1,4 @@
-"""Large messages in less memory: packed by Zstandard in a thread, where they become clearly smaller.
+"""Compressing large messages in memory by Zstandard in a thread, where they become clearly smaller.
 
 Pictures and clouds of a simulation shrink to a tenth or a hundredth, those with the noise of a real sensor hardly;
 which is which the quickest level finds out at once.
@@ -28,7 +28,7 @@ K = TypeVar("K")
 
 
 class Packed(bytes):
-    """A message that is packed; its length is what it takes."""
+    """A compressed message; its length is that of the compressed bytes."""
 
     __slots__ = ()
 
@@ -47,12 +47,12 @@ def _zstd() -> Any:
 
 
 def whole(data: bytes) -> bytes:
-    """A message as it came."""
+    """The original bytes of a message."""
     return bytes(_zstd().decompress(data)) if type(data) is Packed else data
 
 
 class Shrinker(Generic[K]):
-    """Packs messages in a thread of its own, which is begun by the first large one.
+    """Compresses messages in a thread of its own, which the first large one starts.
 
     Args:
         done: called in that thread with the key of a message and it packed.
@@ -66,7 +66,7 @@ class Shrinker(Generic[K]):
         self._lock = threading.Lock()
 
     def offer(self, key: K, data: bytes) -> None:
-        """Pack a message when there is time, if it is large."""
+        """Compress a message when there is time, if it is large."""
         if len(data) < _LEAST_BYTES or _zstd() is None:
             return
         with self._lock:
@@ -79,7 +79,7 @@ class Shrinker(Generic[K]):
         self._queue.put((key, data))
 
     def close(self) -> None:
-        """Pack nothing more."""
+        """Stop compressing."""
         self._queue.put(None)
 
     def _run(self) -> None:

@@ -1,4 +1,4 @@
-"""What ``bag info`` prints."""
+"""The summary of ``bag info``."""
 
 from __future__ import annotations
 

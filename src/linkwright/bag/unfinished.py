@@ -1,4 +1,4 @@
-"""MCAP files without an end, or without an index: those of a recording that was killed, cut off in a copy, or streamed.
+"""MCAP files without an end, or without an index: of a recording that was killed, cut off in a copy, or streamed.
 
 A file is a row of records, each with its kind and length (the MCAP specification). All that are whole are good. What is
 missing, the summary that lists the chunks, is made in memory; readers see it after the file's own bytes. So nothing is
@@ -58,7 +58,7 @@ def has_index(path: Path) -> bool:
 
 
 def made_readable(path: Path) -> ReadableFile | None:
-    """What the library is to open in place of an MCAP file; None where that can be read as it is."""
+    """The file in a form that the library can read; None if it can read it as it is."""
     if not is_unfinished(path) and has_index(path):
         patches = patches_of(path)
         return ReadableFile(path, path.stat().st_size, b"", patches) if patches else None
@@ -96,7 +96,7 @@ class ReadableFile:
         return self._path.exists()
 
     def is_dir(self) -> bool:
-        """It is a file."""
+        """False: it is a file."""
         return False
 
     def open(self, mode: str = "rb") -> BinaryIO:
@@ -106,7 +106,7 @@ class ReadableFile:
 
 
 class _Patched(io.RawIOBase):
-    """The beginning of a file, in which some bytes are others, and bytes that follow it."""
+    """The beginning of a file with some bytes replaced, and bytes appended."""
 
     def __init__(self, path: Path, size: int, tail: bytes, patches: Mapping[int, bytes]) -> None:
         self._file = path.open("rb", buffering=0)
@@ -149,7 +149,7 @@ class _Patched(io.RawIOBase):
 
 @dataclass(slots=True)
 class _Chunk:
-    """A chunk: its place in the file, what its record says, and where the index of each channel is."""
+    """A chunk: its position in the file, its record, and the positions of the channels' indexes."""
 
     offset: int
     length: int
@@ -165,7 +165,7 @@ class _Chunk:
 
 @dataclass(slots=True)
 class _Scan:
-    """What a file has in it."""
+    """The content of a file."""
 
     end: int = len(MAGIC)
     chunks: list[_Chunk] = field(default_factory=list)
@@ -175,14 +175,14 @@ class _Scan:
     has_loose_messages: bool = False
 
     def declare(self, kind: int, body: bytes) -> None:
-        """Take note of a schema or channel."""
+        """Register a schema or channel."""
         into = self.schemas if kind == _SCHEMA else self.channels
         known = known_schema(body) if kind == _SCHEMA else body
         into.setdefault(_NUMBER.unpack_from(body)[0], _record(kind, known))
 
 
 def _summary_of(scan: _Scan, file: BinaryIO) -> bytes:
-    """What has to follow the whole records of a file."""
+    """The bytes that have to follow the whole records of a file."""
     if scan.has_loose_messages or not scan.chunks:
         # The library reads such a file from one end to the other, whatever a summary says.
         return _record(_DATA_END, bytes(4)) + _record(_FOOTER, bytes(FOOTER_BODY.size)) + MAGIC
@@ -194,7 +194,7 @@ def _summary_of(scan: _Scan, file: BinaryIO) -> bytes:
 
 
 def _scan(file: BinaryIO, size: int) -> _Scan:
-    """Go from record to record; what is in chunks is passed over."""
+    """Scan the records; the content of chunks is skipped."""
     scan = _Scan()
     while True:
         file.seek(scan.end)
@@ -230,7 +230,7 @@ def _chunk(file: BinaryIO, offset: int, length: int) -> _Chunk:
 
 
 def _look_into(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> None:
-    """Read schemas and channels in a chunk, and make the indexes of its messages, where it has none."""
+    """Read the schemas and channels in a chunk, and index its messages, where the file lacks that."""
     from rosbags.rosbag2.storage_mcap import decompress
 
     file.seek(chunk.offset + chunk.length - chunk.compressed_size)
@@ -253,7 +253,7 @@ def _look_into(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> N
 
 
 def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
-    """The records of an unpacked chunk: kind, place, length of what follows the head."""
+    """The records of an uncompressed chunk: kind, position, length of the content."""
     place = 0
     while place + HEAD.size <= len(data):
         kind, length = HEAD.unpack_from(data, place)
@@ -262,7 +262,7 @@ def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
 
 
 def _tail(scan: _Scan, made: bytes) -> bytes:
-    """Indexes that were made, the end of the data, and the summary."""
+    """The missing indexes, the end of the data, and the summary."""
     before = made + _record(_DATA_END, bytes(4))
     chunks = [each for each in scan.chunks if each.indexes]
     totals: dict[int, int] = defaultdict(int)

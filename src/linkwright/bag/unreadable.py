@@ -1,4 +1,4 @@
-"""What a file that cannot be read as a recording is instead, told by its first bytes."""
+"""Diagnosing files that cannot be read as recordings, by their first bytes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _HEAD = 64
 
 
 class Verdict(NamedTuple):
-    """Why a file is no recording, what to do, and what else is known of it."""
+    """The reason why a file is no recording, a hint, and notes."""
 
     reason: Phrase
     hint: Phrase | None
@@ -24,7 +24,7 @@ class Verdict(NamedTuple):
 
 
 def verdict_on(path: Path, error: Exception) -> Verdict:
-    """Why a recording cannot be read.
+    """Find out why a recording cannot be read.
 
     Args:
         path: of its file or folder.
@@ -92,7 +92,7 @@ def _missing_files(folder: Path) -> list[str]:
 
 
 def _has_tables(path: Path) -> bool:
-    """Whether a database has what recordings have, or is too damaged to tell."""
+    """Whether a database has the tables of recordings, or is too damaged to tell."""
     import sqlite3
 
     try:

@@ -92,7 +92,7 @@ class BagWriter:
         return sum(each.stat().st_size for each in self.path.iterdir())
 
     def add_topic(self, name: str, type_name: str, offered_qos: Collection[QoSProfile] = ()) -> None:
-        """Make room for a topic; its messages may follow.
+        """Add a topic, whose messages may follow.
 
         Raises:
             LinkwrightError: MSG101, the type is not known; BAG108, the disk refuses.
@@ -127,7 +127,7 @@ class BagWriter:
             raise self._ended(error) from error
 
     def flush(self) -> None:
-        """Have what was written so far survive the end of this process, however it ends.
+        """Flush, so that what was written survives the end of this process, however it ends.
 
         Raises:
             LinkwrightError: BAG108, the disk refuses.
@@ -168,7 +168,7 @@ class BagWriter:
             self._writer.close()
 
     def _ended(self, error: Exception) -> LinkwrightError:
-        """What to say when the disk refuses something; nothing more is written then."""
+        """The error when the disk refuses something; nothing more is written then."""
         storage, self._writer.storage = self._writer.storage, None
         with contextlib.suppress(*_REFUSALS):  # what waits in its buffer is refused again
             if storage is not None:
@@ -188,7 +188,7 @@ class BagWriter:
 
 
 class _File:
-    """What the library takes for the folder that it makes its file in: it is this file."""
+    """A file in the place of the folder that the library makes its file in."""
 
     def __init__(self, path: Path) -> None:
         self.name = path.stem
