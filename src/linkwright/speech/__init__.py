@@ -1,1 +1,1 @@
-"""Commands that are spoken: from sound to words, and from words to what a robot is to do; without ROS."""
+"""Spoken commands: from sound to words, and from words to a robot's actions; without ROS."""

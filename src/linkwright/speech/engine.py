@@ -1,4 +1,4 @@
-"""Engines of speech: sound in; words and a confidence out.
+"""The interface of speech recognition engines.
 
 They are found through entry points of the group ``linkwright.speech_engines``: each names what is called with
 `EngineOptions`, makes a `SpeechEngine`, and raises LinkwrightError where its library or model is not there.
@@ -20,7 +20,7 @@ _GROUP = "linkwright.speech_engines"
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """What an engine made of the sound so far.
+    """A result of an engine, partial or final.
 
     Attributes:
         text: the phrase, as it was given. Empty: there was speech, and it is none of the phrases.
@@ -41,7 +41,7 @@ class Heard:
 
 @dataclass(frozen=True, slots=True)
 class EngineOptions:
-    """What an engine is made with.
+    """Options of an engine.
 
     Attributes:
         phrases: all that may be said; nothing else is to be returned as text.
@@ -55,23 +55,23 @@ class EngineOptions:
 
 
 class SpeechEngine(ABC):
-    """Hears phrases in a stream of sound. One thread at a time calls it."""
+    """Recognises phrases in a stream of sound. One thread at a time calls it."""
 
     @abstractmethod
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Take the next block of the stream, of any length; what has become known by it, in order."""
+        """Process the next block of the stream, of any length; returns new results, in order."""
 
     @abstractmethod
     def finish(self) -> Sequence[Heard]:
-        """The sound has ended, as when a button is let go: what was said until then. The stream may go on after it."""
+        """End the utterance, as when a button is let go; its final results. The stream may go on."""
 
     @property
     def problem(self) -> Diagnostic | None:
-        """Why it can hear nothing, or less than it should, at the moment; None when all is well."""
+        """The reason why it recognises nothing at the moment, or less than it should; None when all is well."""
         return None
 
     def close(self) -> None:  # noqa: B027 - few engines hold anything
-        """Let go of what it holds. Nothing else is called after it."""
+        """Release its resources. Nothing else is called afterwards."""
 
 
 def engine_names() -> tuple[str, ...]:
@@ -80,7 +80,7 @@ def engine_names() -> tuple[str, ...]:
 
 
 def make_engine(name: str, options: EngineOptions) -> SpeechEngine:
-    """An engine by its name.
+    """Make an engine by its name.
 
     Raises:
         LinkwrightError: VOICE101 there is no such engine; else whatever it raises itself.

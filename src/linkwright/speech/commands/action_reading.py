@@ -1,4 +1,4 @@
-"""Reading what a command does, and checking it against the types of its messages."""
+"""Reading the actions of a command file, checked against the types of their messages."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class ActionReader:
         self._document, self._keys, self._places, self._samples = document, keys, places, samples
 
     def read(self) -> Action:
-        """The action.
+        """Read the action.
 
         Raises:
             LinkwrightError: VOICE302 there is not one action, or it is none; VOICE305 it does not fit its type.
@@ -177,7 +177,7 @@ class ActionReader:
         return Launch(package, file, arguments)
 
     def _call(self, keys: Keys, fields: str, find: Callable[[str], Any]) -> tuple[str, str, dict[str, Any]]:
-        """Name, type and fields of what is sent, checked with a value in each slot."""
+        """Name, type and fields of a message to be sent, checked with a value in each slot."""
         name = keys.text("topic" if fields == "message" else "name", needed=True)
         kind = keys.text("type", needed=True)
         values = self._fields(keys, fields)
@@ -215,7 +215,7 @@ class ActionReader:
         return value
 
     def _slot(self, text: str, keys: Keys, key: str) -> Slot | None:
-        """The slot that a text is.
+        """The slot that a text stands for.
 
         Raises:
             LinkwrightError: a phrase of the command does not have it.

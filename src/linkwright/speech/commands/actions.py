@@ -1,4 +1,4 @@
-"""What a command does: one of these, read from the file of commands."""
+"""Actions of commands, as the file of commands declares them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Values: TypeAlias = Mapping[str, Value]
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Stands for what is said in a slot."""
+    """A placeholder for the value that is said in a slot."""
 
     name: str
 
@@ -24,7 +24,7 @@ Amount: TypeAlias = float | Slot
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Move, until a distance or an angle is done, a time is over, or nobody has said anything for too long.
+    """Drive for a distance, an angle or a time, or until nobody has said anything for too long.
 
     Attributes:
         x: forward, as a multiple of the robot's speed; backward is negative.
@@ -45,7 +45,7 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class ScaleSpeed:
-    """Drive faster or slower from now on.
+    """Multiply the speed from now on.
 
     Attributes:
         factor: what the speeds are multiplied by.
@@ -56,7 +56,7 @@ class ScaleSpeed:
 
 @dataclass(frozen=True, slots=True)
 class SetSpeed:
-    """Drive at another speed from now on.
+    """Set the speed from now on.
 
     Attributes:
         speed: m/s.
@@ -67,7 +67,7 @@ class SetSpeed:
 
 @dataclass(frozen=True, slots=True)
 class GoTo:
-    """Go to a place by nav2_msgs/action/NavigateToPose.
+    """Navigate to a place by nav2_msgs/action/NavigateToPose.
 
     Attributes:
         place: name of a place of the file.
@@ -95,7 +95,7 @@ class SendGoal:
 
 @dataclass(frozen=True, slots=True)
 class CallService:
-    """Call any service; an answer that has a ``message`` is said.
+    """Call a service; a ``message`` in its response is said.
 
     Attributes:
         name: of the service.
@@ -125,7 +125,7 @@ class Publish:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Stand still, and end all that a command has begun.
+    """Stop, and end everything that commands have started.
 
     Attributes:
         tells: what is published besides, for others that drive the robot; also when it begins to move otherwise.
@@ -136,7 +136,7 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """Start a launch file, which the next stop ends. No shell reads any of it.
+    """Start a launch file, which the next stop ends. No shell reads any part of it.
 
     Attributes:
         package: where the file is.
@@ -155,7 +155,7 @@ MOTIONS = Drive, GoTo, Launch
 
 
 def filled(template: Any, values: Values) -> Any:
-    """A template with what was said: a text that is a slot alone becomes its value, and in others it is written.
+    """Fill a template: a text that is a slot alone becomes its value, other texts have it inserted.
 
     Args:
         template: texts, numbers, and lists and mappings of them.
@@ -175,10 +175,10 @@ def filled(template: Any, values: Values) -> Any:
 
 
 def amount(given: Amount | None, values: Values) -> float | None:
-    """The number that an amount is."""
+    """The number of an amount."""
     return float(values[given.name]) if isinstance(given, Slot) else given
 
 
 def shown(value: Value) -> str:
-    """A value in a sentence or a message: numbers to a thousandth."""
+    """Format a value for a sentence or a message: numbers to a thousandth."""
     return value if isinstance(value, str) else f"{round(value, 3):g}"

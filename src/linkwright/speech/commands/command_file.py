@@ -1,4 +1,4 @@
-"""The file of commands: YAML with how each is said and what it does, read strictly and told with places."""
+"""The file of commands in YAML, read strictly, with errors at their places."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class _Reader:
         return Place(keys.number("x", needed=True), keys.number("y", needed=True), keys.number("yaw"), frame)
 
     def _name(self, slot: str, name: str, node: yaml.Node | None) -> None:
-        """Take in how a place or an object is called; without a word, as its key."""
+        """Read the names of a place or an object; without any, its key."""
         texts = self._texts(node) if node is not None else {ANY: [(name, None)]}
         said = self._said.setdefault(slot, {})
         for language, each in texts.items():

@@ -1,4 +1,4 @@
-"""All commands that a robot knows: what a text means, and what engines are told that can be said."""
+"""A robot's commands: understanding texts, and the phrases for engines."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ByLanguage = Mapping[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a robot can be sent.
+    """A place to which a robot can be sent.
 
     Attributes:
         x, y: in metres.
@@ -56,7 +56,7 @@ class Command:
 
 @dataclass(frozen=True, slots=True)
 class Understood:
-    """A command that was said.
+    """A command that was understood, with its values.
 
     Attributes:
         command: which.
@@ -88,7 +88,7 @@ class CommandSet:
     answers: Mapping[str, Mapping[str, tuple[Template, ...]]]
 
     def understand(self, text: str) -> Understood | None:
-        """The command that a text is, in any language; None where it is none.
+        """Find the command that a text is, in any language; None for none.
 
         Of several the one with the most words that are said as they are written, and of these the first of the file.
         """
@@ -104,26 +104,26 @@ class CommandSet:
 
     @property
     def languages(self) -> tuple[str, ...]:
-        """The languages that commands are said in."""
+        """The languages of the commands."""
         return tuple(dict.fromkeys(name for each in self.commands for name in each.phrases))
 
     @property
     def stops(self) -> tuple[Command, ...]:
-        """The commands that stop."""
+        """The commands that stop the robot."""
         return tuple(each for each in self.commands if isinstance(each.action, Stop))
 
     def is_stop(self, text: str) -> bool:
-        """Whether a stop is said anywhere in a text, whatever is said around it."""
+        """Whether a text contains a phrase that stops."""
         words = words_of(text)
         return any(has_words(words, template.pieces[0]) for stop in self.stops for template in _all(stop.phrases))
 
     def is_other(self, text: str) -> bool:
-        """Whether a text is a whole command, and no stop."""
+        """Whether a text is exactly a command that does not stop."""
         found = self.understand(text)
         return found is not None and not isinstance(found.command.action, Stop)
 
     def answer(self, text: str) -> bool | None:
-        """Whether a text is a yes or a no; None where it is neither."""
+        """True for a yes, False for a no; None for another text."""
         words = words_of(text)
         for name, is_yes in (("yes", True), ("no", False)):
             if any(template.values(words, {}) is not None for template in _all(self.answers[name])):
@@ -131,17 +131,17 @@ class CommandSet:
         return None
 
     def phrases(self, language: str) -> tuple[str, ...]:
-        """All that can be said in a language, for `EngineOptions`."""
+        """All phrases of a language, for `EngineOptions`."""
         said = self._said(language)
         return tuple(dict.fromkeys(text for each in self._templates(language) for text in each.spoken(said)))
 
     def phrase_count(self, language: str) -> int:
-        """How many there are in a language, without making them."""
+        """The number of phrases in a language, without making them."""
         said = self._said(language)
         return sum(prod(len(said[slot]) for slot in each.slots) for each in self._templates(language))
 
     def _said(self, language: str) -> dict[str, tuple[str, ...]]:
-        """Slot -> what can be said in it."""
+        """The values of each slot, as they are said."""
         return {
             slot: tuple(text for name in (language, ANY) for text in texts.get(name, ()))
             for slot, texts in {**SAYABLE, **self.said}.items()

@@ -1,4 +1,4 @@
-"""Numbers as they are said in English and Chinese: ``one and a half``, ``a hundred and six``, ``一点五``."""
+"""Spoken numbers in English and Chinese: ``one and a half``, ``a hundred and six``, ``一点五``."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _POWERS = {"十": 10, "百": 100, "千": 1000}
 
 
 def number(words: Words) -> float | None:
-    """The number that all of the words are, at least 0; None where they are none."""
+    """The number that all of the words mean, at least 0; None for none."""
     if not words:
         return None
     if len(words) == 1 and words[0][0].isdigit():
@@ -61,7 +61,7 @@ def _english(words: Words) -> float | None:
 
 
 def _whole(words: Words) -> int | None:
-    """A whole number in English, up to 9999."""
+    """An integer in English, up to 9999."""
     for name, power in (("thousand", 1000), ("hundred", 100)):
         if name in words:
             at = words.index(name)
@@ -93,7 +93,7 @@ def _chinese(words: Words) -> float | None:
 
 
 def _chinese_whole(words: Words) -> int | None:
-    """A whole number in Chinese, up to 9999; 一百八 is 180."""
+    """An integer in Chinese, up to 9999; 一百八 is 180."""
     total, digit, power, zero = 0, None, 10_000, False
     for word in words:
         if word in _DIGITS and digit is None:

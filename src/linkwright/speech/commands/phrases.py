@@ -26,12 +26,12 @@ _MANY_OPTIONAL = 6
 
 
 class TemplateError(ValueError):
-    """A phrase is written wrongly; why is its text, a `Phrase`."""
+    """A phrase is malformed; the reason is its text, a `Phrase`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A phrase without brackets.
+    """A phrase whose brackets are expanded.
 
     Attributes:
         text: as it is written.
@@ -45,15 +45,15 @@ class Template:
 
     @property
     def literal_count(self) -> int:
-        """How many words are said as they are written."""
+        """The number of words that are not slots."""
         return sum(map(len, self.pieces))
 
     def values(self, words: Words, names: Names) -> dict[str, Value] | None:
-        """What is said in the slots; None where the words are not this phrase."""
+        """The values of the slots; None if the words do not match."""
         return self._rest(words, 0, names)
 
     def spoken(self, said: Mapping[str, Sequence[str]]) -> Iterator[str]:
-        """All that can be said.
+        """All phrases that it stands for, with all values of its slots.
 
         Args:
             said: slot -> what can be said in it.
@@ -83,7 +83,7 @@ class Template:
 
 
 def templates(text: str, slots: Sequence[str]) -> list[Template]:
-    """The phrases that one with brackets stands for.
+    """Expand the brackets of a phrase.
 
     Args:
         text: the phrase as it is written.

@@ -1,4 +1,4 @@
-"""Quantities as they are said: a number and its unit, in metres, radians and seconds."""
+"""Spoken quantities: a number and its unit, in metres, radians and seconds."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ _EACH_SECOND: Words = ("每", "秒")
 
 
 def quantity(slot: str, words: Words) -> float | None:
-    """What the words say as a slot of `SAYABLE`, in its unit; None where they do not."""
+    """The value of words for a slot of `SAYABLE`, in its unit; None if they do not fit."""
     if slot == "number":
         return number(words)
     if slot == "speed" and words[:2] == _EACH_SECOND:

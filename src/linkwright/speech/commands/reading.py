@@ -1,4 +1,4 @@
-"""Mappings of a YAML file whose keys are known, with errors that name them and their places."""
+"""Reading mappings of a YAML file with known keys; errors name keys and places."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _NULL = "tag:yaml.org,2002:null"
 
 
 class Keys:
-    """A mapping.
+    """Reads the keys of a mapping.
 
     Args:
         document: it is in.
@@ -46,17 +46,17 @@ class Keys:
 
     @classmethod
     def of(cls, document: YamlDocument, name: str, value: yaml.Node) -> Keys:
-        """A mapping of one key."""
+        """Read a mapping with one key."""
         key = yaml.ScalarNode("tag:yaml.org,2002:str", name)
         pair = yaml.MappingNode("tag:yaml.org,2002:map", [(key, value)])
         return cls(document, pair, phrase("texts by language"), None)
 
     def names(self) -> list[str]:
-        """The keys that are there."""
+        """The present keys."""
         return list(self._values)
 
     def node(self, key: str) -> yaml.Node | None:
-        """What stands under a key; None where there is nothing."""
+        """The node under a key; None without one."""
         node = self._values.get(key)
         return None if node is None or node.tag == _NULL else node
 
@@ -73,7 +73,7 @@ class Keys:
         return [(name, inner._values[name]) for name in inner.names()]
 
     def text(self, key: str, *, needed: bool = False) -> str:
-        """The text under a key; empty where there is none and none is needed."""
+        """The text under a key; empty where there is none and none is required."""
         node = self.node(key)
         if node is None and not needed:
             return ""
@@ -82,7 +82,7 @@ class Keys:
         return str(node.value)
 
     def number(self, key: str, *, needed: bool = False) -> float:
-        """The number under a key; 0 where there is none and none is needed."""
+        """The number under a key; 0 where there is none and none is required."""
         node = self.node(key)
         if node is None and not needed:
             return 0.0
@@ -95,7 +95,7 @@ class Keys:
         return value
 
     def flag(self, key: str) -> bool:
-        """Whether it says true under a key."""
+        """The boolean under a key; False without one."""
         node = self.node(key)
         if not isinstance(node, yaml.ScalarNode) or node.value.lower() not in ("true", "false"):
             raise self._missing(key, node, phrase("true or false"))
@@ -113,7 +113,7 @@ class Keys:
         return found
 
     def plain(self, key: str) -> Any:
-        """What stands under a key, as lists, mappings, numbers and texts; an empty mapping where there is nothing."""
+        """The value of a key as lists, mappings, numbers and texts; an empty mapping without one."""
         node = self.node(key)
         if node is None:
             return {}

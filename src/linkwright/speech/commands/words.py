@@ -1,4 +1,4 @@
-"""Words of a text, without what differs between engines: capitals, punctuation, blanks between Chinese characters."""
+"""Splitting texts into words, normalised over engines: capitals, punctuation, blanks between Chinese characters."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _WORD = re.compile(rf"\d+(?:\.\d+)?|[{_HAN}]|(?:(?![{_HAN}])[^\W\d_])+(?:['’][
 
 
 def words_of(text: str) -> Words:
-    """The words of a text: ``Turn left, 90°!`` is turn, left, 90, °, and ``左转 九十度`` is 左, 转, 九, 十, 度."""
+    """Split a text: ``Turn left, 90°!`` is turn, left, 90, °, and ``左转 九十度`` is 左, 转, 九, 十, 度."""
     return tuple(_WORD.findall(unicodedata.normalize("NFKC", text).lower().replace("’", "'")))
 
 
 def has_words(words: Words, wanted: Words) -> bool:
-    """Whether words are in a text one after the other."""
+    """Whether words occur in a text in this order, adjacent."""
     length = len(wanted)
     return any(words[at : at + length] == wanted for at in range(len(words) - length + 1))

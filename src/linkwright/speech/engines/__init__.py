@@ -1,1 +1,1 @@
-"""Engines that others wrote, each behind a module of its own that loads it when it is asked for."""
+"""Adapters of engines of others, each a module that imports its library on demand."""

@@ -1,4 +1,4 @@
-"""A user's own network in an ONNX file: a keyword spotter, which tells which word a stretch of sound is.
+"""The engine ``onnx``: a user's network in an ONNX file that classifies a stretch of sound (keyword spotting).
 
 Its input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1; its output ``[1, classes]``, scores or
 probabilities. The metadata ``names`` has the classes, as JSON (a list, or an object of numbers and names) or with
@@ -53,7 +53,7 @@ class OnnxEngine(SpeechEngine):
         self._heard = 0  # samples
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """There are no partials: the network is asked when an utterance is over."""
+        """Process a block. There are no partial results: the network runs when an utterance is over."""
         self._kept = np.concatenate((self._kept, samples))[-_LONGEST:]
         self._heard += len(samples)
         found: list[Heard] = []
@@ -67,7 +67,7 @@ class OnnxEngine(SpeechEngine):
         return found
 
     def finish(self) -> Sequence[Heard]:
-        """What was said until now."""
+        """End the utterance."""
         if not self._activity.speaking:
             return []
         self._activity.end()
@@ -90,7 +90,7 @@ def _plain(text: str) -> str:
 
 
 def _fitted(said: Samples, length: int) -> NDArray[np.float32]:
-    """Sound of a length: its middle, or all of it with silence on both sides."""
+    """Sound of a length: the middle of it, or all of it with silence on both sides."""
     first = (len(said) - length) // 2
     whole: NDArray[np.float32] = np.zeros(length, np.float32)
     if first >= 0:
@@ -101,7 +101,7 @@ def _fitted(said: Samples, length: int) -> NDArray[np.float32]:
 
 
 def _probabilities(scores: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Scores as probabilities; those that are some already stay as they are."""
+    """Convert scores to probabilities, unless they are some."""
     if scores.min() >= 0.0 and abs(scores.sum() - 1.0) < 1e-3:
         return scores
     powers: NDArray[np.float64] = np.exp(scores - scores.max())

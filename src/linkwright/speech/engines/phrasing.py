@@ -1,4 +1,4 @@
-"""Phrases in the words of an engine's vocabulary, and heard words as phrases again."""
+"""Converting phrases to the vocabulary of an engine, and its results to phrases."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LONGEST_WORD = 8
 
 @dataclass(frozen=True, slots=True)
 class Phrasing:
-    """Phrases as an engine knows them.
+    """Phrases in the vocabulary of an engine.
 
     Attributes:
         phrases: the words that the engine hears -> the phrase as the user wrote it.
@@ -26,7 +26,7 @@ class Phrasing:
 
     @classmethod
     def of(cls, phrases: Iterable[str], knows: Callable[[str], bool], model: Path | str) -> Phrasing:
-        """Put phrases in an engine's words.
+        """Convert phrases to an engine's vocabulary.
 
         A word that the engine does not know is tried in small letters and, where it is written without spaces, as
         Chinese is, divided into the fewest words that it knows.
@@ -58,7 +58,7 @@ class Phrasing:
         return cls(found)
 
     def divided(self, words: Sequence[str]) -> list[tuple[str, int, int]] | None:
-        """Words that were heard as the fewest phrases one after another.
+        """Split recognised words into the fewest phrases.
 
         Returns:
             Each phrase with its first word and the one after its last; None where the words are not such a sequence.
@@ -78,7 +78,7 @@ class Phrasing:
 
 
 def _known(word: str, knows: Callable[[str], bool]) -> list[str] | None:
-    """A word in words of a vocabulary."""
+    """The words of a vocabulary that make up a word."""
     for each in (word, word.lower()):
         if knows(each):
             return [each]

@@ -1,4 +1,4 @@
-"""pocketsphinx: hears phrases of a grammar; its wheel carries a model of American English.
+"""The engine ``pocketsphinx``: a grammar of phrases; its wheel carries a model of American English.
 
 The grammar has nothing for other speech: a quarter of what is none of the phrases is taken for one of them in our
 measurements, and more in noise. So it is an engine for push-to-talk, and Vosk or enrolled words are better where they
@@ -31,7 +31,7 @@ _LEAST = 1e-300  # of what pocketsphinx gives as a number that may be too small 
 
 
 class PocketsphinxEngine(SpeechEngine):
-    """The engine ``pocketsphinx``; its confidence says how well the sounds fit the words, 0.5 as well as is usual.
+    """Recognises phrases by pocketsphinx; confidences tell how well sounds fit the words, 0.5 for the usual fit.
 
     The probability that pocketsphinx itself gives says nothing: it is shared among all ways through the grammar that
     sound alike, and a fifth of what was said clearly had less than 0.1.
@@ -65,7 +65,7 @@ class PocketsphinxEngine(SpeechEngine):
         self._partial = ""
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Partials are phrases that the words so far are."""
+        """Process a block. Partial results are phrases that match the words so far."""
         self._waiting += samples.astype("<i2").tobytes()
         size = self._endpointer.frame_bytes
         found: list[Heard] = []
@@ -77,17 +77,17 @@ class PocketsphinxEngine(SpeechEngine):
         return found
 
     def finish(self) -> Sequence[Heard]:
-        """What was said until now."""
+        """End the utterance."""
         rest, self._waiting = self._waiting or b"\0\0", b""  # it takes no end without a sample
         found = self._take(self._endpointer.end_stream(rest)) if self._endpointer.in_speech else []
         return [*found, *self._end()]
 
     def close(self) -> None:
-        """End an utterance that goes on."""
+        """End an unfinished utterance."""
         self._end()
 
     def _take(self, speech: bytes | None) -> list[Heard]:
-        """Decode what the endpointer takes for speech."""
+        """Decode the part that the endpointer takes for speech."""
         if speech is None:
             return []
         if not self._speaking:
@@ -113,7 +113,7 @@ class PocketsphinxEngine(SpeechEngine):
         return [Heard(text, confidence, False, self._endpointer.speech_start, now)]
 
     def _best(self) -> tuple[str, float]:
-        """The phrase that is heard, as the user wrote it, and its confidence; an empty one where it is none."""
+        """The recognised phrase, as the user wrote it, and its confidence; an empty phrase for none."""
         found = self._decoder.hyp()
         if found is None:
             return "", 0.0
@@ -121,7 +121,7 @@ class PocketsphinxEngine(SpeechEngine):
         return self._phrasing.phrases.get(tuple(words), ""), self._confidence()
 
     def _confidence(self) -> float:
-        """How well the sounds fit the words, compared with those that fit best whatever they belong to."""
+        """The confidence: the score of the words beside that of the best phones in any order."""
         spoken = [each for each in self._decoder.seg() or () if not each.word.startswith(_FILLERS)]
         frames = sum(each.end_frame - each.start_frame + 1 for each in spoken)
         if not frames:
@@ -131,7 +131,7 @@ class PocketsphinxEngine(SpeechEngine):
 
 
 def _jsgf(phrasing: Phrasing) -> str:
-    """A grammar of phrases, each of which is all that is said (JSpeech Grammar Format, W3C note of June 2000)."""
+    """A grammar of complete phrases (JSpeech Grammar Format, W3C note of June 2000)."""
     alternatives = " | ".join(" ".join(words) for words in phrasing.phrases)
     return f"#JSGF V1.0;\ngrammar {_GRAMMAR};\npublic <said> = {alternatives};\n"
 
@@ -157,7 +157,7 @@ _TRIAL = "import json, sys, pocketsphinx; pocketsphinx.Decoder(**json.loads(sys.
 
 
 def _try_in_another_process(folder: Path, settings: dict[str, Any]) -> None:
-    """Load a model where nothing is lost when the library ends the process, as it does over a damaged one."""
+    """Load a model in another process first: the library ends the process over a damaged one."""
     given = [sys.executable, "-c", _TRIAL, json.dumps(settings)]
     trial = subprocess.run(  # noqa: S603 - this very interpreter
         given, check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"

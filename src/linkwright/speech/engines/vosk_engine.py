@@ -1,4 +1,4 @@
-"""Vosk: hears phrases with a model that others trained, in grammar mode.
+"""The engine ``vosk``: a grammar of phrases, with a pretrained model.
 
 The grammar is the phrases and ``[unk]``, which stands for all other speech. What holds ``[unk]``, or a word of which
 the model is less certain than `LEAST_CONFIDENCE`, is none of the phrases: that took false commands of read texts from
@@ -58,7 +58,7 @@ class VoskEngine(SpeechEngine):
         self._began = 0.0  # when the partial result did
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """Partials have the least confidence that counts: their own is not known."""
+        """Process a block. Partial results have the least confidence that counts: their own is unknown."""
         if not len(samples):
             return []
         self._samples += len(samples)
@@ -67,7 +67,7 @@ class VoskEngine(SpeechEngine):
         return self._changed(self._recognizer.PartialResult())
 
     def finish(self) -> Sequence[Heard]:
-        """What was said until now."""
+        """End the utterance."""
         return self._final(self._recognizer.FinalResult())
 
     def _final(self, result: str) -> list[Heard]:
@@ -93,7 +93,7 @@ class VoskEngine(SpeechEngine):
         ]
 
     def _changed(self, result: str) -> list[Heard]:
-        """What is heard so far, when it is other words than before and one phrase or several."""
+        """The partial result, when its words have changed and are one phrase or several."""
         words = json.loads(result).get("partial", "").split()
         if words == self._partial:
             return []

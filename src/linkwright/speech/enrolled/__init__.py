@@ -1,1 +1,1 @@
-"""Words that the user enrolled: recognised by their distance from what was said then, in any language."""
+"""Words enrolled by the user, recognised by their distance from the recordings, in any language."""

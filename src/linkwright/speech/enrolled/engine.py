@@ -1,4 +1,4 @@
-"""The engine ``enrolled``: words that the user said three times each, in any language, with no model to fetch."""
+"""The engine ``enrolled``: words that the user said three times each, in any language, without a model."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ other words.
 
 
 class EnrolledEngine(SpeechEngine):
-    """Compares what is said between two silences with the enrolled words.
+    """Compares each utterance with the enrolled words.
 
     The file may come, change and go while it listens: it is looked at with each block.
 
@@ -60,11 +60,11 @@ class EnrolledEngine(SpeechEngine):
 
     @property
     def problem(self) -> Diagnostic | None:
-        """VOICE201 no word is enrolled that counts; VOICE202, VOICE203 the file was changed to one that is damaged."""
+        """VOICE201 no enrolled word is used; VOICE202, VOICE203 the file was changed and is damaged; None for none."""
         return self._problem
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """See `SpeechEngine.hear`; a word is told as a partial with the block in which it ends."""
+        """See `SpeechEngine.hear`; a word is a partial result with the block in which it ends."""
         self._follow_file()
         heard: list[Heard] = []
         for frame in self._frames.feed(samples):
@@ -94,7 +94,7 @@ class EnrolledEngine(SpeechEngine):
         return int(_TOO_LONG * longest) + 2 * _BEFORE
 
     def _look(self) -> list[Heard]:
-        """What is known of an utterance that goes on."""
+        """The partial result of an utterance."""
         self._looked = self._seen
         guess = self._guess()
         name = self._name(guess)
@@ -104,7 +104,7 @@ class EnrolledEngine(SpeechEngine):
         return [self._heard(name, guess, final=False)]
 
     def _end(self) -> list[Heard]:
-        """The utterance is over."""
+        """End the utterance."""
         guess = self._guess()
         self._activity.end()
         name = self._name(guess)
@@ -122,7 +122,7 @@ class EnrolledEngine(SpeechEngine):
         return self._recogniser.guess(self._kept, self._activity.floor if noise is None else noise)
 
     def _name(self, guess: Guess | None) -> str | None:
-        """The phrase that was said, if it was one of them."""
+        """The recognised phrase, if any."""
         if guess is None or guess.confidence < ACCEPTED:
             return None
         return self._phrases.get(_plain(guess.name))
@@ -168,7 +168,7 @@ def _plain(name: str) -> str:
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:
-    """What changes when a file is written; None where there is none."""
+    """A value that changes when a file is written; None without the file."""
     with suppress(OSError):
         facts = path.stat()
         return facts.st_mtime_ns, facts.st_size, facts.st_ino

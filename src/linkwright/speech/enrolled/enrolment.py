@@ -1,4 +1,4 @@
-"""Enrolling: whether what was said can serve as an example of a word, told in words where it cannot."""
+"""Enrolling words: whether a recording is usable, and the reason if not."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MUCH_ALIKE = 0.85  # of its distance to another word
 
 
 def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> tuple[Diagnostic, ...]:
-    """Take a word said once into the words.
+    """Add a recording of a word, if it is usable.
 
     Args:
         words: gets the take, unless a finding is an error.
@@ -73,7 +73,7 @@ def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> 
 
 
 def _compared(words: Words, name: str, take: Take) -> Diagnostic | None:
-    """Whether a take is like those of its word, and unlike other words; nothing is known of a word's first take."""
+    """Compare a take with those of its word and with other words; a word's first take has nothing to compare with."""
     if not words.takes(name):
         return None
     costs, backwards = Recogniser(words).compare(take)
@@ -99,7 +99,7 @@ def _above(powers: NDArray[np.float64], noise: NDArray[np.float64]) -> NDArray[n
 
 
 def _unfit(name: str, samples: Samples, first: int, last: int) -> Diagnostic | None:
-    """What is wrong with the sound itself."""
+    """The reason why the sound itself is unusable."""
     said = samples[first * HOP : (last - 1) * HOP + WINDOW].astype(np.float64) if last > first else np.zeros(0)
     loudest = 0.0
     if len(said):

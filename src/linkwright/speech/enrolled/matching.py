@@ -1,4 +1,4 @@
-"""How far a sound is from each enrolled take: dynamic time warping of cepstra, over all takes at once.
+"""Dynamic time warping of cepstra: the distance of a sound from each enrolled take, over all takes at once.
 
 For each frame of the sound a path goes on by no, one or two frames of a take: a word may be said twice as fast, and all
 paths have as many costs as the sound has frames. Before and after the word, paths stay in the background. So there is
@@ -37,7 +37,7 @@ _STRETCH = 8  # frames: about a sound of speech
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """How well each take explains a sound. Arrays have the shape ``(takes,)``.
+    """Distances from each take. Arrays have the shape ``(takes,)``.
 
     Attributes:
         cost: mean distance of a frame of the word to the frame of the take, with all that is left over beside the word.
@@ -57,7 +57,7 @@ class Match:
 
 
 class Templates:
-    """Takes, ready to be compared with sounds.
+    """Takes, prepared for comparison.
 
     Args:
         takes: at least one.
@@ -76,7 +76,7 @@ class Templates:
         self._firsts, self._lasts = starts, starts + self.lengths - 1
 
     def match(self, powers: Powers, noise: NDArray[np.float64]) -> Match:
-        """Compare a sound with them.
+        """Compare a sound with all takes.
 
         Args:
             powers: at least one frame, with the word in it and some background before and after.
@@ -95,7 +95,7 @@ class Templates:
         return Match(cost, first, last, beside.astype(np.float32), distances, steps)
 
     def worst(self, match: Match, take: int) -> float:
-        """Mean distance in the worst 80 ms of the best path through a take: where a word differs in one sound."""
+        """The mean distance in the worst 80 ms of the best path through a take: where a word differs in one sound."""
         place, own = int(self._lasts[take]), int(self.lengths[:take].sum()) - int(self._firsts[take])
         found = []
         for frame in range(int(match.last[take]), int(match.first[take]) - 1, -1):
@@ -109,7 +109,7 @@ class Templates:
     def _paths(
         self, distances: _Array, silent: _Array
     ) -> tuple[_Array, NDArray[np.intp], NDArray[np.intp], NDArray[np.int8]]:
-        """Costs, first and last frames and steps of the best paths; they enter a take through two places before it."""
+        """Costs, first and last frames and steps of the best paths; two places before a take are its entrances."""
         count, size = len(distances), int(self._lasts[-1]) + 1
         waited = np.concatenate((np.zeros(1, np.float32), np.cumsum(silent, dtype=np.float32)))
         entries = np.concatenate((self._firsts - 1, self._firsts - 2))
@@ -134,7 +134,7 @@ class Templates:
         return total[last, np.arange(len(self.lengths))] / (last + 1 - first), first, last, steps
 
     def _begins(self, steps: NDArray[np.int8], last: NDArray[np.intp]) -> NDArray[np.intp]:
-        """The frames in which paths that end in these frames entered their takes."""
+        """The start frames in the takes of paths that end in these frames."""
         place, first = self._lasts.copy(), last.copy()
         inside = np.arange(len(place))
         while len(inside):
@@ -145,17 +145,17 @@ class Templates:
 
 
 def _inner(length: int) -> NDArray[np.bool_]:
-    """Which frames of a take with its repeated edges are its own."""
+    """Which frames of a take with repeated edges are its own."""
     return np.pad(np.ones(length, dtype=np.bool_), _BESIDE)
 
 
 def loudness(powers: Powers) -> float:
-    """Power of all bands of the loudest frames."""
+    """The power of the loudest frames over all bands."""
     return float(np.sort(powers.sum(axis=1))[-_LOUDEST:].mean()) + 1e-6
 
 
 def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
-    """Cepstra of masked powers and how they change, shape ``(frames, 2 * (_CEPSTRA + 1))``."""
+    """Cepstra of masked powers and their derivatives, shape ``(frames, 2 * (_CEPSTRA + 1))``."""
     cepstra = _product(10.0 * np.log10(np.maximum(powers, mask)), _COSINES)
     padded = np.pad(cepstra, ((_BESIDE, _BESIDE), (0, 0)), "edge")
     changes = (2.0 * (padded[4:] - padded[:-4]) + (padded[3:-1] - padded[1:-3])) / 10.0
@@ -164,13 +164,13 @@ def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
 
 
 def _distances(sound: _Array, states: _Array) -> _Array:
-    """Euclidean, shape ``(frames of the sound, frames of all takes)``."""
+    """Euclidean distances, shape ``(frames of the sound, frames of all takes)``."""
     squares = np.sum(sound**2, axis=1)[:, None] + np.sum(states**2, axis=1)[None] - 2.0 * _product(sound, states.T)
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)), dtype=np.float32)
 
 
 def _product(left: NDArray[_Float], right: NDArray[_Float]) -> NDArray[_Float]:
-    """Of two matrices, in parts so small that OpenBLAS takes one thread: threads that wait for others take cores."""
+    """The product of two matrices, in parts so small that OpenBLAS uses one thread: waiting threads take cores."""
     rows = max(1, _MOST_OF_ONE_THREAD // right.size)
     return np.concatenate([left[at : at + rows] @ right for at in range(0, len(left), rows)])
 

@@ -1,4 +1,4 @@
-"""Which enrolled word was said, and how sure that is.
+"""Recognising enrolled words, with a confidence.
 
 A word counts only where nothing else is nearer: no other word, not the background, and no take played backwards, which
 is speech of the same voice but no word. Then it is judged by logistic regression on how far the sound is from the best
@@ -28,7 +28,7 @@ _LEAST = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """The enrolled word that is nearest to a sound.
+    """The enrolled word nearest to a sound.
 
     Attributes:
         name: of the word.
@@ -44,7 +44,7 @@ class Guess:
 
 
 class Recogniser:
-    """Knows the words of a user, at least one.
+    """Recognises the words of a user, at least one.
 
     Args:
         words: all that are enrolled; those that nobody asks for are good for telling what is none of the others.
@@ -61,7 +61,7 @@ class Recogniser:
         self.longest = int(self._templates.lengths.max())
 
     def guess(self, powers: Powers, noise: NDArray[np.float64]) -> Guess:
-        """The word that is nearest.
+        """Find the nearest word.
 
         Args:
             powers: of the utterance, with some frames of background before and after it.
@@ -81,18 +81,18 @@ class Recogniser:
         return Guess(self.names[word], confidence, first, last)
 
     def compare(self, take: Take) -> tuple[dict[str, float], float]:
-        """How far a take is from each word, and from the nearest of those played backwards, which are no words."""
+        """The distance of a take from each word, and from the nearest of those played backwards, which are no words."""
         match = self._templates.match(take.powers, take.noise)
         costs = self._costs(match).tolist()
         return dict(zip(self.names, costs, strict=True)), self._nonsense(match)
 
     def prepare(self) -> None:
-        """Compute beforehand what hearing a word for the first time would take longer for."""
+        """Compute in advance what the first recognition of a word would take longer for."""
         for word in range(len(self.names)):
             self._own_worst(word)
 
     def _own_worst(self, word: int) -> float:
-        """How far a word's own takes are from each other where they are farthest, in the middle."""
+        """The median over a word's takes of the worst distance from the nearest other take."""
         if word not in self._own:
             takes = self._takes[word]
             alone = Templates(takes)
@@ -106,11 +106,11 @@ class Recogniser:
         return np.array([match.cost[self._word == number].min() for number in range(len(self.names))])
 
     def _nonsense(self, match: Match) -> float:
-        """What the nearest take that is played backwards costs."""
+        """The distance of the nearest take that is played backwards."""
         return float(match.cost[self._word == -1].min())
 
     def _figures(self, match: Match, cost: float, word: int, take: int, above_noise: float) -> NDArray[np.float64]:
-        """What the confidence is made of, shape ``(4,)``."""
+        """The features of the confidence, shape ``(4,)``."""
         cost = max(cost, _LEAST)
         worst = log(max(self._templates.worst(match, take), _LEAST) / max(self._own_worst(word), _LEAST))
         background, nonsense = (
@@ -120,7 +120,7 @@ class Recogniser:
 
 
 def _backwards(takes: tuple[Take, ...]) -> Take:
-    """The take of middle length, from its end to its beginning."""
+    """The take of median length, reversed."""
     take = sorted(takes, key=lambda one: len(one.powers))[len(takes) // 2]
     return Take(take.powers[::-1], take.noise)
 

@@ -1,4 +1,4 @@
-"""Enrolled words and their file: what was said for each, as spectra from which no voice can be played back.
+"""The file of enrolled words: spectra of their recordings, from which no voice can be played back.
 
 The file is JSON, version 1: ``{"format": "linkwright enrolled words", "version": 1, "words": [...]}``, each word
 ``{"name": "stop", "takes": [{"frames": BASE64, "noise": BASE64}, ...]}``. ``frames`` are the bands of
@@ -39,14 +39,14 @@ _MOST_FRAMES = 400
 
 
 def words_path() -> Path:
-    """The user's file: ``XDG_CONFIG_HOME/linkwright/voice/words.json``, or the same below ``~/.config``."""
+    """The path of the user's file: ``XDG_CONFIG_HOME/linkwright/voice/words.json``, or the same below ``~/.config``."""
     base = os.environ.get("XDG_CONFIG_HOME")
     return (Path(base) if base else Path.home() / ".config") / "linkwright" / "voice" / "words.json"
 
 
 @dataclass(frozen=True, slots=True)
 class Take:
-    """A word said once.
+    """One recording of a word.
 
     Attributes:
         powers: of the frames of the word.
@@ -70,24 +70,24 @@ class Words:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What the words are called: the phrases that they stand for."""
+        """The words: the phrases that they stand for."""
         return tuple(self._takes)
 
     def takes(self, name: str) -> tuple[Take, ...]:
-        """What was said for a word; empty where there is no such word."""
+        """The takes of a word; empty for an unknown one."""
         return self._takes.get(name, ())
 
     def add(self, name: str, take: Take) -> None:
-        """Keep a take as it is; of more than `MOST_TAKES` the oldest goes."""
+        """Add a take; the oldest of more than `MOST_TAKES` is removed."""
         self._takes[name] = (*self.takes(name), take)[-MOST_TAKES:]
 
     def remove(self, name: str) -> None:
-        """Forget a word and all of its takes; one that is not there is no error."""
+        """Remove a word and all of its takes; an unknown one is no error."""
         self._takes.pop(name, None)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Words:
-        """The words of a file.
+        """Read the words of a file.
 
         Raises:
             LinkwrightError: VOICE202 it cannot be read; VOICE203 it is no file of words, or it is damaged.
@@ -110,7 +110,7 @@ class Words:
         return cls(_words(document, shown))
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the file whole or not at all; its folder is made where it is not there.
+        """Write the file whole or not at all; its folder is made if it is missing.
 
         Raises:
             OSError: it cannot be written.
@@ -128,7 +128,7 @@ class Words:
 
 
 def name_problem(name: str) -> Phrase | None:
-    """Why a word cannot be called that; None when it can."""
+    """The reason why a word cannot have a name; None for a valid one."""
     if not name.strip():
         return phrase("it is empty")
     if len(name) > _LONGEST_NAME:
@@ -139,7 +139,7 @@ def name_problem(name: str) -> Phrase | None:
 
 
 def rounded(powers: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Powers as they are when they come back from a file."""
+    """Powers rounded as in a file."""
     return _decoded(_levels(powers)).reshape(powers.shape)
 
 

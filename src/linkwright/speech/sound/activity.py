@@ -1,4 +1,4 @@
-"""Where somebody speaks: frames against a noise floor that follows what is heard.
+"""Voice activity detection: energy of frames against a noise floor that follows the sound.
 
 The floor of each band follows its power while nobody speaks. While somebody speaks it falls with it, and rises only to
 the least that the band had in the last 0.8 s (minimum statistics, after R. Martin): so a fan that is switched on is
@@ -38,7 +38,7 @@ _DEVIATIONS = 1.5  # by which noise that swells is above its mean
 
 
 class VoiceActivity:
-    """Follows a stream frame by frame.
+    """Detects speech in a stream, frame by frame.
 
     Attributes:
         speaking: whether the frame that came last belongs to an utterance, its hangover included.
@@ -56,7 +56,7 @@ class VoiceActivity:
         self._loud = 0
 
     def step(self, frame: NDArray[np.float64]) -> bool:
-        """Take the next frame, shape ``(BANDS,)``; `speaking` after it."""
+        """Process the next frame, shape ``(BANDS,)``; returns `speaking`."""
         self._last.append(frame)
         smooth = np.maximum(sum(self._last) / len(self._last), _LEAST_POWER)
         self._watched.append(smooth)
@@ -76,7 +76,7 @@ class VoiceActivity:
         return self.speaking
 
     def end(self) -> None:
-        """The utterance is over, whatever comes next."""
+        """End the utterance, whatever comes next."""
         self.speaking = False
         self._loud = 0
 
@@ -89,7 +89,7 @@ class VoiceActivity:
 
 
 def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """How strong noise gets that swells and fades, as the talk of others beside a word.
+    """The level of noise that swells and fades, such as others' talk beside a word.
 
     A floor follows the least of such noise, and most of it is far above. It is told from steady noise, and from a word
     that begins softly, by what was heard before somebody spoke: by its level, and by how much that changes.
@@ -115,14 +115,14 @@ def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.flo
 
 
 def _first_loud(powers: Powers) -> int:
-    """The first frame that is nearly as loud as the loudest, and no earlier than a word may begin."""
+    """The first frame nearly as loud as the loudest, and no earlier than a word may begin."""
     totals = np.convolve(powers.sum(axis=1), np.full(_SMOOTHED, 1.0 / _SMOOTHED), "same")
     loudest = np.sort(totals)[-_LOUDEST:].mean()
     return max(_SOFT_BEGINNING, int(np.argmax(totals > 10.0 ** (-_SOFTER / 10.0) * loudest)))
 
 
 def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
-    """Where the longest stretch of speech lies in a sound that is all there.
+    """The longest stretch of speech in a complete sound.
 
     Returns:
         The first frame of it, the frame after its last, and the floor of the noise, shape ``(BANDS,)``; the two

@@ -1,4 +1,4 @@
-"""The system's microphone, through PortAudio, which the library sounddevice finds."""
+"""The microphone, through PortAudio by the library sounddevice."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _FULL = 32_768.0
 
 
 class Microphone:
-    """Listens until it is closed.
+    """Records until it is closed.
 
     A device that cannot be read at 16 kHz is read at its own rate and resampled.
 
@@ -54,7 +54,7 @@ class Microphone:
             raise LinkwrightError(Diagnostic("VOICE413", message, hint=hint)) from None
 
     def close(self) -> None:
-        """Stop listening."""
+        """Stop recording."""
         self._stream.close()
 
     def _rate_of(self, sounddevice: Any, chosen: int | str | None) -> int:

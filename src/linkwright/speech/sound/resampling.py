@@ -1,4 +1,4 @@
-"""From any rate of samples to the one that is used everywhere, without aliases: a polyphase filter, in blocks.
+"""Resampling a stream to `RATE` without aliases, by a polyphase filter, block by block.
 
 The filter is a sinc in a Kaiser window whose pass band ends at 0.92 of half the lower rate; what lies above that half
 is at least 60 dB down. Output begins with the first sample of the input: the filter's delay is taken out.
@@ -23,7 +23,7 @@ _AT_ONCE = 8_192  # samples that come out of one multiplication
 
 
 class Resampler:
-    """Takes a stream of any rate, gives the same sound at `RATE`.
+    """Resamples a stream of any rate to `RATE`.
 
     Args:
         rate: of what comes in, in samples a second, `LOWEST_RATE` to `HIGHEST_RATE`.
@@ -45,7 +45,7 @@ class Resampler:
         self._position = 0  # of the next output, in 1/up of an input sample, counted from the first that is kept
 
     def feed(self, values: NDArray[np.floating]) -> Samples:
-        """The next block of the stream, shape ``(n,)``, full scale at 1; the samples that follow from it.
+        """Process the next block, shape ``(n,)``, full scale at 1; returns the samples that follow from it.
 
         They come late by the half of the filter: 2 ms and less at usual rates; `flush` gives the rest.
         """
@@ -65,12 +65,12 @@ class Resampler:
         return to_samples(found)
 
     def flush(self) -> Samples:
-        """What is still in the filter when the stream has ended."""
+        """The samples still in the filter at the end of the stream."""
         return self.feed(np.zeros(self._half + 1))
 
 
 def resample(values: NDArray[np.floating], rate: int) -> Samples:
-    """A whole sound, shape ``(n,)``, full scale at 1, at `RATE`; as long as it was, to a sample."""
+    """Resample a whole sound, shape ``(n,)``, full scale at 1, to `RATE`; its duration stays, to a sample."""
     if rate == RATE:
         return to_samples(values)
     resampler = Resampler(rate)
@@ -79,6 +79,6 @@ def resample(values: NDArray[np.floating], rate: int) -> Samples:
 
 
 def to_samples(values: NDArray[np.floating]) -> Samples:
-    """Values with full scale at 1 as 16 bits; what is beyond full scale is clipped, what is no number is silence."""
+    """Convert values with full scale at 1 to 16 bits; values beyond full scale are clipped, NaN is silence."""
     steps = np.rint(np.clip(np.nan_to_num(values, nan=0.0), -1.0, 1.0) * 32_768.0)
     return np.asarray(np.clip(steps, -32_768, 32_767), dtype=np.int16)

@@ -1,4 +1,4 @@
-"""The form that sound has everywhere in this room."""
+"""The form of sound in this room."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Short-time spectra on the mel scale, from a stream: what voice activity and recognition are computed from.
+"""Mel spectra of a stream, for voice activity and recognition.
 
 Windows of 25 ms every 10 ms, a first-order pre-emphasis, 26 triangular bands from 80 to 7600 Hz of equal width on the
 mel scale (O'Shaughnessy's, as in HTK).
@@ -31,14 +31,14 @@ _PRE_EMPHASIS = 0.97
 
 
 class MelFrames:
-    """Frames of a stream, whatever the lengths of the blocks that it comes in."""
+    """Computes the frames of a stream from blocks of any length."""
 
     def __init__(self) -> None:
         self._kept: NDArray[np.float64] = np.zeros(0)
         self._last = 0.0
 
     def feed(self, samples: Samples) -> Powers:
-        """The next block; the frames that it completes, perhaps none."""
+        """Process the next block; returns the frames that it completes, perhaps none."""
         if not len(samples):
             return np.zeros((0, BANDS))
         values = samples.astype(np.float64)
@@ -63,7 +63,7 @@ def mel_frames(samples: Samples) -> Powers:
 
 
 def _filters() -> NDArray[np.float64]:
-    """The bands, shape ``(_FFT // 2 + 1, BANDS)``; each sums to 1, so that white noise is equally strong in all."""
+    """The filters of the bands, shape ``(_FFT // 2 + 1, BANDS)``; each sums to 1: white noise is equal in all."""
     lowest, highest = (2595.0 * log10(1.0 + hertz / 700.0) for hertz in (_LOWEST, _HIGHEST))
     mel = np.linspace(lowest, highest, BANDS + 2)
     edges = 700.0 * (10.0 ** (mel / 2595.0) - 1.0)

@@ -1,4 +1,4 @@
-"""WAV files: read in whatever form they come, written as 16 kHz mono.
+"""WAV files: read in any common format, written as 16 kHz mono.
 
 The module `wave` of Python reads neither floating point nor the extensible form that many recorders write.
 """
@@ -27,7 +27,7 @@ _DEPTHS = {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32), (_FLOAT,
 
 @dataclass(frozen=True, slots=True)
 class _Form:
-    """What the chunk ``fmt`` says."""
+    """The format in the chunk ``fmt``."""
 
     kind: int
     channels: int
@@ -36,7 +36,7 @@ class _Form:
 
 
 def read_wav(path: str | os.PathLike[str]) -> Samples:
-    """The sound of a WAV file: PCM of 8 to 32 bits or floating point, channels averaged, resampled to `RATE`.
+    """Read a WAV file: PCM of 8 to 32 bits or floating point, channels averaged, resampled to `RATE`.
 
     A file that was cut off, as by a recorder that was killed, gives what is there.
 
@@ -53,7 +53,7 @@ def read_wav(path: str | os.PathLike[str]) -> Samples:
 
 
 def parse_wav(data: bytes, name: str) -> Samples:
-    """The sound of the bytes of a WAV file.
+    """Read the bytes of a WAV file.
 
     Args:
         data: all of the file.
@@ -97,7 +97,7 @@ def write_wav(path: str | os.PathLike[str], samples: Samples) -> None:
 
 
 def wav_bytes(samples: Samples) -> bytes:
-    """What a WAV file of these samples holds."""
+    """The bytes of a WAV file with samples."""
     sound = samples.astype("<i2").tobytes()
     head = struct.pack("<4sI4s4sIHHIIHH4sI", b"RIFF", 36 + len(sound), b"WAVE", b"fmt ", 16, _PCM, 1, RATE,
                        2 * RATE, 2, 16, b"data", len(sound))  # fmt: skip
@@ -105,7 +105,7 @@ def wav_bytes(samples: Samples) -> bytes:
 
 
 def _chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
-    """The form, and the bytes of the samples."""
+    """The format, and the bytes of the samples."""
     if data[:4] != b"RIFF" or data[8:12] != b"WAVE":
         raise _no_wav(name, phrase("it does not begin as WAV files do"))
     form: _Form | None = None
@@ -127,7 +127,7 @@ def _chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
 
 
 def _values(sound: bytes, form: _Form) -> NDArray[np.float64]:
-    """The samples of all channels in turn, full scale at 1."""
+    """The samples of all channels, interleaved, full scale at 1."""
     if form.kind == _FLOAT:
         return np.frombuffer(sound, f"<f{form.bits // 8}").astype(np.float64)
     if form.bits == 8:
