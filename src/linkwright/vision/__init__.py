@@ -1,1 +1,1 @@
-"""What a camera sees: detectors, where the things are, data to teach detectors with; without ROS."""
+"""Object detection, positions of objects, and datasets for detectors; without ROS."""

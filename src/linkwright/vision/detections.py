@@ -1,4 +1,4 @@
-"""What was found in a picture."""
+"""Detections: boxes, scores and classes in a picture."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class Detections:
         return len(self.scores)
 
     def name(self, index: int) -> str:
-        """The class of a detection, in words."""
+        """The name of a detection's class."""
         return self.names[int(self.classes[index])]
 
     @classmethod
     def none(cls, names: tuple[str, ...]) -> Detections:
-        """A picture without any."""
+        """Detections of an empty picture."""
         return cls(np.zeros((0, 4), np.float32), np.zeros(0, np.float32), np.zeros(0, np.int32), names)

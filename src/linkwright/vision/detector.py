@@ -1,4 +1,4 @@
-"""Detectors: a picture in, boxes out."""
+"""The interface of detectors: a picture in, boxes out."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from linkwright.vision.detections import Detections
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Which detections count. Defaults are those of yolo_ros.
+    """Limits of detections. Defaults are those of yolo_ros.
 
     Attributes:
         threshold: the least score.
@@ -30,21 +30,21 @@ class Limits:
 
 
 class Detector(ABC):
-    """Finds things in pictures. One thread at a time calls it."""
+    """Detects objects in pictures. One thread at a time calls it."""
 
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """The classes that it knows; empty where only pictures tell, as with texts of QR codes."""
+        """The names of its classes; empty where these are known from pictures only, as texts of QR codes."""
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """What who uses it should be told once, such as what of its results is left out."""
+        """Remarks for its user, such as which of its results are left out."""
         return ()
 
     @abstractmethod
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Find what is in a picture.
+        """Detect objects in a picture.
 
         Args:
             picture: shape ``(height, width, 3)``, red, green, blue.

@@ -1,4 +1,4 @@
-"""How good a detector is: average precision as COCO counts it, and what is taken for what."""
+"""Evaluating detectors: average precision as COCO defines it, and confusion of classes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CONFUSION_SCORE, _CONFUSION_OVERLAP = 0.5, 0.5
 
 @dataclass(frozen=True, slots=True)
 class Things:
-    """What is in a picture.
+    """The labelled things in a picture.
 
     Attributes:
         boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels.
@@ -34,13 +34,13 @@ class Things:
     ignored: NDArray[np.bool_]
 
     def where(self, chosen: NDArray[np.bool_]) -> Things:
-        """Some of them."""
+        """The things that a mask selects."""
         return Things(self.boxes[chosen], self.classes[chosen], self.ignored[chosen])
 
 
 @dataclass(frozen=True, slots=True)
 class ClassFigures:
-    """How well one class is found.
+    """The figures of one class.
 
     Attributes:
         name: of the class.
@@ -61,7 +61,7 @@ class ClassFigures:
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """How well things are found in a set of pictures.
+    """The figures of a detector on a set of pictures.
 
     Attributes:
         pictures: how many.
@@ -84,7 +84,7 @@ class Evaluation:
 
 
 def overlap(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float64]:
-    """The intersection over the union of each box with each.
+    """The intersection over union of each box with each.
 
     Args:
         first: shape ``(n, 4)``: left, top, right, bottom.
@@ -103,7 +103,7 @@ def overlap(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[
 
 
 def evaluate(names: Sequence[str], truth: Sequence[Things], found: Sequence[Detections]) -> Evaluation:
-    """Compare what was found with what is there.
+    """Evaluate detections against labels.
 
     Args:
         names: of the classes that `truth` counts with.
@@ -139,7 +139,7 @@ def evaluate(names: Sequence[str], truth: Sequence[Things], found: Sequence[Dete
 
 
 def balanced_score(names: Sequence[str], truth: Sequence[Things], found: Sequence[Detections]) -> float:
-    """The score from which on detections are worth most: where F1 of all classes together is greatest.
+    """The score threshold with the greatest F1 over all classes.
 
     The arguments are those of `evaluate`.
 
@@ -170,7 +170,7 @@ def balanced_score(names: Sequence[str], truth: Sequence[Things], found: Sequenc
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """Detections by the dataset's numbers of classes, the most certain first."""
+    """Detections with the dataset's indices of classes, the most certain first."""
 
     boxes: NDArray[np.float32]
     scores: NDArray[np.float32]
@@ -189,7 +189,7 @@ def _in_terms_of(known: dict[str, int], found: Detections) -> _Found:
 
 
 def _average_precisions(place: int, truth: Sequence[Things], found: Sequence[_Found]) -> NDArray[np.float64] | None:
-    """Of one class, shape (overlaps,); None where there is nothing of it."""
+    """The average precisions of one class, shape (overlaps,); None without a thing of it."""
     there = sum(int(((things.classes == place) & ~things.ignored).sum()) for things in truth)
     if there == 0:
         return None
@@ -214,7 +214,7 @@ def _average_precisions(place: int, truth: Sequence[Things], found: Sequence[_Fo
 
 
 def _within(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[np.float64]:
-    """The share of each box that lies within what is to be ignored, the largest of all such places."""
+    """The part of each box within the ignored regions, the largest over all of them."""
     if not len(hidden):
         return np.zeros(len(boxes))
     inner = np.minimum(boxes[:, None, 2:], hidden[None, :, 2:]) - np.maximum(boxes[:, None, :2], hidden[None, :, :2])
@@ -224,7 +224,7 @@ def _within(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[
 
 
 def _area(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
-    """The mean of the precisions at 101 recalls, each the best that is to be had at this recall or a higher one."""
+    """The mean of interpolated precisions at 101 recalls."""
     best: NDArray[np.float64] = np.maximum.accumulate(precision[::-1])[::-1]
     places = np.searchsorted(recall, _RECALLS, side="left")
     reached = places < len(best)
@@ -232,7 +232,7 @@ def _area(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
 
 
 def _matches(shares: NDArray[np.float64], least: float) -> NDArray[np.int64]:
-    """The thing that each detection, the most certain first, finds, or -1; a thing is found once.
+    """The thing matched by each detection, the most certain first, or -1; a thing is matched once.
 
     Args:
         shares: of each detection with each thing, shape (detections, things).

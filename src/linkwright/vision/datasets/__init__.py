@@ -1,1 +1,1 @@
-"""Pictures of a simulated world with exact labels, to teach detectors with, in COCO and YOLO form."""
+"""Datasets of a simulated world with exact labels, in COCO and YOLO form."""

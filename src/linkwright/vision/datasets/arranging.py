@@ -1,4 +1,4 @@
-"""Where the camera and the things are in a picture."""
+"""Random arrangements of the camera and the things for a picture."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _ROOM = 0.12
 
 @dataclass(frozen=True)
 class Shot:
-    """A camera.
+    """The pose of a camera.
 
     Attributes:
         optics: how it projects.
@@ -45,7 +45,7 @@ class Shot:
 
 
 class _Ground:
-    """What stands where, seen from above."""
+    """The occupied places of the ground, seen from above."""
 
     def __init__(self, stage: Stage, geoms: list[int]) -> None:
         data = stage.simulation.data
@@ -62,7 +62,7 @@ class _Ground:
         self._discs: list[tuple[float, float, float]] = []
 
     def is_free(self, x: float, y: float, radius: float) -> bool:
-        """Whether nothing is within a radius."""
+        """Whether a circle is free."""
         if any((x - a) ** 2 + (y - b) ** 2 < (radius + other) ** 2 for a, b, other in self._discs):
             return False
         if not len(self._half):
@@ -72,18 +72,18 @@ class _Ground:
         return bool((np.hypot(beyond[:, 0], beyond[:, 1]) > radius).all())
 
     def is_open(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
-        """Whether nothing of what stays stands between two places."""
+        """Whether no structure stands between two places."""
         steps = np.linspace(start, end, _STEPS)[:, None] - self._middle
         beyond = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half
         return not (beyond < 0.0).all(axis=2).any()
 
     def take(self, x: float, y: float, radius: float) -> None:
-        """Something is there from now on."""
+        """Occupy a circle."""
         self._discs.append((x, y, radius))
 
 
 def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> Shot:
-    """Put a camera and things into a world.
+    """Arrange a camera and things in a world.
 
     Args:
         stage: the world, begun.
@@ -129,7 +129,7 @@ def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> S
 
 
 def _choose_structures(stage: Stage, generator: np.random.Generator) -> list[int]:
-    """Leave out some of what stands around; what stays."""
+    """Hide some of the structures; returns the others."""
     left = []
     for geoms in stage.structures.values():
         if generator.random() < 0.25:
@@ -140,7 +140,7 @@ def _choose_structures(stage: Stage, generator: np.random.Generator) -> list[int
 
 
 def _camera_place(stage: Stage, ground: _Ground, generator: np.random.Generator) -> tuple[float, float, float]:
-    """Where the camera is and to where it looks: where there is room ahead, if there is any."""
+    """The camera's position and the point that it looks at: where there is room ahead, if there is any."""
     least, greatest = stage.area
     x = y = heading = 0.0
     for _ in range(_TRIES):
@@ -155,7 +155,7 @@ def _camera_place(stage: Stage, ground: _Ground, generator: np.random.Generator)
 
 
 def _chosen(stage: Stage, options: Options, generator: np.random.Generator) -> list[Prop]:
-    """Some things: each class is as likely as the others, however many there are of it."""
+    """A random choice of things: each class is equally likely, however many there are of it."""
     if generator.random() < 0.04:
         return []
     by_class: dict[int, list[Prop]] = {}
@@ -172,7 +172,7 @@ def _chosen(stage: Stage, options: Options, generator: np.random.Generator) -> l
 
 
 def _reach(prop: Prop, focal: float, options: Options) -> tuple[float, float]:
-    """From how near to how far away a thing is neither too large nor too small in a picture, in m."""
+    """The distances in m at which a thing is neither too large nor too small in a picture."""
     spans = np.sort(prop.corners.max(axis=0) - prop.corners.min(axis=0))
     nearest = max(focal * spans[2] / (_LARGEST * options.width), _NEAREST)
     farthest = min(spans[2] / (_SMALLEST * options.width), spans[1] / (1.2 * max(options.least_size, 1))) * focal
@@ -188,7 +188,7 @@ def _free_place(
     generator: np.random.Generator,
     reach: tuple[float, float],
 ) -> tuple[float, float] | None:
-    """A place for something, most often where the camera looks; None where there is none."""
+    """A free place, most often in view of the camera; None if there is none."""
     x, y, heading = camera
     least, greatest = stage.area
     nearest, hidden = reach[0] + radius, generator.random() < _BEHIND
@@ -209,7 +209,7 @@ def _free_place(
 
 
 def _stand(stage: Stage, prop: Prop, place: tuple[float, float], generator: np.random.Generator) -> None:
-    """Put a thing down: upright most often, sometimes lying or above the ground."""
+    """Place a thing: upright most often, sometimes lying or above the ground."""
     turn = _yawed(generator.uniform(-pi, pi))
     if prop.is_round or generator.random() < 0.08:
         turn = _any_turn(generator)

@@ -1,4 +1,4 @@
-"""Which things of a world are of which class."""
+"""Classes of the things in a world."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _TOUCHING = 0.02
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """What gets a box of its own.
+    """A thing with a label of its own.
 
     Attributes:
         name: the model, or ``model::link::visual``.
@@ -53,7 +53,7 @@ class Thing:
 
 @dataclass(frozen=True, slots=True)
 class ClassRules:
-    """Which models or visuals are of which class.
+    """Rules that give models or visuals their classes.
 
     Attributes:
         patterns: class -> patterns of names as of files: of models, of the models that they were included from, and
@@ -63,7 +63,7 @@ class ClassRules:
     patterns: Mapping[str, tuple[str, ...]]
 
     def class_of(self, *names: str) -> int | None:
-        """The class of the first rule that fits one of some names."""
+        """The class of the first rule that matches one of some names; None for none."""
         for number, patterns in enumerate(self.patterns.values()):
             if any(fnmatchcase(name, pattern) for name in names for pattern in patterns):
                 return number
@@ -71,7 +71,7 @@ class ClassRules:
 
 
 def read_classes(path: Path) -> ClassRules:
-    """The rules in a YAML file: ``class: pattern``, ``class: [pattern, ...]``, or ``class:`` for its own name.
+    """Read rules from a YAML file: ``class: pattern``, ``class: [pattern, ...]``, or ``class:`` for its own name.
 
     Raises:
         LinkwrightError: VISION201 it cannot be read, or is something else.
@@ -97,14 +97,14 @@ def _wrong(document: YamlDocument, node: yaml.Node | None) -> LinkwrightError:
 
 
 def usual_class(name: str) -> str:
-    """The class that a model's name tells: without a number at its end and without a colour; ``red_ball_2``: ball."""
+    """The class by a model's name, without a number at its end and without a colour; ``red_ball_2``: ball."""
     words = [word for word in re.split(r"[ _-]+", _NUMBER.sub("", name.lower())) if word]
     plain = [word for word in words if word not in _COLOURS]
     return "_".join(plain or words) or name
 
 
 def usual_rules(simulations: list[Simulation]) -> ClassRules:
-    """Classes of worlds of which nobody says them, in the order of the alphabet: all models but those around them.
+    """The default classes of worlds, sorted by name: all models but surroundings.
 
     A model that was included is named by the file that it came from.
     """
@@ -143,12 +143,12 @@ def things_of(simulation: Simulation, rules: ClassRules) -> list[Thing]:
 
 
 def own_name(model: Model) -> str:
-    """The name that the file of a model gives it, whatever it is called where it is included."""
+    """The name of a model in its file, whatever it is called where it is included."""
     return (model.element.attributes.get("name") if model.element is not None else None) or model.name
 
 
 def geom_boxes(model: Any, data: Any) -> Array:
-    """Boxes around all geoms along the axes of the world: least and greatest corners in m, shape (geoms, 2, 3)."""
+    """Axis-aligned bounding boxes of all geoms in the world: lower and upper corners in m, shape (geoms, 2, 3)."""
     turned = data.geom_xmat.reshape(-1, 3, 3)
     middle = data.geom_xpos + np.einsum("gij,gj->gi", turned, model.geom_aabb[:, :3])
     half = np.einsum("gij,gj->gi", np.abs(turned), model.geom_aabb[:, 3:])
@@ -157,7 +157,7 @@ def geom_boxes(model: Any, data: Any) -> Array:
 
 
 def _visuals(simulation: Simulation) -> dict[str, dict[str, list[str]]]:
-    """Of each model the names of its visuals, and of each of these the geoms."""
+    """The visuals of each model by name, and the geoms of each visual."""
     found: dict[str, dict[str, list[str]]] = {}
     for geom in range(simulation.model.ngeom):
         if simulation.model.geom_group[geom] == VISUAL_GROUP:
@@ -182,7 +182,7 @@ def _is_background(simulation: Simulation, name: str, model: Model) -> bool:
 
 
 def _touching(parts: list[str], geoms: Mapping[str, list[str]], model: Any, boxes: Array) -> Iterator[list[str]]:
-    """Groups of visuals whose boxes touch each other."""
+    """Groups of visuals whose bounding boxes touch each other."""
     left = list(parts)
     around = {part: boxes[[model.geom(geom).id for geom in geoms[part]]] for part in parts}
     around = {part: np.stack([each[:, 0].min(axis=0), each[:, 1].max(axis=0)]) for part, each in around.items()}

@@ -1,4 +1,4 @@
-"""A sheet of small pictures with their boxes, to look at."""
+"""A contact sheet: small pictures with their boxes, for people to look at."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _IGNORED = "#808080"
 
 
 def contact_sheet(pictures: Sequence[Taken], classes: Sequence[str]) -> bytes:
-    """The first `MOST` of some pictures, with names of classes and how much of each thing is visible, as JPEG.
+    """A JPEG of the first `MOST` of some pictures, with names of classes and the visible part of each thing.
 
     Things without a label, because too little of them is visible, have grey boxes.
     """

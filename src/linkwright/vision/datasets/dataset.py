@@ -1,4 +1,4 @@
-"""Making a dataset: pictures by one or several processes, and what is written of them."""
+"""Making a dataset in one or several processes, and writing it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.whole_files import write_whole_file
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """What came of it.
+    """The result of making a dataset.
 
     Attributes:
         folder: the dataset.
@@ -94,7 +94,7 @@ def make_dataset(
 
 
 def _each(taking: Iterator[Taken]) -> Iterator[Taken]:
-    """The same, and what makes them is closed with it."""
+    """Iterate pictures, and close their maker at the end."""
     try:
         yield from taking
     finally:

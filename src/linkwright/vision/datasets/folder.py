@@ -1,4 +1,4 @@
-"""The folder of a dataset: pictures, labels for COCO and YOLO, and the card that says what it was made of.
+"""The folder of a dataset: pictures, labels for COCO and YOLO, and the card.
 
 Source of the forms: "Data format" of cocodataset.org, and the chapter "Object detection datasets" of Ultralytics.
 """
@@ -28,7 +28,7 @@ _FILES = (CARD, "data.yaml", SHEET)
 
 
 class DatasetFolder:
-    """A dataset on the disk. What `finish` has written is complete, whatever ended the making of pictures.
+    """A dataset on the disk. Complete after `finish`, also if making pictures was interrupted.
 
     Args:
         path: the folder.
@@ -55,16 +55,16 @@ class DatasetFolder:
 
     @property
     def count(self) -> int:
-        """How many pictures there are."""
+        """The number of pictures."""
         return sum(map(len, self._images.values()))
 
     def statistics(self) -> dict[str, ClassStatistics]:
-        """What is in the pictures, by class."""
+        """The statistics of the pictures, by class."""
         annotations = [each for split in SPLITS for each in self._annotations[split]]
         return statistics_of(self._classes, self._size, annotations)
 
     def open(self, *, force: bool = False, append: bool = False) -> None:
-        """Make the folder, or go on with the one that is there.
+        """Make the folder, or continue an existing one.
 
         Args:
             force: remove the dataset that is in it.
@@ -109,7 +109,7 @@ class DatasetFolder:
         self._annotations[taken.split] += _coco(taken, width, height)
 
     def finish(self, card: Mapping[str, Any]) -> None:
-        """Write the lists of all pictures and the card. Where there is no room for them, the last pictures go.
+        """Write the lists of all pictures and the card. Without room for them the last pictures are dropped.
 
         Args:
             card: what the pictures that were made now were made of.
@@ -180,7 +180,7 @@ class DatasetFolder:
         return "\n".join(lines) + "\n"
 
     def _take_up(self) -> None:
-        """Read the dataset that is there."""
+        """Read an existing dataset."""
         shown = display_path(self.path)
         try:
             card = json.loads((self.path / CARD).read_text(encoding="utf-8"))
@@ -206,7 +206,7 @@ class DatasetFolder:
         self.first = max(numbers, default=-1) + 1
 
     def _drop(self, count: int) -> None:
-        """Take the last pictures away."""
+        """Remove the last pictures."""
         newest = sorted(each["id"] for images in self._images.values() for each in images)[-count:]
         gone = set(newest)
         for split in SPLITS:
@@ -218,7 +218,7 @@ class DatasetFolder:
             self._annotations[split] = [each for each in self._annotations[split] if each["image_id"] not in gone]
 
     def _remove(self) -> None:
-        """Remove what a dataset has, and leave everything else."""
+        """Remove the files of a dataset, and leave everything else."""
         for part in _PARTS:
             shutil.rmtree(self.path / part, ignore_errors=True)
         _remove([self.path / name for name in _FILES])
@@ -274,7 +274,7 @@ def _occupied(path: Path, *, is_dataset: bool) -> LinkwrightError:
 
 
 def cannot_write(path: Path, error: OSError) -> LinkwrightError:
-    """VISION207: something of a dataset cannot be written."""
+    """The error VISION207: a file of a dataset cannot be written."""
     reason = foreign(error.strerror or error)
     message = phrase("the dataset '{folder}' cannot be written: {reason}", folder=display_path(path), reason=reason)
     return LinkwrightError(Diagnostic("VISION207", message))

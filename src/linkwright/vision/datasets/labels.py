@@ -24,7 +24,7 @@ _BEYOND = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """What is known of a thing in a picture.
+    """The label of a thing in a picture.
 
     Attributes:
         label: the place of its class.
@@ -48,7 +48,7 @@ class Label:
 
 
 def label_picture(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_visible: float) -> list[Label]:
-    """The labels of a picture.
+    """Make the labels of a picture.
 
     Args:
         stage: the world, as it is in the picture.
@@ -82,7 +82,7 @@ def label_picture(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, leas
 
 
 def box_of(mask: Any) -> Box | None:
-    """The box around what is true in a mask of shape (height, width); None where nothing is."""
+    """The bounding box of a mask of shape (height, width); None for an empty one."""
     rows = np.flatnonzero(mask.any(axis=1))
     if not len(rows):
         return None
@@ -92,13 +92,13 @@ def box_of(mask: Any) -> Box | None:
 
 
 def _side_of(mask: Any) -> int:
-    """The shorter side of the box around what is true in a mask."""
+    """The shorter side of a mask's bounding box."""
     box = box_of(mask)
     return min(box[2] - box[0], box[3] - box[1]) if box else 0
 
 
 def runs_of(mask: Any) -> tuple[int, ...]:
-    """The runs of a mask down its columns, beginning with false ones: COCO's uncompressed run lengths."""
+    """Encode a mask by columns, beginning with false pixels: COCO's uncompressed run lengths."""
     flat = mask.ravel(order="F")
     changes = np.flatnonzero(flat[1:] != flat[:-1]) + 1
     ends = [0, *changes.tolist(), len(flat)]
@@ -107,13 +107,13 @@ def runs_of(mask: Any) -> tuple[int, ...]:
 
 
 def mask_of(counts: tuple[int, ...], height: int, width: int) -> Any:
-    """The mask of runs, the inverse of `runs_of`: shape (height, width)."""
+    """Decode run lengths, the inverse of `runs_of`: shape (height, width)."""
     values = np.arange(len(counts)) % 2 == 1
     return np.repeat(values, counts).reshape((height, width), order="F")
 
 
 def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
-    """The box around a thing as if nothing hid it and the picture had no end; its pixels; those of its largest shape.
+    """The unoccluded, untruncated box of a thing; its pixels; those of its largest shape.
 
     Of what is larger than the picture it is made smaller, and the box is right to some pixels.
     """
@@ -139,7 +139,7 @@ def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box,
 
 
 def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
-    """The part of the plane of the picture that a thing is in, some pixels more, and not too far away."""
+    """The part of the image plane that contains a thing, with a margin, and not beyond a limit."""
     optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     local = model.geom_aabb[prop.geoms, None, :3] + signs * model.geom_aabb[prop.geoms, None, 3:]
@@ -158,7 +158,7 @@ def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
 
 
 def _alone(stage: Stage, prop: Prop, look: Callable[[], Any]) -> Any:
-    """What `look` says while a thing is the only one in the world."""
+    """Call `look` while a thing is the only visible one."""
     data = stage.simulation.data
     places = data.geom_xpos.copy()
     own = places[prop.geoms].copy()

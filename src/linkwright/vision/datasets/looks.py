@@ -1,4 +1,4 @@
-"""How a picture looks: lights, colours and patterns, what is behind everything, and what a camera does to it."""
+"""Randomised appearance: lights, colours and patterns, backdrop, and camera effects."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _POOL = 1 << 21
 
 
 def light(stage: Stage, generator: np.random.Generator) -> None:
-    """Light a world by one to three lights of some colour, from some direction.
+    """Light a world by one to three random lights.
 
     None is near: how OpenGL lights an endless plane by one depends on what was drawn before.
     """
@@ -36,7 +36,7 @@ def light(stage: Stage, generator: np.random.Generator) -> None:
 
 
 def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
-    """Give everything other colours; things keep theirs, or one near to it, more often than not."""
+    """Recolour everything; things keep their colour, or a similar one, more often than not."""
     for prop in shot.shown:
         way, groups = generator.random(), {}
         textured = generator.random() < 0.3
@@ -60,7 +60,7 @@ def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
 
 
 def backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None:
-    """Put something behind everything, where a picture shows nothing: a gradient with clouds."""
+    """Put a random backdrop, a gradient with clouds, where a picture shows nothing."""
     nothing = geoms < 0
     if not nothing.any():
         return
@@ -77,13 +77,13 @@ def backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None
 
 
 class Camera:
-    """What a lens and a sensor make of a picture: exposure, white balance, blur, noise."""
+    """Effects of a lens and a sensor: exposure, white balance, blur, noise."""
 
     def __init__(self) -> None:
         self._noise = np.random.default_rng(0).standard_normal(_POOL, dtype=np.float32)
 
     def develop(self, colour: Pixels, generator: np.random.Generator) -> Pixels:
-        """A picture as a camera would have taken it."""
+        """Apply the effects to a picture."""
         gain, gamma = np.exp(generator.normal(0.0, 0.18)), np.exp(generator.normal(0.0, 0.15))
         balance = np.exp(generator.normal(0.0, 0.05, 3))
         levels = np.linspace(0.0, 1.0, 256)[:, None] ** gamma * gain * balance
@@ -109,12 +109,12 @@ def _blurred(colour: Pixels, radius: float) -> Pixels:
 
 
 def _tinted(generator: np.random.Generator, most: float) -> Array:
-    """White with a tint: red, green and blue, the greatest of them 1."""
+    """White with a random tint: red, green and blue, the greatest of them 1."""
     return np.array(colorsys.hsv_to_rgb(generator.random(), generator.uniform(0.0, most), 1.0))
 
 
 def _recoloured(own: tuple[float, ...], way: float, generator: np.random.Generator) -> Array:
-    """A colour instead of that of a thing: the same, one of the same hue, or any."""
+    """A colour for a thing: its own, one of the same hue, or any."""
     hue, saturation, value = colorsys.rgb_to_hsv(*own)
     if way < 0.45:
         return np.array(own)

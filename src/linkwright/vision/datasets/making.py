@@ -1,4 +1,4 @@
-"""Making one picture with its labels."""
+"""Making single pictures with their labels."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _PATTERNS, _PICTURE, _SPLIT = range(3)
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """What a dataset is made of.
+    """The worlds and options of a dataset.
 
     Attributes:
         worlds: files of worlds, or their names.
@@ -50,7 +50,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """A picture.
+    """A picture with its labels.
 
     Attributes:
         index: its number.
@@ -135,7 +135,7 @@ class Studio:
         return Taken(index, split_of(index, options), self._encoded(colour, generator), tuple(labels))
 
     def close(self) -> None:
-        """Free what the renderers have of the system."""
+        """Release the renderers."""
         for stage in self._stages:
             stage.close()
 
@@ -151,7 +151,7 @@ class Studio:
 
 
 def split_of(index: int, options: Options) -> str:
-    """What a picture is for: of each twenty, one after the other, the splits have their shares."""
+    """The split of a picture: of each twenty, in order, the splits have their shares."""
     block, place = divmod(index, _BLOCK)
     order = np.random.default_rng((options.seed, _SPLIT, block)).permutation(_BLOCK)
     share = (int(order[place]) + 0.5) / _BLOCK
@@ -176,7 +176,7 @@ def _model_of(path: Path) -> Model:
 
 
 def _share(simulations: Sequence[Simulation], rules: ClassRules) -> None:
-    """Put the things of each world into the others, as far as they are whole models."""
+    """Add the things of each world to the others, if they are whole models."""
     everything = [dict(simulation.scene.models) for simulation in simulations]
     for simulation in simulations:
         kinds = {own_name(held.model) for held in simulation.scene.models.values()}
@@ -190,7 +190,7 @@ def _share(simulations: Sequence[Simulation], rules: ClassRules) -> None:
 
 
 def _is_labelled(name: str, model: Model, rules: ClassRules) -> bool:
-    """Whether a model, or each visual of it, is of a class."""
+    """Whether a model, or each visual of it, has a class."""
     if rules.class_of(name, own_name(model)) is not None:
         return True
     parts = [f"{name}::{link.name}::{visual.name}" for link in model.links for visual in link.visuals]

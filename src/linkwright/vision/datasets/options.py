@@ -1,4 +1,4 @@
-"""What a dataset is made of."""
+"""Options of a dataset."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ and what a lens and a sensor do."""
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How pictures are made.
+    """Options of making pictures.
 
     Attributes:
         width, height: of pictures, in pixels.

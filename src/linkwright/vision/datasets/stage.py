@@ -1,4 +1,4 @@
-"""A world whose things are moved, coloured and lit anew for each picture, without making MuJoCo's model anew."""
+"""A world whose things are moved, coloured and lit for each picture without compiling MuJoCo's model again."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _DISTRACTORS = ("box", "capsule", "ellipsoid", "cylinder")
 
 @dataclass(frozen=True)
 class Prop:
-    """Something that can be put anywhere.
+    """A movable group of geoms.
 
     Attributes:
         name: of the thing.
@@ -57,7 +57,7 @@ class Prop:
 
 
 class Stage:
-    """A world, and copies of its things, and things without a label.
+    """A world with copies of its things, and unlabelled distractors.
 
     Args:
         simulation: the world; the stage makes its own of it.
@@ -119,7 +119,7 @@ class Stage:
         self.renderer: Renderer = make_renderer(simulation)
 
     def begin(self) -> None:
-        """Put all that stands around back where it was, with the colours that it had, and all things away."""
+        """Reset: structures at their places with their colours, and all things hidden."""
         model, data = self.simulation.model, self.simulation.data
         data.geom_xpos[:], data.geom_xmat[:] = self._places
         model.geom_rgba[:], model.geom_matid[:] = self._colours, self._materials
@@ -128,11 +128,11 @@ class Stage:
         self.hide(self.distractors)
 
     def hide(self, geoms: Sequence[int]) -> None:
-        """Take shapes out of the picture."""
+        """Hide geoms."""
         self.simulation.data.geom_xpos[geoms] = _AWAY
 
     def put(self, prop: Prop, position: Array, turn: Array) -> None:
-        """Put a thing somewhere.
+        """Place a thing.
 
         Args:
             prop: the thing.
@@ -144,7 +144,7 @@ class Stage:
         data.geom_xmat[prop.geoms] = (turn @ prop.turns).reshape(-1, 9)
 
     def shape_distractor(self, geom: int, generator: np.random.Generator) -> float:
-        """Give a thing without a label another size, far from that of a ball, a cube or a drum; its radius in m."""
+        """Give a distractor a random size, far from that of a ball, a cube or a drum; returns its radius in m."""
         model, kinds = self.simulation.model, self._mujoco.mjtGeom
         thin, middle, long = np.sort(generator.uniform(0.03, 0.12, 3)) * [0.5, 1.0, 1.0]
         long = max(long * generator.uniform(2.0, 6.0), 3.0 * middle)
@@ -164,22 +164,22 @@ class Stage:
         return float(np.linalg.norm(half))
 
     def put_distractor(self, geom: int, position: Array, turn: Array) -> None:
-        """Put a thing without a label somewhere, on the height of `position` with its lowest point."""
+        """Place a distractor with its lowest point at the height of `position`."""
         model, data = self.simulation.model, self.simulation.data
         half = np.abs(turn) @ model.geom_aabb[geom, 3:]
         data.geom_xpos[geom] = position + np.array([0.0, 0.0, half[2]])
         data.geom_xmat[geom] = turn.reshape(9)
 
     def colour_of(self, geom: int) -> Any:
-        """The colour that a shape has in the world: red, green, blue and opacity."""
+        """The colour of a geom in the world: red, green, blue and opacity."""
         return self._colours[geom]
 
     def has_picture(self, geom: int) -> bool:
-        """Whether a shape has a picture of its own on it."""
+        """Whether a geom has a texture of its own."""
         return bool(self._materials[geom] >= 0)
 
     def paint(self, geom: int, colour: Array, kind: str = "", number: int = 0) -> None:
-        """Give a shape a colour, and a pattern on it.
+        """Set the colour and the pattern of a geom.
 
         Args:
             geom: the shape.
@@ -193,7 +193,7 @@ class Stage:
             model.geom_matid[geom] = self._patterns[kind][number % _PATTERNS]
 
     def light(self, lights: Sequence[Light], ambient: Array, background: Array) -> None:
-        """Light the world by other lights.
+        """Replace the lights of the world.
 
         Args:
             lights: all there are.
@@ -204,7 +204,7 @@ class Stage:
         self.simulation.world = replace(self._own, lights=tuple(lights), models=(), scene=scene)
 
     def set_patterns(self, generator: np.random.Generator) -> None:
-        """Make all patterns anew; the next picture takes longer."""
+        """Replace all patterns; the next picture takes longer."""
         model = self.simulation.model
         for kind, size in _SIZES.items():
             for number in range(_PATTERNS):
@@ -221,7 +221,7 @@ class Stage:
         self.renderer = make_renderer(self.simulation)  # pictures depend on nothing that was drawn before
 
     def close(self) -> None:
-        """Free what the renderer has of the system."""
+        """Release the renderer."""
         self.renderer.close()
 
     def _area(self, labelled: set[int]) -> Array:
@@ -239,7 +239,7 @@ class Stage:
         return np.stack([middle - half, middle + half])
 
     def _copy(self, things: Sequence[Thing], copies: int) -> list[tuple[Thing, str]]:
-        """Add copies of things as bodies that stand still; each with the name of its original."""
+        """Add copies of things as static bodies; each with the name of its original."""
         model, spec = self.simulation.model, self.simulation.scene.spec
         counts: dict[int, int] = {}
         for thing in things:
@@ -300,7 +300,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class _Facts:
-    """How a thing stands in its world."""
+    """A thing's initial pose and geometry in its world."""
 
     positions: Array
     turns: Array

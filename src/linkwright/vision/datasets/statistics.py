@@ -1,4 +1,4 @@
-"""What is in a dataset: how many things of each class, how large, where, and how much of them is visible."""
+"""Statistics of a dataset: numbers, sizes, positions and visible parts by class."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOSTLY = 0.75
 
 @dataclass
 class ClassStatistics:
-    """What is known of a class.
+    """The statistics of a class.
 
     Attributes:
         things: how many have a label.
@@ -41,7 +41,7 @@ class ClassStatistics:
 def statistics_of(
     classes: Sequence[str], size: tuple[int, int], annotations: Iterable[Mapping[str, Any]]
 ) -> dict[str, ClassStatistics]:
-    """The statistics of each class.
+    """Compute the statistics of each class.
 
     Args:
         classes: their names.
@@ -72,7 +72,7 @@ def statistics_of(
 
 
 def as_table(statistics: Mapping[str, ClassStatistics]) -> str:
-    """Statistics as lines of text."""
+    """Format statistics as lines of text."""
     titles = ("class", "things", "pictures", "small", "medium", "large", "hidden", "truncated", "ignored")
     rows: list[tuple[str, ...]] = [titles]
     for name, each in statistics.items():

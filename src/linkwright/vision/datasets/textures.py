@@ -1,4 +1,4 @@
-"""Patterns that surfaces get: noise, checks, stripes, dots, gradients."""
+"""Random patterns for surfaces: noise, checks, stripes, dots, gradients."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Pixels = np.ndarray[Any, np.dtype[np.uint8]]
 
 
 def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
-    """A square picture of some pattern.
+    """A random square pattern.
 
     Args:
         generator: where chance comes from.
@@ -44,7 +44,7 @@ def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
 
 
 def smooth(generator: np.random.Generator, cells: int, height: int, width: int) -> Any:
-    """Random heights between 0 and 1 on so many cells across, and even between them: shape (height, width)."""
+    """Random values between 0 and 1 on a coarse grid, interpolated between: shape (height, width)."""
     grid = generator.random((cells + 1, cells + 1))
     down, across = np.linspace(0, cells, height, endpoint=False), np.linspace(0, cells, width, endpoint=False)
     rows = _between(grid, down)

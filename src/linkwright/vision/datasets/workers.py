@@ -1,4 +1,4 @@
-"""Processes that make pictures."""
+"""Processes that make pictures in parallel."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _PATIENCE = 10.0
 
 
 def take_in_processes(source: Source, numbers: range, workers: int) -> Iterator[Taken]:
-    """Make pictures in processes of their own.
+    """Make pictures in several processes.
 
     Args:
         source: what they are made of.
@@ -58,7 +58,7 @@ def take_in_processes(source: Source, numbers: range, workers: int) -> Iterator[
 
 
 def _chapters(numbers: range) -> Iterator[range]:
-    """Numbers in parts that share their patterns."""
+    """The numbers of pictures in parts that share their patterns."""
     start = numbers.start
     while start < numbers.stop:
         end = min((start // CHAPTER + 1) * CHAPTER, numbers.stop)
@@ -80,7 +80,7 @@ class _Worker:
         theirs.close()
 
     def take(self, numbers: range) -> None:
-        """Have it make some pictures."""
+        """Assign numbers of pictures."""
         self.left = len(numbers)
         with suppress(OSError):  # it has died; that is found out by who waits for the result
             self.connection.send(numbers)
@@ -102,7 +102,7 @@ class _Worker:
         raise LinkwrightError(*said)
 
     def stop(self) -> None:
-        """End it, whatever it does."""
+        """Kill the process."""
         self.connection.close()
         self._process.terminate()
         self._process.join(_PATIENCE)
@@ -113,7 +113,7 @@ class _Worker:
 
 
 def _serve(source: Source, connection: Connection) -> None:
-    """What a process does."""
+    """The main function of a process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     sys.stdout = sys.stderr
@@ -129,7 +129,7 @@ def _serve(source: Source, connection: Connection) -> None:
 
 
 def _end_with_parent() -> None:
-    """Let nothing outlive what wants the pictures, whatever ended that."""
+    """End this process with its parent, however that ends."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

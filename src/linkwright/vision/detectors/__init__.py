@@ -1,1 +1,1 @@
-"""Detectors: networks in ONNX files, and those of OpenCV that need no network."""
+"""Detectors: networks in ONNX files, and those of OpenCV without a network."""

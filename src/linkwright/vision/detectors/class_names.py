@@ -1,4 +1,4 @@
-"""Names of classes: those in a model's metadata, and those in a file of labels."""
+"""Names of classes, from a model's metadata or a file of labels."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FORMS = phrase("write a name in each line, or as YAML a list of names or a mapp
 
 
 def names_in_metadata(text: str) -> tuple[str, ...] | None:
-    """The classes that a model's metadata name, in order; None when they name none that can be used.
+    """The class names in a model's metadata, in order; None without usable ones.
 
     Args:
         text: a dictionary or a list as Python writes it, which is how Ultralytics' exporters keep it. Nothing of it is
@@ -33,7 +33,7 @@ def names_in_metadata(text: str) -> tuple[str, ...] | None:
 
 
 def read_labels(path: Path) -> tuple[str, ...]:
-    """The classes that a file names, in order.
+    """Read the class names of a file, in order.
 
     Args:
         path: a text with a name in each line; or YAML or JSON (by its ending) with a list, a mapping from numbers to

@@ -28,7 +28,7 @@ COLOURS: Mapping[str, tuple[int, ...]] = {
 
 
 class ColourDetector(Detector):
-    """Boxes around patches of a colour; the score is how much of its box a patch fills, 0.79 for a ball.
+    """Boxes around patches of a colour; the score is the filled part of the box, 0.79 for a ball.
 
     Settings:
         ``colours``
@@ -52,16 +52,16 @@ class ColourDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The colours."""
+        """The names of the colours."""
         return tuple(self._ranges)
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """That it needs no GPU, where it was given one."""
+        """A remark that it needs no GPU, if it was given one."""
         return self._notes
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Find patches."""
+        """Find patches of the colours."""
         cv2 = load_opencv()
         boxes: list[tuple[int, int, int, int]] = []
         scores: list[float] = []
@@ -83,7 +83,7 @@ class ColourDetector(Detector):
 
 
 def mask_of(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
-    """Where a picture has a colour: 255, else 0. Spots smaller than three pixels are left out.
+    """A mask of a colour: 255 where a picture has it, else 0. Spots smaller than three pixels are left out.
 
     Args:
         hsv: shape ``(height, width, 3)``.

@@ -1,4 +1,4 @@
-"""Where networks run, and what detectors that have none say to options that only networks have."""
+"""Devices of networks, and refusing networks' options for detectors without one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _GPU = re.compile(r"(?:cuda(?::(\d+))?|(\d+))$")
 
 
 def gpu_of(device: str) -> str | None:
-    """The number of the GPU that a device is; None for the CPU.
+    """The number of a device's GPU; None for the CPU.
 
     Args:
         device: ``cpu``, ``cuda``, ``cuda:0``, ``0``.
@@ -29,7 +29,7 @@ def gpu_of(device: str) -> str | None:
 
 
 def without_network(options: DetectorOptions) -> tuple[Phrase, ...]:
-    """See to it that a detector that has no network is given nothing that would be one's.
+    """Check that a detector without a network is given no network's options.
 
     Returns:
         What its user should be told once: that it needs no GPU, where it was given one.

@@ -1,4 +1,4 @@
-"""Pictures with what was found in them."""
+"""Drawing detections into pictures."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TEXT_HEIGHT = 12
 
 
 def colour_of(name: str) -> tuple[int, int, int]:
-    """Red, green and blue for a class: always the same for the same name."""
+    """Red, green and blue of a class: always the same for a name."""
     hue = crc32(name.encode()) % _HUES / _HUES * 6.0
     rising = hue % 1.0
     high, up, down = 1.0, rising, 1.0 - rising

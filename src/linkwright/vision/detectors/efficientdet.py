@@ -1,4 +1,4 @@
-"""EfficientDet-Lite in TFLite files, whose boxes are final."""
+"""EfficientDet-Lite in TFLite files, whose outputs are final boxes."""
 
 from __future__ import annotations
 
@@ -60,11 +60,11 @@ class EfficientDetDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The classes that it knows."""
+        """The names of its classes."""
         return self._names
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Find what is in a picture, which is stretched to the size of the input, as TFLite's own library does it."""
+        """Detect objects in a picture, which is stretched to the size of the input, as TFLite's own library does it."""
         if not picture.size:
             return Detections.none(self._names)
         cv2 = load_opencv()
@@ -86,7 +86,7 @@ class EfficientDetDetector(Detector):
 
 
 def _final_outputs(file: Path, interpreter: Any) -> list[int]:
-    """The tensors of boxes, classes, scores and their number; files differ in the order and names of their outputs."""
+    """The tensors of boxes, classes, scores and their number; files differ in order and names of outputs."""
     last = [each for each in interpreter._get_ops_details() if each["op_name"] == _LAST_STEP]
     if len(last) != 1:
         message = phrase("the network in '{file}' has no final boxes, as EfficientDet-Lite has", file=file.name)

@@ -1,4 +1,4 @@
-"""How networks of the YOLO family lay out what they found, by the shapes of their outputs and their metadata.
+"""Layouts of the outputs of YOLO networks, by their shapes and metadata.
 
 Three forms exist. Networks since v8, and YOLOv5 as exported by Ultralytics' newer program (``yolov5u``), have a column
 for each place of the picture: centre, size and a score for each class. The classic YOLOv5 has a row for each place with
@@ -33,7 +33,7 @@ _CORNERS_OF_CENTRES = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0]
 
 
 class Form(Enum):
-    """Where the numbers of a box stand."""
+    """The position of a box's numbers in the output."""
 
     COLUMNS = "xywh and scores in columns"
     ROWS = "xywh, objectness and scores in rows"
@@ -42,7 +42,7 @@ class Form(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Boxes that a network gave, in pixels of its input.
+    """Unfiltered boxes of a network, in pixels of its input.
 
     Attributes:
         boxes: shape ``(n, 4)``: left, top, right, bottom.
@@ -57,7 +57,7 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """How to read the first output of a network.
+    """The layout of a network's first output.
 
     Attributes:
         form: where the numbers stand.
@@ -70,7 +70,7 @@ class Layout:
     left_out: str = ""
 
     def candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
-        """The boxes with at least some score; of those that are not final many are of the same thing.
+        """The boxes with at least some score; unless the layout is final, several are of one object.
 
         Args:
             output: shape ``(1, a, b)``.
@@ -105,7 +105,7 @@ def find_layout(
     labels: int | None,
     labels_file: Path | None = None,
 ) -> Layout:
-    """The layout of a network's outputs.
+    """Find the layout of a network's outputs.
 
     Args:
         shapes: of its outputs, for one picture.
@@ -145,7 +145,7 @@ def find_layout(
 
 
 def wrong_number(file: Path, classes: int, named: int, labels: Path | None) -> LinkwrightError:
-    """The error for names that are more or fewer than the classes of a network: VISION107.
+    """The error for a number of names other than that of a network's classes: VISION107.
 
     Args:
         file: of the network.
@@ -172,7 +172,7 @@ def wrong_number(file: Path, classes: int, named: int, labels: Path | None) -> L
 
 
 def _more_numbers(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[int, str]:
-    """How many numbers stand behind the scores of a box, and of which task."""
+    """The number of values behind a box's scores, and their task."""
     if metadata.task == "pose":
         return metadata.key_numbers, "pose"
     masks = next((shape[1] for shape in shapes[1:] if len(shape) == 4), 0)
@@ -182,7 +182,7 @@ def _more_numbers(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[
 
 
 def _possible(shape: Sequence[int], size: tuple[int, int], more: int, suppressed: bool) -> list[tuple[Form, int]]:
-    """The forms that an output of a shape may have, the likeliest first, with their numbers of classes."""
+    """The possible forms of an output of a shape, the likeliest first, with their numbers of classes."""
     batch, first, second = shape
     if batch != 1:
         return []

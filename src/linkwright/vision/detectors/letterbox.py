@@ -1,4 +1,4 @@
-"""Letterbox: a picture scaled into the input of a network, with grey where it has another shape.
+"""Letterbox: a picture scaled into the input of a network, with grey borders.
 
 As Ultralytics does it (`LetterBox`, `scale_boxes`): one scale for both directions, linear interpolation, the picture in
 the middle, 114 around it. An input of any size is made no larger than it has to be for its stride.
@@ -18,7 +18,7 @@ _GREY = 114
 
 @dataclass(frozen=True, slots=True)
 class Letterbox:
-    """Where a picture is in the input of a network.
+    """The position of a picture in the input of a network.
 
     Attributes:
         width: of the picture, in pixels.
@@ -35,7 +35,7 @@ class Letterbox:
     top: int
 
     def boxes_in_picture(self, boxes: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Boxes of the input, shape ``(n, 4)``, in pixels of the picture, and within it."""
+        """Convert boxes of the input, shape ``(n, 4)``, to pixels of the picture, clipped to it."""
         offset = np.array([self.left, self.top, self.left, self.top], np.float32)
         placed = (boxes - offset) / np.array(self.scale * 2, np.float32)
         limits = np.array([self.width, self.height, self.width, self.height], np.float32)
@@ -46,7 +46,7 @@ class Letterbox:
 def letterboxed(
     picture: NDArray[np.uint8], size: tuple[int, int], multiple: int | None
 ) -> tuple[NDArray[np.uint8], Letterbox]:
-    """A picture as the input of a network.
+    """Scale a picture into the input of a network.
 
     Args:
         picture: shape ``(height, width, 3)``.
@@ -74,7 +74,7 @@ def letterboxed(
 
 
 def tensor_of(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
-    """Pixels, shape ``(rows, columns, 3)``, as numbers from 0 to 1, shape ``(1, 3, rows, columns)``."""
+    """Pixels, shape ``(rows, columns, 3)``, as floats from 0 to 1, shape ``(1, 3, rows, columns)``."""
     cv2 = load_opencv()
     planes = np.empty((1, 3, *pixels.shape[:2]), np.float32)
     for plane, levels in zip(planes[0], cv2.split(pixels), strict=True):

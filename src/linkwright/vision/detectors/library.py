@@ -1,4 +1,4 @@
-"""The libraries that look at pictures beside onnxruntime: OpenCV, which the extra ``vision`` brings, and LiteRT."""
+"""Importing OpenCV, which the extra ``vision`` brings, and LiteRT."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LITERT = "ai-edge-litert"
 
 @cache
 def load_opencv() -> Any:
-    """The module ``cv2``.
+    """Import the module ``cv2``.
 
     Raises:
         LinkwrightError: VISION101 it is not installed.
@@ -26,7 +26,7 @@ def load_opencv() -> Any:
 
 @cache
 def load_litert() -> Any:
-    """The module ``ai_edge_litert.interpreter``, which no extra brings: it is large, and for TFLite files alone.
+    """Import ``ai_edge_litert.interpreter``, which no extra brings: it is large, and for TFLite files only.
 
     Raises:
         LinkwrightError: VISION101 it is not installed.

@@ -20,7 +20,7 @@ _NAMES = ("line",)
 
 
 class LineDetector(Detector):
-    """The largest patch of a colour in the lower part of the picture.
+    """Detects the largest patch of a colour in the lower part of the picture.
 
     The middle of its box is where the line is: ``(x - width / 2) / (width / 2)`` is how far a robot is off, from -1 to
     1 and positive where the line is to the right. The score is the share of rows of that part that have the line.
@@ -46,12 +46,12 @@ class LineDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """One: ``line``."""
+        """One name: ``line``."""
         return _NAMES
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """That it needs no GPU, where it was given one."""
+        """A remark that it needs no GPU, if it was given one."""
         return self._notes
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:

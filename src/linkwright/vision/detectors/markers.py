@@ -1,4 +1,4 @@
-"""The detectors ``aruco``, ``apriltag`` and ``qr``: things that were made to be found."""
+"""The detectors ``aruco``, ``apriltag`` and ``qr``: fiducial markers and codes."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ class MarkerDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The numbers of the markers."""
+        """The ids of the markers."""
         return self._names
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """That it needs no GPU, where it was given one."""
+        """A remark that it needs no GPU, if it was given one."""
         return self._notes
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
@@ -67,14 +67,14 @@ class MarkerDetector(Detector):
 
 
 class AprilTagDetector(MarkerDetector):
-    """As `MarkerDetector`, with the tags that are usual on robots, 36h11."""
+    """As `MarkerDetector`, for the usual tags of robots, 36h11."""
 
     def __init__(self, options: DetectorOptions) -> None:
         super().__init__(options, _USUAL_TAGS)
 
 
 class QrDetector(Detector):
-    """QR codes; the class of a code is its text, its score 1. One that cannot be read is not told of.
+    """QR codes; the class of a code is its text, its score 1. Unreadable ones are left out.
 
     OpenCV finds codes long before it can read them: those are cut out, straightened and enlarged, and read once more.
 
@@ -88,16 +88,16 @@ class QrDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """None: the texts are those in the picture."""
+        """Empty: the texts are those in the picture."""
         return ()
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """That it needs no GPU, where it was given one."""
+        """A remark that it needs no GPU, if it was given one."""
         return self._notes
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Find codes."""
+        """Find and read codes."""
         if min(picture.shape[:2]) < _SMALLEST_SIDE:
             return Detections.none(())
         grey = _grey(picture)
@@ -111,7 +111,7 @@ class QrDetector(Detector):
         return most_certain([_box(each) for each in places], [1.0] * len(read), classes, names, limits, places)
 
     def _read(self, grey: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:
-        """The text of a code with these corners, seen from the front and near; empty if it cannot be read."""
+        """The text of a code with these corners, rectified and enlarged; empty if it cannot be read."""
         cv2 = load_opencv()
         near, far = _QUIET_ZONE, _QUIET_ZONE + _ENLARGED
         square = np.array([(near, near), (far, near), (far, far), (near, far)], np.float32)
@@ -133,5 +133,5 @@ def _grey(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def _box(corners: NDArray[np.float32]) -> list[float]:
-    """Left, top, right, bottom around four points."""
+    """The bounding box of four points: left, top, right, bottom."""
     return [*map(float, corners.min(axis=0)), *map(float, corners.max(axis=0))]

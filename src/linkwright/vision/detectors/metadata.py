@@ -1,4 +1,4 @@
-"""What an ONNX file says of itself, in the words of Ultralytics' exporters."""
+"""Metadata of ONNX files, as Ultralytics' exporters write them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LARGEST_STRIDE = 256
 
 @dataclass(frozen=True, slots=True)
 class Metadata:
-    """Facts about a network; what its file does not say has the usual value.
+    """The metadata of a network; defaults where the file has none.
 
     Attributes:
         names: of its classes; None when the file does not say.
@@ -38,7 +38,7 @@ class Metadata:
 
     @classmethod
     def of(cls, entries: Mapping[str, str]) -> Metadata:
-        """Read the ``metadata_props`` of a file; what is not in its usual form counts as not said."""
+        """Read the ``metadata_props`` of a file; malformed ones are ignored."""
         stride = _literal(entries.get("stride", ""))
         size = _literal(entries.get("imgsz", ""))
         points = _literal(entries.get("kpt_shape", ""))

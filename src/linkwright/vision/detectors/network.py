@@ -67,16 +67,16 @@ class NetworkDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The classes that it knows."""
+        """The names of its classes."""
         return self._names
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """What of the network's results is left out, and where it runs if not where it was to."""
+        """Remarks: ignored outputs, and the device if it is not the wanted one."""
         return tuple(self._notes)
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Find what is in a picture.
+        """Detect objects in a picture.
 
         Raises:
             LinkwrightError: VISION105 the network fails, VISION106 what it gives are not numbers.
@@ -144,7 +144,7 @@ class NetworkDetector(Detector):
 
 
 def _picture_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floating], tuple[int, int] | None]:
-    """Name and numbers of the input, and its height and width where they are always the same."""
+    """Name and element type of the input, and its height and width if they are fixed."""
     shape = list(inputs[0].shape) if len(inputs) == 1 else []
     kind = _NUMBERS.get(inputs[0].type) if len(inputs) == 1 else None
     if len(shape) == 4 and isinstance(shape[0], int) and shape[0] > 1:

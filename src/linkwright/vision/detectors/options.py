@@ -1,4 +1,4 @@
-"""What a detector is made with."""
+"""Options of detectors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LARGEST_SIZE = 8192
 
 @dataclass(frozen=True, slots=True)
 class DetectorOptions:
-    """What a detector is made with; each takes what it has a use for.
+    """Options of a detector; each takes those that it has a use for.
 
     Attributes:
         labels: a file with the names of the classes, instead of those that a network has in itself.

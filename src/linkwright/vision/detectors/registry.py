@@ -1,4 +1,4 @@
-"""Which detectors there are: networks in files, by path or the name that they were fetched under; those of packages.
+"""Finding detectors: networks by path or the name that they were fetched under, and those of packages by entry points.
 
 The latter are entry points of the group ``linkwright.detectors``: each names what is called with `DetectorOptions`,
 makes a `Detector`, and raises LinkwrightError where its library is not there.
@@ -25,12 +25,12 @@ _OTHER_FORMS = (".pt", ".pth", ".weights", ".engine", ".torchscript", ".pb", ".h
 
 
 def detector_names() -> tuple[str, ...]:
-    """The detectors that are installed."""
+    """The names of the installed detectors."""
     return tuple(extensions(_GROUP))
 
 
 def make_detector(model: str, options: DetectorOptions) -> Detector:
-    """A detector by its name, or the network in an ONNX file, or EfficientDet-Lite in a TFLite file.
+    """Make a detector by its name, or from a network in an ONNX or TFLite file.
 
     Models that `linkwright models get` has fetched go by their names.
 

@@ -1,4 +1,4 @@
-"""From what a detector found to what is wanted of it."""
+"""Selecting detections by limits."""
 
 from __future__ import annotations
 

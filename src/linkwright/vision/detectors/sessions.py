@@ -1,4 +1,4 @@
-"""Networks of detectors, on the device that they are to run on."""
+"""Sessions of onnxruntime on a device."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.vision.detectors.devices import gpu_of
 
 
 def session_on(file: Path, device: str) -> tuple[Any, list[Phrase]]:
-    """An ``onnxruntime.InferenceSession``, and what its user should be told once.
+    """Make an ``onnxruntime.InferenceSession``; returns it and remarks for its user.
 
     Args:
         file: the ONNX file.

@@ -1,4 +1,4 @@
-"""Reading the settings of detectors, which come from parameters or a command line."""
+"""Parsing the settings of detectors, from parameters or a command line."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_
 
 
 def bad_setting(name: str, value: object, hint: Phrase | None = None) -> LinkwrightError:
-    """The error for a setting that cannot be what it is: VISION109."""
+    """The error for an invalid setting: VISION109."""
     message = phrase("the setting '{name}' of the detector cannot be '{value}'", name=name, value=value)
     return LinkwrightError(Diagnostic("VISION109", message, hint=hint))
 
 
 def number(settings: Mapping[str, object], name: str, default: float, low: float, high: float) -> float:
-    """A number within limits.
+    """Parse a number within limits.
 
     Raises:
         LinkwrightError: VISION109, it is none.
@@ -26,7 +26,7 @@ def number(settings: Mapping[str, object], name: str, default: float, low: float
 
 
 def choice(settings: Mapping[str, object], name: str, default: str, known: Sequence[str]) -> str:
-    """One of some words.
+    """Parse one of some words.
 
     Raises:
         LinkwrightError: VISION109, it is none of them.
@@ -39,7 +39,7 @@ def choice(settings: Mapping[str, object], name: str, default: str, known: Seque
 
 
 def hsv_range(name: str, value: object) -> tuple[int, ...]:
-    """A range of colours: least hue, saturation and value, then the largest; OpenCV's units, hue to 179, else to 255.
+    """Parse a range of colours: least hue, saturation, value, then the greatest, in OpenCV's units (hue to 179).
 
     Raises:
         LinkwrightError: VISION109, it is no list of six such numbers.

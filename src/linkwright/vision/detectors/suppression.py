@@ -1,4 +1,4 @@
-"""Non-maximum suppression: of boxes of one class that cover the same thing, the most certain stays."""
+"""Non-maximum suppression: of overlapping boxes of one class the most certain is kept."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MOST_CANDIDATES = 30_000
 def suppressed(
     boxes: NDArray[np.float32], scores: NDArray[np.float32], classes: NDArray[np.int32], iou: float, most: int
 ) -> NDArray[np.intp]:
-    """Which boxes stay, the most certain first.
+    """The indices of the kept boxes, the most certain first.
 
     Args:
         boxes: shape ``(n, 4)``: left, top, right, bottom.

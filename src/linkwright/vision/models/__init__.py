@@ -1,1 +1,1 @@
-"""Networks that come with Linkwright, each with its card."""
+"""Networks that come with Linkwright, with their cards."""

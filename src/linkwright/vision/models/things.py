@@ -1,4 +1,4 @@
-"""The network ``things``, which finds what stands in the worlds that come with us; its card is ``things.md``."""
+"""The network ``things``, which detects what stands in the worlds of Linkwright; its card is ``things.md``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ FILE = Path(__file__).with_name("things.onnx")
 
 
 def make_things(options: DetectorOptions) -> Detector:
-    """The detector `things`.
+    """Make the detector `things`.
 
     Raises:
         LinkwrightError: VISION101 onnxruntime or OpenCV is missing.

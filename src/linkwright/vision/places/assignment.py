@@ -1,4 +1,4 @@
-"""Who belongs to whom: the assignment of least cost."""
+"""Minimum-cost assignment (Hungarian method)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.vision.places.camera import Floats
 
 
 def assign(costs: Floats, most: float) -> list[tuple[int, int]]:
-    """Pairs of rows and columns, each at most once, whose costs together are least; those above `most` stay alone.
+    """Pairs of rows and columns, each at most once, of least total cost; none costs more than `most`.
 
     To stay alone costs as much as `most` does, so that a pair is never made at the price of two bad ones.
 

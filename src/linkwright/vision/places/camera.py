@@ -1,4 +1,4 @@
-"""How pixels look into the world: a pinhole, and a lens that distorts.
+"""Camera models: a pinhole, and a lens with distortion.
 
 Source: sensor_msgs/msg/CameraInfo; OpenCV's camera model, whose coefficients these are; axes of REP 103: x to the
 right, y down, z into the picture. Pixel coordinates are those of boxes: pixel 0 is from 0 to 1.
@@ -24,7 +24,7 @@ _LENSES = ("", "plumb_bob", "rational_polynomial")
 
 @dataclass(frozen=True, slots=True)
 class CameraModel:
-    """A camera.
+    """The intrinsics of a camera.
 
     Attributes:
         width, height: of its pictures, pixels.
@@ -42,7 +42,7 @@ class CameraModel:
     distortion: tuple[float, ...] = ()
 
     def scaled(self, width: int, height: int) -> CameraModel:
-        """The same view in a picture of another size."""
+        """The same camera for pictures of another size."""
         if (width, height) == (self.width, self.height):
             return self
         across, down = width / self.width, height / self.height
@@ -57,7 +57,7 @@ class CameraModel:
         )
 
     def rays(self, pixels: Floats) -> Floats:
-        """Where pixels look.
+        """The viewing rays of pixels.
 
         Args:
             pixels: shape ``(n, 2)``, columns and rows.
@@ -72,7 +72,7 @@ class CameraModel:
         return np.stack([x, y, np.ones_like(x)], axis=-1)
 
     def pixels(self, points: Floats) -> Floats:
-        """Where points of the optical frame are in the picture: shapes ``(n, 3)`` and ``(n, 2)``; z must not be 0."""
+        """Project points of the optical frame to the picture: shapes ``(n, 3)`` and ``(n, 2)``; z must not be 0."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if any(self.distortion):
             radial, across, down = self._bent(x, y)
@@ -99,7 +99,7 @@ class CameraModel:
 def camera_model(
     width: int, height: int, k: Sequence[float], d: Sequence[float] = (), p: Sequence[float] = (), lens: str = ""
 ) -> CameraModel:
-    """The camera of a CameraInfo's entries, for pictures as they come from the camera (``image_raw``).
+    """The camera of a CameraInfo, for raw pictures (``image_raw``).
 
     Args:
         width: of its pictures.

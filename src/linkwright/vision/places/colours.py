@@ -59,7 +59,7 @@ def colour_of(picture: NDArray[np.uint8], box: NDArray[np.floating]) -> str | No
 
 
 def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """The places in `COLOURS` of pixels: red, green, blue, shape ``(n, 3)``."""
+    """The indices in `COLOURS` of pixels: red, green, blue, shape ``(n, 3)``."""
     values = np.ascontiguousarray(pixels.T) / 255.0  # a row a channel: compared in half of the time
     most, least = values.max(axis=0), values.min(axis=0)
     chroma = most - least
@@ -81,7 +81,7 @@ def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
 
 
 def _hue(values: Floats, most: Floats, chroma: Floats) -> Floats:
-    """In degrees, 0 for red and for grey."""
+    """The hue in degrees, 0 for red and for grey."""
     red, green, blue = values
     safe = np.maximum(chroma, 1e-9)
     sixths = np.where(

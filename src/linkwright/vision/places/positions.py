@@ -1,4 +1,4 @@
-"""Where the things in boxes are, in metres: from a depth image, or from the ground that they stand on."""
+"""Positions of detected objects in metres, by a depth image or by the ground on which they stand."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _LEAST_FALL = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a thing is, and how large.
+    """The position and size of an object.
 
     Attributes:
         centre: x, y, z in metres, in the camera's optical frame.
@@ -44,7 +44,7 @@ class Place:
 def place_by_depth(
     box: NDArray[np.floating], depths: Floats, camera: CameraModel, *, spread: float = np.inf, farthest: float = np.inf
 ) -> Place | None:
-    """Where a thing is that a depth image shows.
+    """The position of an object by a depth image.
 
     What counts is the nearest surface in the middle of the box that is more than an edge of something: behind a thing
     there is always something else, and often more of it. A thing is taken to be as deep as it is wide, unless its
@@ -87,7 +87,7 @@ def place_by_depth(
 def place_on_ground(
     box: NDArray[np.floating], camera: CameraModel, normal: Floats, height: float, *, farthest: float = np.inf
 ) -> Place | None:
-    """Where a thing is that stands on the ground, which its box ends at.
+    """The position of an object on the ground, by the lower edge of its box.
 
     A thing is taken to be as deep as it is wide. One whose box is about square touches the ground below its middle, as
     a ball does; another one's box ends where its front stands.
@@ -140,7 +140,7 @@ def _gap(depth: float) -> float:
 
 
 def _nearest_surface(known: Floats) -> tuple[float, float]:
-    """The nearest and the farthest depth of the nearest surface that counts, of sorted depths."""
+    """The nearest and the farthest depth of the nearest surface of sufficient size, of sorted depths."""
     gaps = np.diff(known) > np.maximum(_GAP_METRES, _GAP_SHARE * known[:-1])
     surfaces = np.split(known, np.flatnonzero(gaps) + 1)
     for surface in surfaces:

@@ -1,4 +1,4 @@
-"""How a robot looks for a thing, goes to it, and follows it: what it decides, many times a second."""
+"""Seeking: the decisions of a robot that searches an object, drives to it, and follows it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _BEHIND_OBSTACLE = 0.2
 
 
 class Phase(Enum):
-    """What the robot is about."""
+    """The phases of seeking."""
 
     IDLE = "idle"
     LOOKING = "looking"
@@ -30,7 +30,7 @@ class Phase(Enum):
 
 @dataclass(frozen=True, slots=True)
 class SeekSettings:
-    """How a robot seeks.
+    """Settings of seeking.
 
     Attributes:
         distance: how far from the robot's middle the thing's nearest side is in the end, metres.
@@ -51,7 +51,7 @@ class SeekSettings:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What the robot knows now.
+    """The robot's knowledge at a step.
 
     Attributes:
         time: seconds.
@@ -74,7 +74,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A velocity, m/s and rad/s, and what has happened."""
+    """A velocity in m/s and rad/s, and an event."""
 
     linear: float = 0.0
     angular: float = 0.0
@@ -82,7 +82,7 @@ class Move:
 
 
 class Seeker:
-    """Looks for a thing, goes to it; and stops, when it is lost, when nothing is heard of it, when the way is not free.
+    """Seeks an object; stops when it is lost, when detections fail to come, when the way is blocked.
 
     Args:
         settings: how.
@@ -102,18 +102,18 @@ class Seeker:
         self._was_found = False
 
     def stop(self) -> None:
-        """Give up."""
+        """Stop seeking."""
         self.phase = Phase.IDLE
         self.follow = False
         self._forget()
 
     def begin(self, *, follow: bool = False) -> None:
-        """Look for another thing."""
+        """Seek another object."""
         self.stop()
         self.phase, self.follow = Phase.LOOKING, follow
 
     def step(self, view: View) -> Move:
-        """What to do now; to be asked several times a second while it is not idle."""
+        """Decide the next move; called several times a second unless it is idle."""
         if self.phase is Phase.IDLE:
             return Move()
         if view.silence > self.settings.lost_time:

@@ -1,4 +1,4 @@
-"""Which thing is which, from picture to picture.
+"""Tracking objects from picture to picture, after ByteTrack.
 
 Source: SORT (Bewley et al., 2016): boxes that move on as they did, and the assignment by how much they overlap;
 ByteTrack (Zhang et al., 2022): detections of low score keep tracks alive, and begin none.
@@ -26,7 +26,7 @@ _ACCELERATION_NOISE = 3.0
 
 @dataclass(frozen=True, slots=True)
 class TrackerSettings:
-    """How things are followed. Names and defaults are those of ByteTrack's file, where it has them.
+    """Settings of tracking. Names and defaults are those of ByteTrack's file, where it has them.
 
     Attributes:
         high: detections with at least this score begin tracks, and are looked at first (``track_high_thresh``).
@@ -47,7 +47,7 @@ class TrackerSettings:
 
 @dataclass(slots=True)
 class _Track:
-    """One thing: its centre and size (x, y, width, height), how fast they change, and how certain that is.
+    """A tracked object: centre and size (x, y, width, height), their velocities and covariance.
 
     The four are filtered alike and apart: variances of value and speed, and their covariance.
     """
@@ -90,7 +90,7 @@ class _Track:
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """The detections of a picture: boxes as centre and size, names, and when."""
+    """The detections of a picture: boxes as centre and size, names, and stamp."""
 
     boxes: Floats
     names: list[str]
@@ -98,7 +98,7 @@ class _Seen:
 
 
 class Tracker:
-    """Gives things ids, which are never used again.
+    """Gives objects ids, which are never used again.
 
     Args:
         settings: how.
@@ -111,7 +111,7 @@ class Tracker:
         self._last_id = 0
 
     def update(self, detections: Detections, time: float) -> list[int]:
-        """Take in the detections of a picture.
+        """Update the tracks by the detections of a picture.
 
         Args:
             detections: all that a detector found, those of low score too.
@@ -146,7 +146,7 @@ class Tracker:
         return [owners[index].id if index in owners else 0 for index in range(len(detections))]
 
     def _take(self, tracks: Sequence[_Track], candidates: Sequence[int], seen: _Seen) -> dict[int, _Track]:
-        """Correct tracks by detections that are theirs; returns which these are, by the detection."""
+        """Correct tracks by matching detections; returns them by the detection."""
         owners: dict[int, _Track] = {}
         for row, column in self._pairs(tracks, candidates, seen):
             track, index = tracks[row], candidates[column]
@@ -173,7 +173,7 @@ class Tracker:
 
 
 def overlaps(first: NDArray[np.floating], second: NDArray[np.floating]) -> Floats:
-    """How much each of some boxes overlaps each of others, as intersection over union.
+    """The intersection over union of each of some boxes with each of others.
 
     Args:
         first: left, top, right, bottom: shape ``(n, 4)``.

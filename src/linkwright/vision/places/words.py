@@ -1,4 +1,4 @@
-"""Things in words: what somebody asks for, and what is seen, in English and Chinese."""
+"""Objects in words: understanding requests, and sentences about what is seen, in English and Chinese."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ _AHEAD, _BESIDE = 20.0, 110.0
 
 
 class Answer(Enum):
-    """What a robot says of a request."""
+    """The kinds of answers to a request."""
 
     LOOKING = "looking"
     FOUND = "found"
@@ -88,7 +88,7 @@ _ANSWERS = {
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What somebody asked for.
+    """A requested object.
 
     Attributes:
         thing: its name, as `thing_of` has it; empty for anything of that colour.
@@ -102,11 +102,11 @@ class Wanted:
 
     @property
     def language(self) -> str:
-        """The language that it was said in: ``zh`` or ``en``."""
+        """The language of the request: ``zh`` or ``en``."""
         return "en" if self.text.isascii() else "zh"
 
     def is_it(self, name: str, colour: str | None, shape: float = 1.0, score: float = 1.0) -> bool:
-        """Whether this is a thing of that class.
+        """Whether an object of that class is meant.
 
         A class may have its colour in its name, as ``red_ball`` does; one that is nothing but a colour may be any
         thing of that colour, and a ball if it is about as wide as high. A ball of no colour in particular is a patch
@@ -135,7 +135,7 @@ class Wanted:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """Something that is seen: its class, its colour if known, and where: metres ahead and to the left of the robot."""
+    """A seen object: its class, its colour if known, and its distances ahead and to the left of the robot in metres."""
 
     name: str
     colour: str | None
@@ -144,7 +144,7 @@ class Sighting:
 
 
 def thing_of(name: str) -> str:
-    """One name for all names of a thing: lower case, singular; ``ball`` for ``football`` and ``球``."""
+    """A common name for all names of an object: lower case, singular; ``ball`` for ``football`` and ``球``."""
     plain = name.strip().lower()
     if plain in _FIRST:
         return _FIRST[plain]
@@ -153,7 +153,7 @@ def thing_of(name: str) -> str:
 
 
 def wanted(text: str) -> Wanted | None:
-    """What somebody asks for with ``ball``, ``go to the red ball``, ``去红色的球那里``; None for nothing."""
+    """Parse a request: ``ball``, ``go to the red ball``, ``去红色的球那里``; None for nothing."""
     plain = text.strip().strip(".,!?。，！？").lower()
     if plain.isascii():
         plain = _VERBS.sub("", f"{' '.join(plain.split())} ", count=1) if _VERBS.match(plain) else plain
@@ -169,7 +169,7 @@ def wanted(text: str) -> Wanted | None:
 
 
 def described(sightings: Iterable[Sighting], language: str) -> str:
-    """A sentence about what is seen, nearest first, as *I see a red ball 1.2 m ahead and two crates*."""
+    """A sentence about seen objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
     for each in sorted(sightings, key=lambda each: hypot(each.ahead, each.left)):
         groups.setdefault(named(each.name, each.colour, language), []).append(each)
@@ -181,7 +181,7 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
 
 
 def named(name: str, colour: str | None, language: str) -> str:
-    """A thing with its colour: *red ball*, 红色的球."""
+    """An object with its colour: *red ball*, 红色的球."""
     words = [word for word in _words(name) if word not in _ENGLISH_COLOURS]
     told = next((_ENGLISH_COLOURS[word] for word in _words(name) if word in _ENGLISH_COLOURS), colour)
     thing = " ".join(words)
@@ -193,7 +193,7 @@ def named(name: str, colour: str | None, language: str) -> str:
 
 
 def answer(event: Answer, request: Wanted, language: str) -> str:
-    """What the robot says of what has come of a request; the thing as it was asked for, or as it is called there."""
+    """The answer to a request; it names the object as it was asked for, or as it is called there."""
     said = request.text if request.language == language else named(request.thing, request.colour, language)
     return _ANSWERS[event][language].format(it=said)
 

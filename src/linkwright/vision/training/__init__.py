@@ -1,1 +1,1 @@
-"""Networks of our own: taught with labelled pictures, judged, exported with a card. Only the teaching needs PyTorch."""
+"""Training networks: on labelled pictures, evaluated, exported with a card. Only training itself needs PyTorch."""

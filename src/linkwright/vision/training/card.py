@@ -1,4 +1,4 @@
-"""The card of a network: what it was taught with, how well it does, and where it fails."""
+"""The card of a network: its training, its figures, and its failures."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _OFTEN = 0.05  # the share of a class that is taken for another one from which o
 
 @dataclass(frozen=True, slots=True)
 class Examination:
-    """How well a network does on some pictures.
+    """The figures of a network on some pictures.
 
     Attributes:
         title: what the pictures are.
@@ -29,7 +29,7 @@ class Examination:
 
 
 def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination]) -> str:
-    """The card, as Markdown.
+    """Write the card as Markdown.
 
     Args:
         name: of the network.
@@ -48,7 +48,7 @@ def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination
 
 
 def made_of(folder: Path) -> dict[str, str]:
-    """What the card of `linkwright dataset` says of the making; nothing where another program made the dataset."""
+    """The part of a dataset's card about its making; empty for a dataset of another program."""
     making = _making(folder)
     if making is None:
         return {}
@@ -58,7 +58,7 @@ def made_of(folder: Path) -> dict[str, str]:
 
 
 def origin(folder: Path, lesson: Path) -> str:
-    """Of which worlds the pictures of a dataset are, and whether the network was taught with pictures of them, too.
+    """The worlds of a dataset's pictures, and whether the network was trained on them, too.
 
     Args:
         folder: of the dataset that judges.
@@ -77,7 +77,7 @@ def origin(folder: Path, lesson: Path) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Making:
-    """What a dataset was made of: worlds as pairs of name and SHA-256, options in words, files put in."""
+    """The making of a dataset: worlds as pairs of name and SHA-256, options in words, added files."""
 
     worlds: frozenset[tuple[str, str]]
     options: str
@@ -85,7 +85,7 @@ class _Making:
 
 
 def _making(folder: Path) -> _Making | None:
-    """What `linkwright dataset` wrote down of the making; None where there is nothing."""
+    """The making as `linkwright dataset` recorded it; None without a record."""
     try:
         runs = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))["made"]
         worlds = {(Path(each["file"]).stem, str(each["sha256"])) for run in runs for each in run["worlds"]}
@@ -97,7 +97,7 @@ def _making(folder: Path) -> _Making | None:
 
 
 def table(figures: Evaluation) -> list[str]:
-    """Figures of all classes, as lines of a Markdown table."""
+    """The figures of all classes, as lines of a Markdown table."""
     lines = ["| class | things | mAP50 | mAP50-95 | precision | recall |", "| --- | ---: | ---: | ---: | ---: | ---: |"]
     lines += [_row(each) for each in figures.classes]
     things = sum(each.things for each in figures.classes)
@@ -106,7 +106,7 @@ def table(figures: Evaluation) -> list[str]:
 
 
 def confusion(figures: Evaluation) -> list[str]:
-    """What was taken for what, as lines of a Markdown table: a row for what is there, a column for what was said."""
+    """The confusion matrix as lines of a Markdown table: a row for what is there, a column for what was detected."""
     names = [each.name for each in figures.classes]
     lines = [f"| is \\ said | {' | '.join(names)} | nothing |", "| --- |" + " ---: |" * (len(names) + 1)]
     for name, row in zip([*names, "nothing"], figures.confusion.tolist(), strict=True):
@@ -139,7 +139,7 @@ def _number(value: float | None) -> str:
 
 
 def _failures(each: Examination) -> list[str]:
-    """What is found seldom, and what is often taken for something else."""
+    """The classes that are often missed or confused."""
     lines = []
     for name, things, recall in each.figures.recall_by_size:
         if things and recall < _WEAK:

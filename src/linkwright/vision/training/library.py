@@ -8,7 +8,7 @@ from linkwright.diagnostics import missing_extra
 
 
 def need_pytorch() -> None:
-    """Make sure that it is there.
+    """Check that PyTorch is installed.
 
     Raises:
         LinkwrightError: VISION301 it is not installed, or what its networks are exported by is not.

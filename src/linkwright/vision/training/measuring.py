@@ -1,4 +1,4 @@
-"""How well a detector does on labelled pictures."""
+"""Running a detector on labelled pictures and evaluating it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LIMITS = Limits(threshold=0.01, iou=0.6, most=MOST)
 
 
 def measure(model: str | Path, names: Sequence[str], labelled: Sequence[Labelled]) -> Evaluation:
-    """How well a detector finds what is in pictures.
+    """Evaluate a detector on pictures.
 
     Args:
         model: an ONNX file, or the name of a detector.

@@ -1,4 +1,4 @@
-"""What a training is told."""
+"""Options of a training."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _WHOLE = 0.8, 1.25
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What is seen of a picture.
+    """The part of a picture that is shown.
 
     Attributes:
         size: width and height, in pixels.
@@ -24,7 +24,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What a training is told.
+    """Options of a training.
 
     Attributes:
         dataset: folder of the dataset that teaches.
@@ -66,7 +66,7 @@ class Options:
     command: str = ""
 
     def view(self, epoch: int) -> View:
-        """What it sees in an epoch, from 0: parts of the pictures at first, whole ones in the end.
+        """The view in an epoch, from 0: parts of the pictures at first, whole ones in the end.
 
         Features know little of how large a picture is, so small parts teach nearly as much as whole pictures in a
         quarter of the time. What is left for whole ones to teach is things that fill much of a picture.

@@ -1,4 +1,4 @@
-"""Pictures as the network sees them: of one size, changed at random while it learns."""
+"""Pictures as training samples: of one size, with random augmentation."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _LEAST_SHARE = 0.3  # nor one of which less is left
 
 @dataclass(frozen=True, slots=True)
 class Lesson:
-    """Pictures of one size with what is in them.
+    """Pictures of one size with their labels.
 
     Attributes:
         pictures: shape ``(n, height, width, 3)``, red, green, blue.
@@ -37,7 +37,7 @@ class Lesson:
 
 
 def read_picture(labelled: Labelled) -> NDArray[np.uint8]:
-    """The pixels of a picture, shape ``(height, width, 3)``, red, green, blue.
+    """Read a picture: pixels, shape ``(height, width, 3)``, red, green, blue.
 
     Raises:
         LinkwrightError: VISION305, it is no picture.
@@ -53,7 +53,7 @@ def read_picture(labelled: Labelled) -> NDArray[np.uint8]:
 
 
 def read_lesson(labelled: Sequence[Labelled], width: int, height: int) -> Lesson:
-    """Read pictures into memory, fitted into one size with grey around as detectors do it.
+    """Read pictures into memory, scaled to one size with grey borders, as detectors do it.
 
     Raises:
         LinkwrightError: VISION305, one is no picture.
@@ -77,7 +77,7 @@ def read_lesson(labelled: Sequence[Labelled], width: int, height: int) -> Lesson
 
 
 def repeats(lesson: Lesson, classes: int) -> NDArray[np.float64]:
-    """How often each picture is seen in an epoch: once, and more often where something of a rare class is in it.
+    """How often each picture is used in an epoch: once, or more often where it shows a rare class.
 
     A class that is in a share f of the pictures counts as rare below the median m of these shares; its pictures are
     seen sqrt(m / f) times, as with the repeat factors of LVIS (Gupta and others 2019).
@@ -96,7 +96,7 @@ def repeats(lesson: Lesson, classes: int) -> NDArray[np.float64]:
 
 
 def repeated(times: NDArray[np.float64], chance: np.random.Generator) -> NDArray[np.int64]:
-    """The numbers of pictures, each so often; chance decides of fractions."""
+    """The indices of pictures, each repeated; fractions are drawn at random."""
     whole: NDArray[np.int64] = np.floor(times + chance.random(len(times))).astype(np.int64)
     return np.repeat(np.arange(len(times)), whole)
 
@@ -104,7 +104,7 @@ def repeated(times: NDArray[np.float64], chance: np.random.Generator) -> NDArray
 def changed(
     lesson: Lesson, place: int, view: View, chance: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """A part of a picture as another camera in another light might have taken it.
+    """Augment a picture: a random part, moved, with other light and colours.
 
     It is mirrored and scaled; brightness, contrast, colours and sharpness change, and noise is added.
 
@@ -164,7 +164,7 @@ def _in_other_light(picture: NDArray[np.uint8], chance: np.random.Generator) -> 
 
 
 def _moved(things: NDArray[np.float32], turn: NDArray[np.float32], width: int, height: int) -> NDArray[np.float32]:
-    """The boxes in the moved picture; those of which too little is left are to be ignored."""
+    """The boxes in the moved picture; those that are mostly outside are to be ignored."""
     x = things[:, 1::2] * turn[0, 0] + turn[0, 2]
     y = things[:, 2::2] * turn[1, 1] + turn[1, 2]
     whole = np.stack((x.min(1), y.min(1), x.max(1), y.max(1)), 1) if len(things) else np.zeros((0, 4), np.float32)

@@ -1,4 +1,4 @@
-"""Labelled pictures in folders as trainers of the YOLO family read them, which `linkwright dataset` writes.
+"""Reading datasets in the folders of YOLO trainers, which `linkwright dataset` writes.
 
 A YAML file in the folder names the classes and the folders of the pictures, and beside ``images`` lies ``labels``:
 for each picture a text with a line for each thing, its class, the middle, the width and the height of its box as
@@ -34,7 +34,7 @@ PICTURES = frozenset({".bmp", ".jpeg", ".jpg", ".png", ".ppm", ".webp"})
 
 @dataclass(frozen=True, slots=True)
 class Labelled:
-    """A picture and what is in it.
+    """A labelled picture.
 
     Attributes:
         path: of the picture.
@@ -51,7 +51,7 @@ class Labelled:
 
 @dataclass(frozen=True, slots=True)
 class Dataset:
-    """Labelled pictures in splits, of which one teaches and another tells how well it did.
+    """A dataset in splits: one to train on, another to evaluate on.
 
     Attributes:
         folder: where it lies.
@@ -91,7 +91,7 @@ class Dataset:
 
 
 def open_dataset(folder: Path) -> Dataset:
-    """Read what a dataset is made of.
+    """Open a dataset.
 
     Args:
         folder: the folder, or its YAML file.
@@ -124,7 +124,7 @@ def open_dataset(folder: Path) -> Dataset:
 
 
 def _description(folder: Path) -> Path:
-    """The YAML file of a dataset."""
+    """Read the YAML file of a dataset."""
     if not folder.is_dir():
         raise _no_dataset(folder, phrase("it does not exist"), missing_file_hint(folder))
     files = sorted(folder.glob("*.y*ml"))
@@ -149,7 +149,7 @@ def _no_dataset(path: Path, reason: Phrase | Any, hint: Phrase | None = None) ->
 
 
 def _hidden(file: Path, names: tuple[str, ...]) -> dict[str, list[list[float]]]:
-    """What COCO's list of a split says shall be ignored (``iscrowd``), which the texts have no word for.
+    """The ignored regions of COCO's list of a split (``iscrowd``), for which the texts have no word.
 
     Returns:
         Name of the picture -> class, left, top, right, bottom as shares; nothing where there is no such list.
@@ -175,7 +175,7 @@ def _hidden(file: Path, names: tuple[str, ...]) -> dict[str, list[list[float]]]:
 
 
 def _labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> Labelled:
-    """A picture with what its text says, and what shall be ignored.
+    """Read the labels of a picture, with its ignored regions.
 
     Raises:
         LinkwrightError: VISION304, the text is none of labels.
@@ -199,7 +199,7 @@ def _labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> Labell
 
 
 def labels_of(picture: Path) -> Path:
-    """The text with the labels of a picture: the last folder named ``images`` of its path is ``labels`` there."""
+    """The file with a picture's labels: the last folder named ``images`` of its path is ``labels`` there."""
     parts = list(picture.parts)
     for place in range(len(parts) - 2, -1, -1):
         if parts[place] == "images":

@@ -1,4 +1,4 @@
-"""From a dataset to a network with its card: training, export, and the judgement of the file that comes of it."""
+"""From a dataset to a network with its card: training, export, and evaluation of the exported file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Taught:
-    """What came of a training.
+    """The result of a training.
 
     Attributes:
         network: the ONNX file.
@@ -39,7 +39,7 @@ class Taught:
 
 
 def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
-    """Train a network, export it, judge the file, and write its card beside it.
+    """Train a network, export it, evaluate the file, and write its card beside it.
 
     Args:
         options: what is wanted.
@@ -101,7 +101,7 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
 
 
 def judge(model: str, folder: Path, split: str | None) -> Evaluation:
-    """How well a detector does on a dataset.
+    """Evaluate a detector on a dataset.
 
     Args:
         model: an ONNX file, or the name of a detector.
@@ -122,7 +122,7 @@ def _judging_split(dataset: Dataset) -> str:
 def _facts(
     options: Options, dataset: Dataset, lesson: Sequence[Labelled], epochs: int, best: int, network: object
 ) -> dict[str, str]:
-    """What the card says of the making."""
+    """The facts on the making, for the card."""
     parameters = sum(each.numel() for each in network.parameters())  # type: ignore[attr-defined]
     asked = sum(int((~each.ignored).sum()) for each in lesson)
     return {
@@ -140,7 +140,7 @@ def _facts(
 
 
 def sum_of(lesson: Sequence[Labelled]) -> str:
-    """SHA-256 over pictures and labels, in order, by which one can tell whether a dataset is the same."""
+    """SHA-256 over pictures and labels, in order, to identify a dataset."""
     whole = hashlib.sha256()
     for each in lesson:
         whole.update(hashlib.sha256(each.path.read_bytes()).digest())

@@ -1,1 +1,1 @@
-"""What needs PyTorch; imported only after `linkwright.vision.training.library` has found it."""
+"""The part that imports PyTorch; imported only after `linkwright.vision.training.library` has found it."""

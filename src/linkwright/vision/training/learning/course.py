@@ -1,4 +1,4 @@
-"""The training: epochs over a lesson, a smoothed copy of the network that is judged, and what goes on later."""
+"""The training: epochs, a moving average of the weights that is evaluated, and checkpoints."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _SMOOTHING = 0.998  # of the copy that is judged, a step, once it has seen enoug
 
 @dataclass(frozen=True, slots=True)
 class Epoch:
-    """How an epoch went.
+    """The figures of an epoch.
 
     Attributes:
         number: from 1.
@@ -52,7 +52,7 @@ class Epoch:
 
 
 class Course:
-    """A network that learns.
+    """The training of a network.
 
     Args:
         names: of the classes.
@@ -93,7 +93,7 @@ class Course:
         self._optimizer = Optimizer(self.network, options.rate)
 
     def run(self, tell: Callable[[Epoch], None]) -> None:
-        """Learn until the last epoch, with a checkpoint after each.
+        """Train until the last epoch, with a checkpoint after each.
 
         Args:
             tell: hears of each epoch.
@@ -105,7 +105,7 @@ class Course:
             began = time.monotonic()
             losses = self._learn(self.epoch)
             self.epoch += 1
-            judged = self.judge() if self._is_exam() else None
+            judged = self.judge() if self._is_evaluated() else None
             best = judged is not None and judged.map >= self.best_map
             if judged is not None and best:
                 self.best, self.best_map, self.best_epoch = deepcopy(self.smooth.state_dict()), judged.map, self.epoch
@@ -115,17 +115,17 @@ class Course:
 
     @property
     def place(self) -> str:
-        """Where it learns: the name of the GPU, or the kind of the processor."""
+        """The device: the name of the GPU, or the kind of the processor."""
         return torch.cuda.get_device_name(self._device) if self._device.type == "cuda" else platform.machine()
 
     def best_network(self) -> Network:
-        """The network that did best on the other part, ready to be asked."""
+        """The network with the best figures on the validation split, in evaluation mode."""
         network = deepcopy(self.smooth)
         network.load_state_dict(self.best)
         return network.cpu()
 
-    def _is_exam(self) -> bool:
-        """Each fifth epoch, the first ones seldom, the last ones always."""
+    def _is_evaluated(self) -> bool:
+        """Whether this epoch ends with an evaluation: each fifth does, and the last ones."""
         last = self.options.epochs
         return self.epoch % 5 == 0 or self.epoch > last - 3
 
@@ -150,7 +150,7 @@ class Course:
         return float(mean[0]), float(mean[1])
 
     def _batches(self, epoch: int) -> Iterator[tuple[NDArray[np.int64], int]]:
-        """The pictures of each step, in an order that only the seed and the epoch decide."""
+        """The batches of an epoch, in an order that depends on seed and epoch only."""
         chance = np.random.default_rng((self.options.seed, epoch))
         order = chance.permutation(repeated(self._repeats, chance))
         size = min(self.options.batch, len(order))
@@ -169,7 +169,7 @@ class Course:
         return _tensor(pictures, self._device), torch.from_numpy(table).to(self._device)
 
     def _rate(self, steps: int) -> float:
-        """A short rise, then half a cosine down to next to nothing."""
+        """The learning rate: a short warm-up, then half a cosine down to nearly zero."""
         whole = self.options.epochs * steps
         done = min(1.0, self._step / max(1, whole))
         low = _LEAST_RATE + (1 - _LEAST_RATE) * (1 + math.cos(math.pi * done)) / 2
@@ -177,7 +177,7 @@ class Course:
 
     @torch.no_grad()
     def _follow(self) -> None:
-        """Let the smoothed copy come a little nearer."""
+        """Update the moving average."""
         keep = min(_SMOOTHING, (1 + self._step) / (10 + self._step))
         here = self.network.state_dict()
         for name, value in self.smooth.state_dict().items():
@@ -187,16 +187,16 @@ class Course:
                 value.copy_(here[name])
 
     def judge(self) -> Evaluation:
-        """How well the smoothed network does."""
+        """Evaluate the moving average."""
         return evaluate(self.names, *self._examine(self.smooth))
 
     def balance(self, network: Network) -> float:
-        """The score of a network from which on its detections are worth most, see `balanced_score`."""
+        """The score threshold with the greatest F1, see `balanced_score`."""
         return balanced_score(self.names, *self._examine(network))
 
     @torch.no_grad()
     def _examine(self, network: Network) -> tuple[list[Things], list[Detections]]:
-        """What is in the pictures that judge, and what a network finds in them."""
+        """The labels of the validation split, and a network's detections."""
         found: list[Detections] = []
         device = next(network.parameters()).device
         for start in range(0, len(self._exam.things), self.options.batch):
@@ -208,7 +208,7 @@ class Course:
         return [_truth(things) for things in self._exam.things], found
 
     def _found(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
-        """What is in one picture, of boxes (cells, 4) and scores (cells, classes)."""
+        """The detections in one picture, of boxes (cells, 4) and scores (cells, classes)."""
         cells, kinds = np.nonzero(scores >= LIMITS.threshold)
         told: NDArray[np.float32] = scores[cells, kinds]
         classes: NDArray[np.int32] = kinds.astype(np.int32)
@@ -216,7 +216,7 @@ class Course:
         return Detections(boxes[cells[kept]], told[kept], classes[kept], self.names)
 
     def save(self, path: Path) -> None:
-        """Write all that it takes to go on."""
+        """Write a checkpoint."""
         state = {
             "shape": asdict(self.shape),
             "names": list(self.names),
@@ -236,7 +236,7 @@ class Course:
         draft.replace(path)
 
     def load(self, path: Path) -> None:
-        """Go on from a checkpoint.
+        """Continue from a checkpoint.
 
         Raises:
             LinkwrightError: VISION306, it is none, or that of another network.
@@ -261,7 +261,7 @@ class Course:
 
 
 def _tensor(pictures: NDArray[np.uint8], device: torch.device) -> Tensor:
-    """Pictures, shape (batch, height, width, 3), as the network takes them."""
+    """Pictures, shape (batch, height, width, 3), as a tensor for the network."""
     return torch.from_numpy(pictures).to(device).permute(0, 3, 1, 2).float().div_(255)
 
 

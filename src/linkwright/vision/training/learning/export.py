@@ -1,4 +1,4 @@
-"""The network as an ONNX file that any detector node of the YOLOv8 family serves."""
+"""Exporting a network to an ONNX file in the layout of YOLOv8."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LARGE = 64  # numbers; those of fewer stay as they are
 
 
 class _Decoded(nn.Module):
-    """Boxes and scores in one table, as YOLOv8 puts them out."""
+    """Concatenates boxes and scores as YOLOv8 does."""
 
     def __init__(self, network: Network, balance: float) -> None:
         super().__init__()
@@ -43,7 +43,7 @@ def to_onnx(
     facts: Mapping[str, str],
     balance: float = 0.5,
 ) -> bytes:
-    """An ONNX file of a network.
+    """Export a network to an ONNX file.
 
     Its input is one picture of this size, its output ``[1, 4 + classes, cells]``. Weights are stored with 16 bits and
     computed with in 32, which halves the file and changes scores by less than a thousandth.
@@ -89,7 +89,7 @@ def to_onnx(
 
 
 def _halve(model: Any) -> None:
-    """Store weights with 16 bits, and have them widened when the file is loaded."""
+    """Store weights with 16 bits, widened when the file is loaded."""
     casts = []
     for weights in model.graph.initializer:
         values = numpy_helper.to_array(weights)

@@ -1,4 +1,4 @@
-"""Which cells answer for which thing, and how wrong they are.
+"""Assigning cells to things, and the loss.
 
 The cells of a thing are those that already tell it best, by score and overlap together, and the more certain a cell
 shall be the better its box is (task-aligned assignment, Feng and others 2021).
@@ -21,7 +21,7 @@ _SMALL = 1e-7
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """What each cell shall say.
+    """The targets of each cell.
 
     Attributes:
         boxes: shape (batch, cells, 4), pixels; of no meaning where no thing is.
@@ -37,7 +37,7 @@ class Assignment:
 
 
 def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
-    """How much boxes overlap.
+    """The overlap of boxes.
 
     Args:
         first: shape (..., 4), left, top, right, bottom.
@@ -58,7 +58,7 @@ def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
 
 @torch.no_grad()
 def assign(boxes: Tensor, logits: Tensor, middles: Tensor, things: Tensor) -> Assignment:
-    """Give each thing its cells.
+    """Assign cells to each thing.
 
     Args:
         boxes: what the network says, shape (batch, cells, 4).
@@ -95,7 +95,7 @@ def assign(boxes: Tensor, logits: Tensor, middles: Tensor, things: Tensor) -> As
 
 
 def loss(boxes: Tensor, logits: Tensor, middles: Tensor, things: Tensor) -> tuple[Tensor, Tensor]:
-    """How wrong a batch is; the arguments are those of `assign`.
+    """The loss of a batch; the arguments are those of `assign`.
 
     Returns:
         What is to be made small, and its parts: those of the boxes and of the scores, shape (2,), without gradients.

@@ -1,4 +1,4 @@
-"""The network: a small detector without anchors, of plain convolutions, which two cores train in an hour.
+"""The network: a small anchor-free detector of plain convolutions, which two cores train in an hour.
 
 A backbone of half-stages (as in CSPNet, Wang and others 2019) gives features at 8, 16 and 32 pixels a cell, a pyramid
 carries what is coarse to the fine ones and back (PANet, Liu and others 2018), and one head for each says for each
@@ -26,7 +26,7 @@ _FARTHEST = 4.0  # e ** this many strides is the farthest side that a cell can t
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What a network is made of; a checkpoint holds it.
+    """The dimensions of a network; a checkpoint holds them.
 
     Attributes:
         classes: how many it tells apart.
@@ -38,7 +38,7 @@ class Shape:
 
 
 class Convolution(nn.Module):
-    """A convolution, its normalisation and SiLU."""
+    """A convolution with normalisation and SiLU."""
 
     def __init__(self, inputs: int, outputs: int, size: int = 1, stride: int = 1) -> None:
         super().__init__()
@@ -51,7 +51,7 @@ class Convolution(nn.Module):
 
 
 class HalfStage(nn.Module):
-    """Residual blocks over one half of the channels; the other half goes by."""
+    """Residual blocks over one half of the channels; the other half bypasses them."""
 
     def __init__(self, inputs: int, outputs: int, blocks: int, *, residual: bool = True) -> None:
         super().__init__()
@@ -72,7 +72,7 @@ class HalfStage(nn.Module):
 
 
 class Pooling(nn.Module):
-    """What is around each cell, near and far: pooled once, twice and three times (SPPF)."""
+    """Spatial pyramid pooling, by pooling once, twice and three times (SPPF)."""
 
     def __init__(self, channels: int) -> None:
         super().__init__()
@@ -89,7 +89,7 @@ class Pooling(nn.Module):
 
 
 class Head(nn.Module):
-    """What one level says of each of its cells."""
+    """The predictions of one level for each of its cells."""
 
     def __init__(self, channels: int, classes: int) -> None:
         super().__init__()
@@ -109,7 +109,7 @@ class Head(nn.Module):
 
 
 class Network(nn.Module):
-    """Pictures to what each cell says."""
+    """The whole network: from pictures to predictions of each cell."""
 
     def __init__(self, shape: Shape) -> None:
         super().__init__()
@@ -131,7 +131,7 @@ class Network(nn.Module):
         self.heads = nn.ModuleList(Head(width * c, shape.classes) for width in (4, 8, 8))
 
     def forward(self, pictures: Tensor) -> tuple[Tensor, Tensor]:
-        """What each cell says of what is in it.
+        """Predict.
 
         Args:
             pictures: shape (batch, 3, height, width), red, green, blue between 0 and 1; both sides are multiples of 32.
@@ -162,7 +162,7 @@ def _doubled(features: Tensor) -> Tensor:
 
 @cache
 def cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
-    """Where the cells of all levels are in a picture of this size.
+    """The positions of the cells of all levels in a picture of this size.
 
     Returns:
         Their middles in pixels, shape (cells, 2), and the strides of their levels, shape (cells, 1).

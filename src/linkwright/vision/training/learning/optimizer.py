@@ -1,4 +1,4 @@
-"""What moves the weights: kernels by steps of one size in all directions, the rest by AdamW."""
+"""The optimizer: Muon for kernels, AdamW for the rest."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ class Optimizer:
         self._adamw = torch.optim.AdamW(groups, lr=rate, betas=(0.9, 0.98))
 
     def forget_gradients(self) -> None:
-        """Before gradients of a step are computed."""
+        """Reset the gradients before a step."""
         self._network.zero_grad(set_to_none=True)
 
     @torch.no_grad()
     def step(self, rate: float) -> None:
-        """Move all weights by their gradients."""
+        """Update all weights by their gradients."""
         for group in self._adamw.param_groups:
             group["lr"] = rate
         self._adamw.step()
@@ -61,11 +61,11 @@ class Optimizer:
             kernel.add_(orthogonal(kernel.grad.lerp(momentum, _MOMENTUM)), alpha=-size)
 
     def state_dict(self) -> dict[str, Any]:
-        """What it takes to go on."""
+        """The state for a checkpoint."""
         return {"adamw": self._adamw.state_dict(), "momenta": self._momenta}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Go on from `state_dict`.
+        """Restore the state of `state_dict`.
 
         Raises:
             KeyError: it is the state of another optimizer.
@@ -77,7 +77,7 @@ class Optimizer:
 
 
 def orthogonal(gradient: Tensor) -> Tensor:
-    """A kernel's nearest matrix whose singular values are all about 1, by the iteration of Newton and Schulz.
+    """The nearest matrix to a kernel whose singular values are all about 1, by the iteration of Newton and Schulz.
 
     Args:
         gradient: shape (outputs, inputs, height, width); its rows are the outputs.
