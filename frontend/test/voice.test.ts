@@ -94,7 +94,7 @@ describe("talking", () => {
   let connection: Connection;
   let deliver: (samples: Int16Array, lostSeconds?: number) => void;
   let lose: () => void;
-  let closed: number;
+  let closed = 0;
   const storage = { getItem: () => null, setItem: () => undefined };
 
   const openFake: OpenCapture = (block, lost) => {
