@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.diagnostics import did_you_mean, phrase
+from linkwright.diagnostics import did_you_mean, nearest, phrase
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.faults import attribute_name
 from linkwright.xmltree import Element
@@ -17,9 +17,9 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
     attributes = node.attributes
     for name in required:
         if name not in attributes:
-            near = did_you_mean(name, [given for given in attributes if given not in optional])
+            near = nearest(name, [given for given in attributes if given not in optional])
             missing = (
-                phrase("write {name}=\"...\" for '{near}'", name=name, near=near[14:-2])
+                phrase("write {name}=\"...\" for '{near}'", name=name, near=near[0])
                 if near
                 else phrase('write {name}="..."', name=name)
             )
