@@ -29,11 +29,11 @@ from linkwright.urdf import read, save, to_gv, tree_text
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.xacro import expand, sources
+from linkwright.xacro.expressions.scope import Scope
+from linkwright.xacro.expressions.yamldata import YamlError, load
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import Limits, room_for
-from linkwright.xacro.scope import Scope
 from linkwright.xacro.session import Session
-from linkwright.xacro.yamldata import YamlError, load
 from linkwright.xmltree import Comment, parse, write
 
 BUILT_IN = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'

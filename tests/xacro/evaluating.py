@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.limits import Limits, room_for
-from linkwright.xacro.scope import Scope
 from linkwright.xacro.session import Session
 
 

@@ -113,7 +113,7 @@ def test_unknown_kinds_of_node_are_refused() -> None:
 
 
 def test_every_node_of_the_grammar_is_compiled_or_refused() -> None:
-    from linkwright.xacro.compiler import Compiler
+    from linkwright.xacro.expressions.compiler import Compiler
 
     refused = {"Await", "Interpolation", "Starred", "TemplateStr", "Yield", "YieldFrom"}
     old = {"Bytes", "Ellipsis", "NameConstant", "Num", "Str"}

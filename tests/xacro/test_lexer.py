@@ -6,8 +6,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from linkwright.xacro.expressions.lexer import Token, TokenKind, tokenize
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.lexer import Token, TokenKind, tokenize
 
 TEXTS = st.text(alphabet="$${}()ab 1", max_size=30)
 

@@ -12,13 +12,14 @@ from typing import Any
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.xacro import expand, sandbox
-from linkwright.xacro.bounded import keys
+from linkwright.xacro import expand
+from linkwright.xacro.expressions import sandbox
+from linkwright.xacro.expressions.bounded import keys
+from linkwright.xacro.expressions.function_calls import call
+from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.symbols import MATHEMATICS, tokenize
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.function_calls import call
 from linkwright.xacro.limits import Budget, Limits
-from linkwright.xacro.refusal import RefusalError
-from linkwright.xacro.symbols import MATHEMATICS, tokenize
 from tests.work import ends
 
 from .evaluating import evaluate

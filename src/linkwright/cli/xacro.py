@@ -136,7 +136,7 @@ def _expansion(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
     from linkwright.xacro import expand
 
     if verbosity >= _PROPERTIES:
-        from linkwright.xacro.property_log import log_properties
+        from linkwright.xacro.tracing.property_log import log_properties
 
         log_properties(inputs, lambda line: print(line, file=sys.stderr), everywhere=verbosity >= _ALL_PROPERTIES)
     name, values, packages, text, limits, root_dir, _ = inputs
@@ -149,8 +149,8 @@ def _expansion(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
 
 
 def _arguments(inputs: Inputs, verbosity: int, form: str) -> str:
-    from linkwright.xacro.arguments import arguments_data, examine_arguments
-    from linkwright.xacro.arguments_text import arguments_text, incomplete
+    from linkwright.xacro.tracing.arguments import arguments_data, examine_arguments
+    from linkwright.xacro.tracing.arguments_text import arguments_text, incomplete
 
     examined = examine_arguments(inputs)
     if verbosity > _QUIET:
@@ -163,7 +163,7 @@ def _arguments(inputs: Inputs, verbosity: int, form: str) -> str:
 def _provenance(inputs: Inputs, name: str, form: str) -> str:
     from linkwright.xacro.inspection import provenance_of_named
     from linkwright.xacro.limits import room_for
-    from linkwright.xacro.provenance_text import provenance_data, provenance_text
+    from linkwright.xacro.tracing.provenance_text import provenance_data, provenance_text
 
     found = provenance_of_named(inputs, name)
     if form == "json":

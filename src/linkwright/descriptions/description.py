@@ -15,7 +15,7 @@ from linkwright.xmltree import Document, Element, Overlay
 
 if TYPE_CHECKING:
     from linkwright.xacro import Expansion
-    from linkwright.xacro.provenance import Provenance
+    from linkwright.xacro.tracing.provenance import Provenance
 
 TEXT_NAME = "<robot_description>"
 """What stands in messages for the file of a description that is given as a text."""

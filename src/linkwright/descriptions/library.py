@@ -14,7 +14,7 @@ from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element
 
 if TYPE_CHECKING:
-    from linkwright.xacro.provenance import Provenance
+    from linkwright.xacro.tracing.provenance import Provenance
 
 _KEPT_TEXTS = 32
 

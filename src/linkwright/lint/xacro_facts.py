@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Span
 from linkwright.lint.xacro_names import Mentions, identifiers, mentions
+from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
-from linkwright.xacro.symbols import MATHEMATICS
 from linkwright.xmltree import Comment, Document, Element, Text
 from linkwright.xmltree.positions import attribute_value_range
 

@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 
+from linkwright.xacro.expressions.lexer import Token, TokenKind, tokenize
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.lexer import Token, TokenKind, tokenize
 
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")
 _PASTED = "pasted_here__"

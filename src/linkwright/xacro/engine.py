@@ -6,13 +6,13 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from linkwright.xacro.directives import DIRECTIVES
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.expansion import Expansion
 from linkwright.xacro.inputs import Inputs, main_document
 from linkwright.xacro.limits import Limits, room_for
-from linkwright.xacro.macro_calls import call_macro
 from linkwright.xacro.session import PackageSource
+from linkwright.xacro.tags.directives import DIRECTIVES
+from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Comment, Overlay
 
 if TYPE_CHECKING:

@@ -12,12 +12,12 @@ from typing import NamedTuple, NoReturn
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Span, phrase
 from linkwright.xacro.comments import CommentSweeper
+from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import LONG
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.origin import Frame, trail
 from linkwright.xacro.plan import COMMENT, ELEMENT, KEEP, TAG, TEXT, Plan, copy_of, plan_of
-from linkwright.xacro.scope import Scope
 from linkwright.xacro.session import Session
 from linkwright.xmltree import Comment, Document, Element, Node, Text
 

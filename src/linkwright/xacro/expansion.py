@@ -13,7 +13,7 @@ from linkwright.xmltree import Document, Element, write
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linkwright.xacro.provenance import Provenance
+    from linkwright.xacro.tracing.provenance import Provenance
 
 
 class Expansion:
@@ -71,6 +71,6 @@ class Expansion:
         """
         if self.inputs is None:
             raise LinkwrightError(Diagnostic("XAC802", phrase("nothing is known of how this document was expanded")))
-        from linkwright.xacro.provenance import provenance_of
+        from linkwright.xacro.tracing.provenance import provenance_of
 
         return provenance_of(self.inputs, self.document.root, element)

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.xacro.includes import xml_hint
 from linkwright.xacro.limits import Limits
 from linkwright.xacro.session import PackageSource, Session
+from linkwright.xacro.tags.includes import xml_hint
 from linkwright.xmltree import Document, Overlay, parse
 
 

@@ -17,8 +17,8 @@ from linkwright.xacro.session import PackageSource
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from linkwright.xacro.arguments import Argument
-    from linkwright.xacro.provenance import Provenance
+    from linkwright.xacro.tracing.arguments import Argument
+    from linkwright.xacro.tracing.provenance import Provenance
     from linkwright.xmltree import Element
 
 _SHOWN_NAMES = 5
@@ -48,7 +48,7 @@ def arguments_of(
     Raises:
         LinkwrightError: the file cannot be read or is not XML.
     """
-    from linkwright.xacro.arguments import examine_arguments
+    from linkwright.xacro.tracing.arguments import examine_arguments
 
     inputs = Inputs(str(path), arguments or {}, packages, text, limits or Limits(), str(root_dir or ""))
     return examine_arguments(inputs).arguments
@@ -87,7 +87,7 @@ def explain(
 
 def provenance_of_named(inputs: Inputs, name: str) -> tuple[Provenance, ...]:
     """The provenance of the elements of an expansion that have a name; see `explain`."""
-    from linkwright.xacro.provenance import Tracer
+    from linkwright.xacro.tracing.provenance import Tracer
 
     path, arguments, packages, text, limits, root_dir, overlay = inputs
     expansion = expand(path, arguments, packages=packages, text=text, limits=limits, root_dir=root_dir, overlay=overlay)

@@ -17,18 +17,19 @@ from linkwright.diagnostics import (
     foreign,
     phrase,
 )
-from linkwright.xacro import sandbox, sources, symbols
-from linkwright.xacro.bounded import keys
-from linkwright.xacro.expression import compile_expression
+from linkwright.xacro import sources
+from linkwright.xacro.expressions import sandbox, symbols
+from linkwright.xacro.expressions.bounded import keys
+from linkwright.xacro.expressions.expression import compile_expression
+from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.sandbox import Module
+from linkwright.xacro.expressions.scope import Namespace, Scope
+from linkwright.xacro.expressions.substitution import package_fault
+from linkwright.xacro.expressions.template import compile_template, templates
+from linkwright.xacro.expressions.yamldata import YamlDict, YamlError
 from linkwright.xacro.faults import Fault, attribute_part, text_part
 from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.origin import Frame, trail
-from linkwright.xacro.refusal import RefusalError
-from linkwright.xacro.sandbox import Module
-from linkwright.xacro.scope import Namespace, Scope
-from linkwright.xacro.substitution import package_fault
-from linkwright.xacro.template import compile_template, templates
-from linkwright.xacro.yamldata import YamlDict, YamlError
 from linkwright.xmltree import Document, Element, Overlay, Text
 from linkwright.xmltree.decoding import UTF_8
 
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from linkwright.diagnostics import Span
-    from linkwright.xacro.scope import Environment
+    from linkwright.xacro.expressions.scope import Environment
 
 
 class Packages(Protocol):
@@ -258,7 +259,7 @@ class Session:
         Raises:
             Fault: XAC506 when there is no such file or it is not YAML.
         """
-        from linkwright.xacro import yamldata
+        from linkwright.xacro.expressions import yamldata
 
         path = self.absolute(name)
         self.depends_on(path)

@@ -14,7 +14,7 @@ from linkwright.diagnostics import LinkwrightError, SourceText
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import parse_parameters
 from linkwright.xacro.origin import Frame, frames
-from linkwright.xacro.references import references
+from linkwright.xacro.tracing.references import references
 from linkwright.xmltree import Document, Element, Overlay
 from linkwright.xmltree.patches import escaped, start_tag_of
 from linkwright.xmltree.positions import attribute_value_range

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Note, Phrase, Span, phrase
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, is_global, parameter_span
 from linkwright.lint.xacro_names import DEPRECATED
-from linkwright.xacro.literals import literal
+from linkwright.xacro.expressions.literals import literal
 from linkwright.xmltree import Element
 
 _NAMES = frozenset({"name", "link", "joint", "reference", "filename", "joint1", "joint2", "frame", "parent", "child"})

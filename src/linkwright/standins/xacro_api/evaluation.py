@@ -10,14 +10,14 @@ from typing import Any, TypeVar
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.standins.xacro_api.errors import XacroException, translated
 from linkwright.standins.xacro_api.stacks import STATE, abs_filename_spec
-from linkwright.xacro import yamldata
+from linkwright.xacro.expressions import yamldata
+from linkwright.xacro.expressions.literals import truth
+from linkwright.xacro.expressions.scope import Namespace, Scope
+from linkwright.xacro.expressions.substitution import substitute
+from linkwright.xacro.expressions.symbols import tokenize
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.inputs import Inputs
-from linkwright.xacro.literals import truth
-from linkwright.xacro.scope import Namespace, Scope
 from linkwright.xacro.session import Session
-from linkwright.xacro.substitution import substitute
-from linkwright.xacro.symbols import tokenize
 
 _Result = TypeVar("_Result")
 
@@ -42,7 +42,7 @@ def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str,
     Raises:
         XacroException: it has none, or may not be used.
     """
-    from linkwright.xacro.expression import compile_expression
+    from linkwright.xacro.expressions.expression import compile_expression
 
     session = _session()
     scope = _scope(session, globals)

@@ -10,14 +10,14 @@ from types import ModuleType
 from typing import Any
 
 from linkwright.standins.xacro_api.macros import Macro
-from linkwright.xacro.directives import DIRECTIVES
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.inputs import Inputs
-from linkwright.xacro.macro_calls import call_macro
 from linkwright.xacro.macros import Macro as EngineMacro
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.session import Session
+from linkwright.xacro.tags.directives import DIRECTIVES
+from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Document, Element
 
 _PREFIX = "xacro:"

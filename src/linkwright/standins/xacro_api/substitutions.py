@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from linkwright.standins.xacro_api.errors import XacroException
+from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.inputs import Inputs
-from linkwright.xacro.scope import Scope
 
 
 class SubstitutionException(XacroException):

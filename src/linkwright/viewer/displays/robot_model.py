@@ -250,7 +250,7 @@ class RobotModelDisplay(ViewerDisplay):
 
     def provenance(self, link: str) -> LinkProvenance | None:
         """Where a link was written; None for one that the robot lacks. Takes as long as an expansion does."""
-        from linkwright.xacro.provenance_text import provenance_lines
+        from linkwright.xacro.tracing.provenance_text import provenance_lines
 
         element = self.robot.links[link].element if self.robot and link in self.robot.links else None
         if element is None:

@@ -12,11 +12,11 @@ from collections.abc import Callable
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, did_you_mean, joined, phrase, term
-from linkwright.xacro.expression import compile_expression
+from linkwright.xacro.expressions.expression import compile_expression
+from linkwright.xacro.expressions.sandbox import as_text
+from linkwright.xacro.expressions.scope import Context, Scope
+from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.sandbox import as_text
-from linkwright.xacro.scope import Context, Scope
-from linkwright.xacro.symbols import MATHEMATICS
 
 _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")
 _KNOWN = phrase("the commands are {commands}", commands=joined(_COMMANDS))

@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, Span
-from linkwright.xacro.directives import DIRECTIVES
 from linkwright.xacro.expander import Directive, Expander, Site
+from linkwright.xacro.expressions.literals import literal
+from linkwright.xacro.expressions.scope import Lazy, Scope
 from linkwright.xacro.faults import Fault, attribute_part
-from linkwright.xacro.literals import literal
-from linkwright.xacro.macro_calls import call_macro
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xacro.origin import Frame
-from linkwright.xacro.references import Reference, Value, references, shown, written_attribute
-from linkwright.xacro.scope import Lazy, Scope
-from linkwright.xacro.traced import PROBE, echo
+from linkwright.xacro.tags.directives import DIRECTIVES
+from linkwright.xacro.tags.macro_calls import call_macro
+from linkwright.xacro.tracing.references import Reference, Value, references, shown, written_attribute
+from linkwright.xacro.tracing.traced import PROBE, echo
 from linkwright.xmltree import Element, Text
 
 

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.xacro.directives import DIRECTIVES
 from linkwright.xacro.expander import Expander, Site
+from linkwright.xacro.expressions.scope import Lazy, Scope
 from linkwright.xacro.inputs import Inputs
-from linkwright.xacro.references import shown
-from linkwright.xacro.scope import Lazy, Scope
 from linkwright.xacro.session import Session
-from linkwright.xacro.traced import PROBE, TracedSession, echo, expand_traced
+from linkwright.xacro.tags.directives import DIRECTIVES
+from linkwright.xacro.tracing.references import shown
+from linkwright.xacro.tracing.traced import PROBE, TracedSession, echo, expand_traced
 from linkwright.xmltree import Element
 
 

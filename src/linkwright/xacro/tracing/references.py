@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from linkwright.diagnostics import Span
+from linkwright.xacro.expressions.lexer import TokenKind, tokenize
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.lexer import TokenKind, tokenize
 from linkwright.xmltree.positions import attribute_value_range
 
 _LONGEST = 100
@@ -56,8 +56,8 @@ def references(text: str) -> list[Reference]:
 
 def shown(value: Any) -> str:
     """A value as Python writes it, cut when it is long."""
-    from linkwright.xacro import sandbox
-    from linkwright.xacro.refusal import RefusalError
+    from linkwright.xacro.expressions import sandbox
+    from linkwright.xacro.expressions.refusal import RefusalError
 
     try:
         text = repr(value) if isinstance(value, str) else sandbox.as_text(value)

@@ -110,7 +110,7 @@ loaded: dict[str, Any] = {}
 def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
     import yaml
 
-    from linkwright.xacro.yamlnodes import NodeLoader, construct
+    from linkwright.xacro.expressions.yamlnodes import NodeLoader, construct
 
     loader_class = NodeLoader if evaluate is None else _unit_loader(NodeLoader, evaluate)
     loader = loader_class(text)

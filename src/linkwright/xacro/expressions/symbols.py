@@ -13,10 +13,10 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from linkwright.diagnostics import Severity, foreign, phrase
-from linkwright.xacro import bounded, sandbox
+from linkwright.xacro.expressions import bounded, sandbox
+from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.refusal import RefusalError
-from linkwright.xacro.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module
 
 _BARE = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
 _PYTHON = (

@@ -13,10 +13,10 @@ from collections.abc import Callable
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.xacro import bounded
-from linkwright.xacro.refusal import RefusalError
-from linkwright.xacro.scope import Namespace
-from linkwright.xacro.yamldata import YamlDict, YamlList, YamlMapping
+from linkwright.xacro.expressions import bounded
+from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.scope import Namespace
+from linkwright.xacro.expressions.yamldata import YamlDict, YamlList, YamlMapping
 
 MAX_LENGTH = 1_000_000
 """How many characters a string, or items a list, may have."""

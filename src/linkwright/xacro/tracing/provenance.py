@@ -9,9 +9,9 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
 from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.limits import room_for
 from linkwright.xacro.origin import Frame, frames
-from linkwright.xacro.recorder import Moment, Recorder
-from linkwright.xacro.references import Value, written_attribute
-from linkwright.xacro.traced import TracedSession, expand_traced
+from linkwright.xacro.tracing.recorder import Moment, Recorder
+from linkwright.xacro.tracing.references import Value, written_attribute
+from linkwright.xacro.tracing.traced import TracedSession, expand_traced
 from linkwright.xmltree import Element, Text
 
 

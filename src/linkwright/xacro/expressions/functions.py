@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from linkwright.diagnostics import phrase
-from linkwright.xacro.scope import Environment, Local
+from linkwright.xacro.expressions.scope import Environment, Local
 
 _Closure = Callable[[Any], Any]
 

@@ -8,11 +8,11 @@ from typing import Any
 
 from linkwright.diagnostics import did_you_mean, phrase, term
 from linkwright.xacro.expander import Container, Directive, Expander, Site
-from linkwright.xacro.includes import include
-from linkwright.xacro.literals import truth
-from linkwright.xacro.macro_calls import call_dynamically, define_macro
-from linkwright.xacro.properties import define_property
-from linkwright.xacro.tags import check_attributes
+from linkwright.xacro.expressions.literals import truth
+from linkwright.xacro.tags.attributes import check_attributes
+from linkwright.xacro.tags.includes import include
+from linkwright.xacro.tags.macro_calls import call_dynamically, define_macro
+from linkwright.xacro.tags.properties import define_property
 from linkwright.xmltree import Element
 
 _NAME = re.compile(r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?")

@@ -14,12 +14,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, Span, did_you_mean, phrase
-from linkwright.xacro.directives import DIRECTIVES
 from linkwright.xacro.expander import Directive, Expander, Site
+from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault, attribute_part, text_part
 from linkwright.xacro.inputs import Inputs, main_document
-from linkwright.xacro.scope import Scope
-from linkwright.xacro.traced import TracedSession, expand_traced
+from linkwright.xacro.tags.directives import DIRECTIVES
+from linkwright.xacro.tracing.traced import TracedSession, expand_traced
 from linkwright.xmltree import Document, Element, Text
 
 _MOST_FILES = 1_000

@@ -14,14 +14,14 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from linkwright.diagnostics import Phrase, foreign, phrase
-from linkwright.xacro import sandbox
-from linkwright.xacro.bounded import keys
+from linkwright.xacro.expressions import sandbox
+from linkwright.xacro.expressions.bounded import keys
+from linkwright.xacro.expressions.function_calls import call, charged, cost
+from linkwright.xacro.expressions.functions import Function, bind_parameters
+from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.scope import Environment
+from linkwright.xacro.expressions.yamldata import COPIED, YamlDict, YamlMapping, wrapped
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.function_calls import call, charged, cost
-from linkwright.xacro.functions import Function, bind_parameters
-from linkwright.xacro.refusal import RefusalError
-from linkwright.xacro.scope import Environment
-from linkwright.xacro.yamldata import COPIED, YamlDict, YamlMapping, wrapped
 
 Closure = Callable[[Any], Any]
 _Binder = Callable[["Environment", Any], None]

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.xacro import sandbox
-from linkwright.xacro.bounded import HASHING, check_codec, keys
-from linkwright.xacro.functions import Function
+from linkwright.xacro.expressions import sandbox
+from linkwright.xacro.expressions.bounded import HASHING, check_codec, keys
+from linkwright.xacro.expressions.functions import Function
+from linkwright.xacro.expressions.yamldata import YamlDict, YamlList, YamlMapping
 from linkwright.xacro.limits import Budget
-from linkwright.xacro.yamldata import YamlDict, YamlList, YamlMapping
 
 _CALL = 2
 _ITEMS_A_STEP = 2

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from linkwright.diagnostics import Span, display_path
-from linkwright.xacro.provenance import AttributeProvenance, Call, Provenance, TextProvenance
-from linkwright.xacro.references import Value
+from linkwright.xacro.tracing.provenance import AttributeProvenance, Call, Provenance, TextProvenance
+from linkwright.xacro.tracing.references import Value
 from linkwright.xmltree import Element, write_element
 
 _OUTSIDE = {

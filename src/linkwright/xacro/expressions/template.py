@@ -10,14 +10,14 @@ from collections.abc import Callable
 from typing import Any
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.xacro import sandbox
-from linkwright.xacro.compile_cache import TextCompiler
-from linkwright.xacro.expression import Expression, compile_expression
+from linkwright.xacro.expressions import sandbox
+from linkwright.xacro.expressions.compile_cache import TextCompiler
+from linkwright.xacro.expressions.expression import Expression, compile_expression
+from linkwright.xacro.expressions.lexer import Token, TokenKind, tokenize
+from linkwright.xacro.expressions.refusal import RefusalError
+from linkwright.xacro.expressions.scope import Scope
+from linkwright.xacro.expressions.substitution import substitute
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.lexer import Token, TokenKind, tokenize
-from linkwright.xacro.refusal import RefusalError
-from linkwright.xacro.scope import Scope
-from linkwright.xacro.substitution import substitute
 
 _Part = Callable[["Scope"], Any]
 _BRACKET = len("${")

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.xacro.arguments import Argument, Arguments
-from linkwright.xacro.provenance_text import place
+from linkwright.xacro.tracing.arguments import Argument, Arguments
+from linkwright.xacro.tracing.provenance_text import place
 
 
 def arguments_text(arguments: tuple[Argument, ...]) -> str:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Collection, Iterable
 from typing import Any
 
 from linkwright.diagnostics import phrase
-from linkwright.xacro.refusal import RefusalError
+from linkwright.xacro.expressions.refusal import RefusalError
 
 _MOST_ALIKE = 1_000
 """Python compares each of the keys that have one hash with each."""

@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from typing import Any, Protocol
 
 from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.xacro.expressions.literals import literal
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import Budget, Limits
-from linkwright.xacro.literals import literal
 from linkwright.xmltree import Element, Text
 
 

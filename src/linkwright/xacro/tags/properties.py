@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from linkwright.diagnostics import phrase
 from linkwright.xacro.expander import Expander, Site
-from linkwright.xacro.expression import is_identifier
-from linkwright.xacro.literals import truth
-from linkwright.xacro.scope import Namespace, Scope
-from linkwright.xacro.tags import check_attributes, warn_of_global
+from linkwright.xacro.expressions.expression import is_identifier
+from linkwright.xacro.expressions.literals import truth
+from linkwright.xacro.expressions.scope import Namespace, Scope
+from linkwright.xacro.tags.attributes import check_attributes, warn_of_global
 from linkwright.xmltree import Element
 
 _OPTIONAL = ("value", "default", "remove", "scope", "lazy_eval")

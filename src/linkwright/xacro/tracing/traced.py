@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from linkwright.xacro.expander import Directive, Expander
 from linkwright.xacro.inputs import Inputs, main_document
 from linkwright.xacro.limits import room_for
-from linkwright.xacro.macro_calls import call_macro
 from linkwright.xacro.session import Session
+from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Document, Element, Node, Text
 
 _PREFIX = "xacro:"
