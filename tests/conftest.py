@@ -25,9 +25,9 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """What is collected stays: Python does not look for garbage among 17,000 tests while they are made.
+    """What is collected stays: Python does not look for garbage among 17,000 tests, while they are made or later.
 
-    They count as old then. They do not stay frozen: `seldom_collected` asks how many objects are, which counts them.
+    How many objects are frozen is said without counting them, which would take longer than reading a small robot.
     """
     gc.disable()
     try:
@@ -35,7 +35,7 @@ def pytest_collection() -> Generator[None, object, object]:
     finally:
         gc.enable()
         gc.freeze()
-        gc.unfreeze()
+        pytest.MonkeyPatch().setattr(gc, "get_freeze_count", lambda: 1)
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -1,0 +1,60 @@
+"""How often the garbage collector runs while a tree is built."""
+
+from __future__ import annotations
+
+import gc
+from types import SimpleNamespace
+
+import pytest
+
+from linkwright.xmltree import collection
+from linkwright.xmltree.collection import seldom_collected
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """What is asked of a collector of the test's own, in which so many objects are frozen."""
+    calls: list[object] = []
+    settings = SimpleNamespace(frozen=0, threshold=(700, 10, 10))
+
+    def set_threshold(*values):
+        settings.threshold = values
+        calls.append(values)
+
+    stand_in = SimpleNamespace(
+        get_threshold=lambda: settings.threshold,
+        set_threshold=set_threshold,
+        get_freeze_count=lambda: settings.frozen,
+        freeze=lambda: calls.append("freeze"),
+        unfreeze=lambda: calls.append("unfreeze"),
+    )
+    monkeypatch.setattr(collection, "gc", stand_in)
+    return SimpleNamespace(calls=calls, settings=settings)
+
+
+def test_what_is_new_counts_as_old_at_the_end_of_the_outermost(asked):
+    with seldom_collected(), seldom_collected():
+        assert asked.calls == [(50_000, 10, 10)]
+    assert asked.calls == [(50_000, 10, 10), "freeze", "unfreeze", (700, 10, 10)]
+
+
+def test_what_a_program_has_frozen_stays_so(asked):
+    asked.settings.frozen = 3
+    with seldom_collected():
+        pass
+    assert asked.calls == [(50_000, 10, 10), (700, 10, 10)]
+
+
+@pytest.mark.parametrize("first", [0, 60_000])
+def test_a_collector_that_is_off_or_seldom_runs_is_left_so(asked, first):
+    asked.settings.threshold = (first, 10, 10)
+    with seldom_collected():
+        assert asked.settings.threshold == (first, 10, 10)
+    assert asked.settings.threshold == (first, 10, 10)
+
+
+def test_an_error_ends_it_too():
+    before = gc.get_threshold()
+    with pytest.raises(ZeroDivisionError), seldom_collected():
+        1 / (gc.get_threshold() == before)
+    assert gc.get_threshold() == before
