@@ -78,7 +78,7 @@ class HeldTime:
         self.switching = False
 
     def show(self, clock: ROSClock, now_ns: int) -> bool:
-        """Have a clock show a time, nanoseconds since the epoch; False for one that shows simulated time anyway."""
+        """Make a clock show a time, nanoseconds since the epoch; False for one that shows simulated time anyway."""
         if clock.ros_time_is_active and not self._held:
             return False
         clock.override(now_ns)
@@ -87,7 +87,7 @@ class HeldTime:
         return True
 
     def release(self, clock: ROSClock) -> None:
-        """Have the clock show the present."""
+        """Make the clock show the present."""
         if self._held:
             self._held = False
             self._switch(clock, False)

@@ -156,15 +156,15 @@ def _looked_up(table: NDArray[np.uint32], values: NDArray[Any], least: float, sp
 def rainbow() -> NDArray[np.uint32]:
     """RViz's rainbow, packed colours: magenta at 0, then blue, cyan, green, yellow, red."""
     corners = np.array([(1, 0, 1), (0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 1, 0), (1, 0, 0)]) * 255.0
-    return _through(corners, _RAINBOW_STEPS)
+    return _gradient(corners, _RAINBOW_STEPS)
 
 
 def _mixed(darkest: tuple[int, int, int], brightest: tuple[int, int, int]) -> NDArray[np.uint32]:
-    return _through(np.array([darkest, brightest], dtype=np.float64), _MIX_STEPS)
+    return _gradient(np.array([darkest, brightest], dtype=np.float64), _MIX_STEPS)
 
 
-def _through(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
-    """Evenly from corner to corner, packed with full alpha."""
+def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
+    """A table of packed colours, interpolated evenly between corners, opaque."""
     places = np.linspace(0, len(corners) - 1, steps + 1)
     table = np.full((steps + 1, 4), 255, np.uint8)
     for part in range(3):

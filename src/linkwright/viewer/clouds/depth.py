@@ -18,7 +18,7 @@ _SHADOW_DISTANCE = 0.01
 
 @dataclass(frozen=True, slots=True)
 class DepthCamera:
-    """What a depth image is seen through.
+    """The pinhole camera of a depth image.
 
     Attributes:
         columns: x over z of each column's rays, float32, shape (width,).

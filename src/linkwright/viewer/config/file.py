@@ -16,7 +16,7 @@ MAXIMUM_SIZE = 16 * 1024 * 1024
 
 @dataclass(frozen=True, slots=True)
 class FileForm:
-    """How a file encodes its text.
+    """The encoding and line ends of a file.
 
     Attributes:
         mark: whether it begins with a byte order mark.

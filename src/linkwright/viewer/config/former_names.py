@@ -36,7 +36,7 @@ def modern_class(cls: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class FormerKey:
-    """Where RViz 1 kept a value of today.
+    """The key under which RViz 1 kept a property of today.
 
     Attributes:
         key: beside the display's ``Class``.

@@ -1,4 +1,4 @@
-"""Where configuration files are: those opened before, folders of the server, and unsaved edits.
+"""The files of configurations: recent ones, folders of the server, and recovery files of unsaved edits.
 
 When the program ends, what pages edited and did not save is kept in a recovery file for each configuration: RViz asks
 before its window is closed, Ctrl-C in a terminal does not.
@@ -61,7 +61,7 @@ def configuration_path(text: str, folder: Path) -> Path:
 
 
 def list_folder(text: str | None, folder: Path) -> Folder:
-    """What is in a folder, hidden things aside.
+    """The folders and configuration files in a folder, but for hidden ones.
 
     Args:
         text: absolute, from ``~``, or from the folder of the open file; None for that one.
@@ -150,7 +150,7 @@ def recovery_folder() -> Path:
 
 
 def recovery_file(config: RvizConfig) -> Path:
-    """Where the edits of a configuration are kept; one that was recovered, and has no other file yet, is that file."""
+    """The recovery file of a configuration; one that was opened as such, and has no other file yet, keeps it."""
     folder = recovery_folder()
     if config.path is not None:
         path = _whole(config.path)

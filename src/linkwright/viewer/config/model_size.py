@@ -24,12 +24,12 @@ class ModelSize:
 
     @property
     def distance(self) -> float:
-        """From where all of it is seen, until a page that has its meshes knows better, m."""
+        """The distance from which all of it is seen, until a page that has its meshes knows better, m."""
         return _rounded(2.0 * self.diagonal)
 
     @property
     def marker_scale(self) -> float:
-        """Of TF, so that axes are seen beside the links and do not cover them."""
+        """The scale of TF's axes at which they are seen beside the links and do not cover them."""
         axis = min(max(self.spacing / 2, self.diagonal / 40), self.diagonal / 10)
         return _rounded(axis / _RVIZ_AXIS)
 
@@ -40,7 +40,7 @@ class ModelSize:
 
     @property
     def cell(self) -> float:
-        """Of the grid, m: a power of ten; ten cells are wider than the robot, and one is not much wider."""
+        """The grid's cell size, m: a power of ten; ten cells are wider than the robot, and one is not much wider."""
         return float(10.0 ** math.floor(math.log10(self.diagonal * 1.5)))
 
 

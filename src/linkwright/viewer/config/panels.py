@@ -80,7 +80,7 @@ class PanelsConfig:
         return list(dict.fromkeys(panel for panel in found if panel is not None))
 
     def show(self, panels: Collection[PanelName]) -> bool:
-        """Make the file say that these are the panels that are open; whether it said anything else.
+        """Write which panels are open; returns whether that changed anything.
 
         Closing a panel does what RViz does: its entry stays and the window's state says that it is hidden. Where the
         file has no such state, or has the entry only since the panel was opened here, the entry goes, as with RViz's
@@ -122,7 +122,7 @@ class PanelsConfig:
         return is_shown(self._document.text(*_STATE) or "", name) is not False
 
     def _set_shown(self, section: Section, shown: bool) -> None:
-        """Have the window show a panel or not, as far as the file says such things."""
+        """Write whether a panel is shown into the window's state, where the file has one."""
         name = section.text("Name") or ""
         state = self._document.text(*_STATE) or ""
         if is_shown(state, name) not in (None, shown):
@@ -179,7 +179,7 @@ def with_shown(state: str, name: str, shown: bool) -> str:
 
 
 def _bytes(state: str) -> bytes:
-    """What the digits stand for; nothing where they are none."""
+    """The bytes of hexadecimal digits; empty for any other text."""
     try:
         content = bytes.fromhex(state)
     except ValueError:
@@ -188,7 +188,7 @@ def _bytes(state: str) -> bytes:
 
 
 def _flags(content: bytes, name: str) -> int | None:
-    """Where the flags of a dock are."""
+    """The index of the byte with a dock's flags."""
     text = name.encode("utf-16-be", "surrogatepass")
     mark = _DOCK + len(text).to_bytes(4, "big") + text
     at = content.find(mark) + len(mark)
@@ -197,14 +197,14 @@ def _flags(content: bytes, name: str) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class Synchronization:
-    """Which display's messages drive time, and how."""
+    """The mode of the Time panel's synchronization, and the display whose messages lead time."""
 
     mode: SyncMode = "Off"
     source: str = ""
 
 
 def read_synchronization(document: Section) -> Synchronization:
-    """What the Time panel says; RViz looks at it only where ``Experimental`` is on, which RViz 1 at last left out."""
+    """The Time panel's settings; RViz reads them only where ``Experimental`` is on, which RViz 1 at last left out."""
     panel = _time_panel(document)
     if panel is None or not (_text(panel, "Experimental").lower() == "true" or _is_always_on(panel)):
         return Synchronization()
@@ -215,7 +215,7 @@ def read_synchronization(document: Section) -> Synchronization:
 
 
 def write_synchronization(document: Section, wanted: Synchronization) -> bool:
-    """Write it into the Time panel of a file that has one; returns whether that changed anything."""
+    """Write the settings into the Time panel of a file that has one; returns whether that changed anything."""
     panel = _time_panel(document)
     if panel is None or read_synchronization(document) == wanted:
         return False

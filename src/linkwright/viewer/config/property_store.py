@@ -97,7 +97,7 @@ class PropertyStore:
         return taken
 
     def tell(self, path: Path, value: PropertyValue) -> bool:
-        """Give a property a value that the file does not get, as of one that is read-only; whether that is news.
+        """Set a value that is not written into the file, as of a read-only property; returns whether it is new.
 
         Raises:
             KeyError: when the schema has no such property.
@@ -119,7 +119,7 @@ class PropertyStore:
             self._recorded = None
 
     def memories(self, of: Iterable[Memory]) -> list[Memory]:
-        """What the file says now under the keys of other memories."""
+        """The present state of the keys that other memories are about."""
         return [self._place().memory(memory.key) for memory in of]
 
     def recall(self, memories: Iterable[Memory]) -> list[Path]:
@@ -240,7 +240,7 @@ class PropertyStore:
         self._place().put(path, text, string=string, nested=nested)
 
     def _former_key(self, path: Path) -> FormerKey | None:
-        """Where RViz 1 kept a value, unless the file has it where it is kept today."""
+        """The key under which RViz 1 kept a value, unless the file has it under the present key."""
         return self._former.get(path) if self._section.scalar(*self._base, *path) is None else None
 
     def _place(self) -> Section:
@@ -261,7 +261,7 @@ class PropertyStore:
             return False
 
     def _named(self, specs: Schema, name: str) -> PropertySpec | None:
-        """The first of that name; of many, such as the links of a robot, it is not looked for from the beginning."""
+        """The first property of that name; an index finds it among many, such as the links of a robot."""
         if len(specs) < _MANY:
             return next((spec for spec in specs if spec.name == name), None)
         if self._many[0] is not specs:

@@ -20,7 +20,7 @@ from linkwright.viewer.config.schema import Path as PropertyPath
 from linkwright.viewer.config.schema import PropertySpec, is_on
 from linkwright.viewer.config.tools import ToolsConfig
 from linkwright.viewer.config.views import ViewsConfig
-from linkwright.viewer.config.yaml_tree import Arranged, Made, Memory, Section
+from linkwright.viewer.config.yaml_tree import Made, Memory, Section, SequenceMemory
 from linkwright.viewer.protocol.views_and_tools import View
 
 __all__ = ["GLOBAL_OPTIONS", "Arrangement", "DisplayConfig", "RvizConfig"]
@@ -104,7 +104,7 @@ _BOX = ("Enabled", "Value")
 
 
 class DisplayConfig:
-    """One entry of ``Displays``.
+    """An entry of ``Displays``.
 
     Args:
         section: its part of the file.
@@ -139,7 +139,7 @@ class DisplayConfig:
 
     @property
     def name(self) -> str:
-        """What it is called in the Displays panel; by default as its class."""
+        """The name in the Displays panel; by default that of its class."""
         scalar = self.section.scalar("Name")
         return scalar.text if scalar else self.cls.rpartition("/")[2]
 
@@ -149,7 +149,7 @@ class DisplayConfig:
 
     @property
     def checked(self) -> bool:
-        """Its own box: ``Enabled``, else ``Value``; without both it is off, as in RViz."""
+        """The display's own enable box: ``Enabled``, else ``Value``; without both it is off, as in RViz."""
         text = self.section.text("Enabled")
         if text is None:
             text = self.section.text("Value")
@@ -165,7 +165,7 @@ class DisplayConfig:
 
     @property
     def box(self) -> list[Memory]:
-        """What the file says of its own box."""
+        """The values of the keys of the enable box, for `recall`."""
         return [self.section.memory(key) for key in _BOX]
 
     @box.setter
@@ -179,7 +179,7 @@ class DisplayConfig:
         return self.checked and (self.group is None or self.group.enabled)
 
     def walk(self) -> Iterator[DisplayConfig]:
-        """It and all that it holds, each group before what is in it."""
+        """The display and all that it holds, each group before its content."""
         yield self
         for display in self.displays:
             yield from display.walk()
@@ -223,10 +223,10 @@ _MODEL_PITCH = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Arrangement:
-    """Which displays there were, in which order and groups: what stood under ``Displays`` of each holder."""
+    """The order and grouping of the displays: the items of ``Displays`` of each group."""
 
     displays: dict[DisplayConfig | None, list[DisplayConfig]]
-    memories: dict[DisplayConfig | None, Arranged]
+    memories: dict[DisplayConfig | None, SequenceMemory]
 
 
 class RvizConfig:
@@ -299,7 +299,7 @@ class RvizConfig:
 
     @classmethod
     def default(cls) -> RvizConfig:
-        """What RViz shows without a file: a Grid, Fixed Frame ``map``."""
+        """The configuration of RViz without a file: a Grid, Fixed Frame ``map``."""
         return cls.parse(_DEFAULT, "<default>")
 
     @classmethod
@@ -341,7 +341,7 @@ class RvizConfig:
         self._unchosen_view = self.views.current
 
     def follow(self, frame: str, distance: float) -> None:
-        """Have the view follow a frame, and grid and axes be as large as RViz has them: for a robot that drives about.
+        """Make the view follow a frame, with grid and axes of RViz's size: for a robot that drives about.
 
         Args:
             frame: of the robot.
@@ -364,12 +364,12 @@ class RvizConfig:
 
     @property
     def spacing(self) -> float | None:
-        """From a link's frame to its parent's, for most links, m, while `awaits_size`; None where that is not known."""
+        """The usual distance of a link's frame from its parent's, m, while `awaits_size`; None where unknown."""
         size = None if self._proposed is None else self._proposed.size
         return None if size is None else size.spacing
 
     def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """What grid and axes should have that were made for a robot of unknown meshes: display, property, value.
+        """New values for grid and axes that were made for a robot of unknown meshes: display, property, value.
 
         Only once, and only what nobody has changed since.
 
@@ -393,7 +393,7 @@ class RvizConfig:
     # --- displays ----------------------------------------------------------------------------------------------
 
     def walk(self) -> Iterator[DisplayConfig]:
-        """Every display, each group before what is in it."""
+        """Every display, each group before its content."""
         for display in self.displays:
             yield from display.walk()
 
@@ -432,11 +432,11 @@ class RvizConfig:
         return self.make(GROUP, name)
 
     def arrangement(self) -> Arrangement:
-        """Which displays there are, for `arrange`."""
+        """The present arrangement, for `arrange`."""
         groups = [None, *(display for display in self.walk() if display.is_group)]
         return Arrangement(
             {group: list(self.siblings(group)) for group in groups},
-            {group: self._arranged(group) for group in groups},
+            {group: self._remember(group) for group in groups},
         )
 
     def arrange(self, arrangement: Arrangement) -> None:
@@ -445,16 +445,16 @@ class RvizConfig:
             self.siblings(group)[:] = displays
             for display in displays:
                 display.group = group
-            yaml_tree.rearrange(self._parent(group), "Displays", arrangement.memories[group])
+            yaml_tree.recall_sequence(self._parent(group), "Displays", arrangement.memories[group])
         self._made = yaml_tree.unmake(self._made)
 
     def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
-        """What a group holds; the outermost displays for None."""
+        """The displays in a group; the outermost displays for None."""
         return self.displays if group is None else group.displays
 
-    def _arranged(self, group: DisplayConfig | None) -> Arranged:
+    def _remember(self, group: DisplayConfig | None) -> SequenceMemory:
         holder = group.section if group is not None else self.document.section(_MANAGER)
-        return yaml_tree.arranged(holder, "Displays") if holder is not None else Arranged(None, None)
+        return yaml_tree.remember_sequence(holder, "Displays") if holder is not None else SequenceMemory(None, None)
 
     def _parent(self, group: DisplayConfig | None) -> Section:
         """The section that has ``Displays``; that of the outermost is made where it is missing."""
@@ -494,7 +494,7 @@ class RvizConfig:
 
 
 class _Proposed:
-    """What grid and axes were given by the size that a robot seems to have without its meshes; None for no size."""
+    """The proposed values of grid and axes for a robot whose meshes are not measured yet; None for no size."""
 
     def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
         self._displays = tuple(displays)
@@ -503,13 +503,13 @@ class _Proposed:
         self._texts = {path: display.section.text(*path) for display, path, _ in found}
 
     def mended(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """What of it should be another, and was not changed since."""
+        """The values that should be different, and were not changed since."""
         spacing = diagonal if self.size is None else self.size.spacing
         found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
         return [each for each in found if each[0].section.text(*each[1]) == self._texts[each[1]]]
 
     def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _Proposed | None:
-        """The same for copies of the displays; None where one has gone."""
+        """The proposal for copies of the displays; None where one has gone."""
         found = [copies[display] for display in self._displays if display in copies]
         return _Proposed(found, self.size) if len(found) == len(self._displays) else None
 
@@ -520,7 +520,7 @@ _ANY_SIZE = ModelSize(1.0, 1.0)
 def _sizes(
     displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
 ) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-    """What displays of `RvizConfig.for_model` have by the size of a robot and its ground: display, property, value."""
+    """The values for displays of `RvizConfig.for_model` by a robot's size and ground: display, property, value."""
     grid, _, tf = displays
     offset = [(grid, ("Offset", "Z"), round(ground, 4))] if ground else []
     return [(grid, ("Cell Size",), size.cell), (tf, ("Marker Scale",), size.marker_scale), *offset]

@@ -1,4 +1,4 @@
-"""Properties declared once: what a display has, its defaults and bounds, and which values are taken.
+"""Properties declared once: names, kinds, defaults and bounds, and the validation of values.
 
 From a `PropertySpec` come the row of the page, the reading and writing of the .rviz file, and the checks of what the
 page sends. Names and defaults are RViz's; so is clamping a number into its bounds.
@@ -33,7 +33,7 @@ _BOOLEANS = dict.fromkeys(("true", "1", "yes", "on"), True) | dict.fromkeys(("fa
 
 @dataclass(frozen=True, slots=True)
 class PropertySpec:
-    """One property.
+    """The declaration of a property.
 
     Attributes:
         name: as RViz shows it and as the file spells its key.

@@ -94,7 +94,7 @@ USUAL_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_pl
 
 
 def tool_name(cls: str) -> str:
-    """What the button of a tool says: of an unknown class its name with spaces, as RViz does."""
+    """The label of a tool's button: for an unknown class its name with spaces, as RViz does."""
     kind = TOOL_KINDS.get(cls)
     return kind.name if kind else re.sub(r"(?<!^)(?=[A-Z])", " ", cls.rpartition("/")[2])
 
@@ -108,7 +108,7 @@ MAXIMUM_TOOLS = 100
 
 @dataclass(frozen=True, slots=True)
 class ToolEntry:
-    """One tool of the file.
+    """An entry of ``Tools``.
 
     Attributes:
         id: stable while the file is open.

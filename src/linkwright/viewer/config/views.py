@@ -166,7 +166,7 @@ Report = Callable[[Diagnostic], None]
 
 
 class ViewEntry:
-    """One view of the file. What this program does not know of it is kept.
+    """An entry of ``Views``; its unknown keys are kept.
 
     A view of another class than those in `VIEW_SCHEMAS` is shown as an Orbit, or as what stands in for it, and stays as
     it is in the file until a value is set.

@@ -41,7 +41,7 @@ class Scalar:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """What the file had under a key; None where it had no such key."""
+    """The value of a key at an earlier time; None where the key was missing."""
 
     key: str
     value: yaml.Node | None
@@ -74,7 +74,7 @@ class Section:
         return None if node is None else Scalar(node.value, self.span(node))
 
     def text(self, *path: str) -> str | None:
-        """The text of the scalar at a path, for what is asked often: it does not say where it stands."""
+        """The text of the scalar at a path; faster than `scalar`, which tells its place too."""
         node = self._scalar_node(path)
         return None if node is None else str(node.value)
 
@@ -114,19 +114,19 @@ class Section:
         _set(parent, last, yaml.ScalarNode(tag, text))
 
     def memory(self, key: str) -> Memory:
-        """What stands under a key now, for `recall`."""
+        """The present value of a key, for `recall`."""
         there = _child(self.node, key)
         return Memory(key, None if there is None else _copy(there))
 
     def recall(self, memory: Memory) -> None:
-        """Make what stands under a key what it was; a key that came since goes."""
+        """Restore the value of a key; a key that was added since is removed."""
         if memory.value is not None:
             _set(self.node, memory.key, _copy(memory.value))
             return
         self.node.value[:] = [pair for pair in self.node.value if pair[0].value != memory.key]
 
     def span(self, node: yaml.Node | None = None) -> Span:
-        """Where a node of this file begins and ends; the mapping itself by default."""
+        """The range of a node in its file; the mapping itself by default."""
         return _span(node or self.node, self.source)
 
     def _scalar_node(self, path: tuple[str, ...]) -> yaml.ScalarNode | None:
@@ -181,12 +181,12 @@ def same(one: Section, other: Section) -> bool:
 
 
 def new_section(source: SourceText) -> Section:
-    """An empty mapping that is nowhere in a document yet."""
+    """An empty mapping that is in no document yet."""
     return Section(yaml.MappingNode(_MAPPING, [], flow_style=False), source)
 
 
 def copy_section(section: Section) -> Section:
-    """A copy that is nowhere in a document yet."""
+    """A copy that is in no document yet."""
     node = _copy(section.node)
     assert isinstance(node, yaml.MappingNode)
     return Section(node, section.source)
@@ -226,26 +226,26 @@ def entries(parent: Section, key: str) -> list[yaml.Node] | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Arranged:
-    """What stood under the key of a sequence, and its items if it was one; neither is copied."""
+class SequenceMemory:
+    """The value of the key of a sequence, and the items if it was one; neither is copied."""
 
     node: yaml.Node | None
     items: list[yaml.Node] | None
 
 
-def arranged(parent: Section, key: str) -> Arranged:
-    """What stands under the key of a sequence now, for `rearrange`."""
-    return Arranged(_child(parent.node, key), entries(parent, key))
+def remember_sequence(parent: Section, key: str) -> SequenceMemory:
+    """The present value of the key of a sequence, for `recall_sequence`."""
+    return SequenceMemory(_child(parent.node, key), entries(parent, key))
 
 
-def rearrange(parent: Section, key: str, arranged: Arranged) -> None:
-    """Have under the key of a sequence what stood there, with the items that it held."""
-    if arranged.node is None:
+def recall_sequence(parent: Section, key: str, memory: SequenceMemory) -> None:
+    """Restore the value of the key of a sequence, with its items."""
+    if memory.node is None:
         parent.recall(Memory(key, None))
         return
-    if isinstance(arranged.node, yaml.SequenceNode):
-        arranged.node.value[:] = arranged.items or []
-    _set(parent.node, key, arranged.node)
+    if isinstance(memory.node, yaml.SequenceNode):
+        memory.node.value[:] = memory.items or []
+    _set(parent.node, key, memory.node)
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,7 +266,7 @@ class Made:
 
 
 def make_section(section: Section, *path: str) -> tuple[Section, list[Made]]:
-    """The mapping at a path, made where it is missing, and which were made on the way to it, itself included."""
+    """The mapping at a path, made where it is missing, and all mappings made on the way, itself included."""
     made = []
     for key in path:
         there = section.section(key)
@@ -296,7 +296,7 @@ def ensure_section(section: Section, *path: str) -> Section:
 
 
 def _copy(node: yaml.Node, *, deep: bool = True) -> yaml.Node:
-    """A node alike; `copy` knows no marks of libyaml."""
+    """A deep copy of a node; `copy` cannot copy marks of libyaml."""
     if isinstance(node, yaml.ScalarNode):
         return yaml.ScalarNode(node.tag, node.value, node.start_mark, node.end_mark, node.style)
     assert isinstance(node, yaml.CollectionNode)
@@ -421,7 +421,7 @@ def _laid_out(node: yaml.Node, source: str) -> str:
 
 
 def _plain(node: yaml.Node) -> str:
-    """A document as text, in a layout that is quickly made."""
+    """A document as text, in libyaml's default layout, which is fast."""
     return _serialized(node, _PlainDumper)
 
 

@@ -61,7 +61,7 @@ class FrameHistory:
         return BufferCore(logger=self._node.get_logger())
 
     def use(self, listener: Callable[[], None]) -> Callable[[], None]:
-        """Begin to listen, and call back whenever transforms came; what is returned ends that."""
+        """Listen, and call back whenever transforms came; returns a function that ends that."""
         self._listeners.append(listener)
         if not self._subscriptions:
             for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
@@ -108,7 +108,7 @@ class FrameHistory:
         return None if found is None or name in self._buffer.frame_names() else found
 
     def known(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
-        """A pose as other programs know it: what is in a frame of displays, in one of tf.
+        """A pose as other programs know it: in a frame of tf, where the given one is of a display.
 
         Args:
             frame: the frame that the pose is in.
@@ -120,7 +120,7 @@ class FrameHistory:
         return own.parent, compose(invert(own.pose), pose)
 
     def place(self, display: str, own: OwnFrame | None) -> None:
-        """Place a frame for a display, or no more.
+        """Place a frame for a display, or withdraw it.
 
         Args:
             display: its id.

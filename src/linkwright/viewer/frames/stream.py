@@ -58,7 +58,7 @@ _APPROACH = 0.3
 
 @dataclass(frozen=True, slots=True)
 class FrameView:
-    """Which frames there are, how they hang together and which of them can be placed in the Fixed Frame.
+    """The frames, their parents, and which of them can be placed in the Fixed Frame.
 
     Attributes:
         fixed_frame: the Fixed Frame, which may be unknown to tf.
@@ -132,7 +132,7 @@ class TimeControl:
         self._changed()
 
     def took(self, display: str, stamp_ns: int) -> None:
-        """A display takes a message of some time, nanoseconds."""
+        """Note the time of a message that a display takes, nanoseconds."""
         if display not in self.sources:
             self.sources.append(display)
             self._changed()
@@ -154,7 +154,7 @@ class TimeControl:
         return None
 
     def now_ns(self) -> int:
-        """What the clock of the Time panel shows as ROS time, nanoseconds."""
+        """The ROS time that the Time panel shows, nanoseconds."""
         if self.paused:
             return self._paused_ns
         if self.mode == "Exact" and self._exact_ns:
@@ -173,7 +173,7 @@ class FrameAudience(Protocol):
     """The pages that are told where frames are."""
 
     def __len__(self) -> int:
-        """How many there are; for none nothing is worked out."""
+        """The number of pages; for none nothing is computed."""
 
     def publish(self, message: FrameTable, /) -> None:
         """Send a new frame table, before transforms that need it."""
@@ -264,7 +264,7 @@ class FrameStream:
             self._release = None
 
     def time_changed(self) -> None:
-        """Time stands still, goes on, or another time is to be shown: look."""
+        """Look again, as time was paused, resumed, or is another one."""
         if self._time.paused:
             self._paused_ns = self._paused_ns or self._clock.now_ns()
         else:
@@ -351,7 +351,7 @@ class FrameStream:
         self._tell_displays(snapshot, rows, fixed_frame, changed)
 
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
-        """Where all frames are in the Fixed Frame, which a display may place."""
+        """The poses of all frames in the Fixed Frame, which may be one that a display places."""
         # The buffer may know the frame before the history does.
         own = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
         if own is None or own.parent is None:
@@ -365,7 +365,7 @@ class FrameStream:
         return frame in self._own_frames() or (own is not None and own.parent is None)
 
     def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
-        """Where frames are at the time to be shown; where nothing is known of that time, where they are now."""
+        """The poses of frames at the time to be shown; where nothing is known of that time, the present ones."""
         stamp_ns = self._time.lookup_ns()
         self._follow(stamp_ns is not None)
         if stamp_ns is None:
@@ -415,7 +415,7 @@ class FrameStream:
         self._pages.send_transforms(self._frame)
 
     def _next_due(self) -> float:
-        """When the next update may be sent.
+        """The earliest time of the next update.
 
         What is sent a little late does not make the next one later: transforms that come at the rate would else wait
         longer and longer, until one of them is left out.
