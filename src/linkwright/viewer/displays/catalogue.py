@@ -1,4 +1,4 @@
-"""Which class of display draws what a .rviz file names.
+"""The classes of displays by the names that .rviz files have for them.
 
 Displays are found through the entry points ``linkwright.displays``, named as .rviz files name their class. A display is
 imported when the first one of its class is made: most configurations have a few of them, and the program is to be there
@@ -30,11 +30,11 @@ class UnsupportedDisplay(ViewerDisplay):
     SUPPORTED = False
 
     def start(self) -> None:
-        """Say that it is not drawn."""
+        """Show in the status that it is not drawn."""
         self.enabled_changed()
 
     def enabled_changed(self) -> None:
-        """Say that it is not drawn, where the user would have it drawn."""
+        """Show in the status that it is not drawn, if the user enables it."""
         text = phrase("Displays of class '{name}' are kept in the file but not drawn", name=self.config.cls)
         self.set_status([StatusRow("Class", "warn", text)])
 

@@ -1,4 +1,4 @@
-"""The colours of classes of things: the same for a name wherever it is shown."""
+"""The colours of classes of detections: the same for a name wherever it is shown."""
 
 from __future__ import annotations
 

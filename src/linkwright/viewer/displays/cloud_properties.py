@@ -125,7 +125,7 @@ def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool |
 
 
 def colour_settings(properties: PropertyStore) -> ColourSettings:
-    """What the properties say of colours."""
+    """The values of the properties about colours."""
     flag, number, text = properties.flag, properties.number, properties.text
 
     def bounds(auto: str, *paths: Path) -> tuple[float, float] | None:

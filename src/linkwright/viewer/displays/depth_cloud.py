@@ -146,7 +146,7 @@ class DepthCloudDisplay(CloudDisplay):
         return source.message_type, source.topic, self._qos()
 
     def most_waiting(self) -> int:
-        """How many depth maps may wait for their transforms."""
+        """The number of depth maps that may wait for their transforms."""
         return int(self.properties.number(QUEUE_SIZE))
 
     def pixel_size(self) -> float:

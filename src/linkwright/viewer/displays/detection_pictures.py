@@ -62,11 +62,11 @@ class DetectionPictureDisplay(ImageDisplay):
         self._detected_at = float("-inf")
 
     def schema(self) -> Schema:
-        """Those of an image, and those of boxes."""
+        """The properties of an image, and those of boxes."""
         return (*super().schema(), *self.SCHEMA[len(ImageDisplay.SCHEMA) :])
 
     def changed(self, path: Path) -> None:
-        """Listen to other detections, or have others left out."""
+        """Listen to other detections, or apply another threshold."""
         super().changed(path)
         if path[0] == DETECTIONS:
             self._threshold.close()
@@ -77,7 +77,7 @@ class DetectionPictureDisplay(ImageDisplay):
             self._threshold.set(self.properties.text(DETECTIONS).strip(), self.properties.number(THRESHOLD))
 
     def take_image(self, message: Any, pose: Pose | None) -> None:
-        """Show an image, or keep it until it is known what is in it."""
+        """Show an image, or keep it until its detections are received."""
         if asyncio.get_running_loop().time() - self._detected_at < _PATIENCE:
             self._images.append(message)
             return
@@ -130,7 +130,7 @@ class DetectionPictureDisplay(ImageDisplay):
 
 
 def _boxes(message: Any, *, of_image: bool) -> PictureBoxes | None:
-    """The boxes; None when a number is none."""
+    """The boxes; None when a number is not finite."""
     detections = list(message.detections)
     results = [best_result(each) for each in detections]
     middles = [each.bbox.center for each in detections]

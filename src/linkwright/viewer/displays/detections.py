@@ -106,7 +106,7 @@ def best_result(detection: Any) -> tuple[str, float]:
 
 
 class Detection3DArrayDisplay(_BoxDisplay):
-    """Things that were found, as boxes with the colours of their classes."""
+    """Detections as boxes with the colours of their classes."""
 
     CLASS = "vision_msgs_rviz_plugins/Detection3DArray"
     MESSAGE = "vision_msgs/msg/Detection3DArray"
@@ -177,7 +177,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
 
 
 class Detection3DDisplay(Detection3DArrayDisplay):
-    """One thing that was found."""
+    """A single detection."""
 
     CLASS = "vision_msgs_rviz_plugins/Detection3D"
     MESSAGE = "vision_msgs/msg/Detection3D"

@@ -33,13 +33,13 @@ class DetectorThreshold:
         self._task: asyncio.Task[None] | None = None
 
     def set(self, topic: str, value: float) -> None:
-        """Have the publisher of a topic leave out what has a lower score, if it has a parameter for it."""
+        """Set the least score at the publisher of a topic, if it has a parameter for it."""
         self._wish = topic, value
         if self._task is None or self._task.done():
             self._task = asyncio.get_running_loop().create_task(self._fulfil())
 
     def close(self) -> None:
-        """Ask no more."""
+        """Stop asking."""
         self._wish = None
         if self._task is not None:
             self._task.cancel()

@@ -29,7 +29,7 @@ _TURNING = ("revolute", "continuous")
 
 
 class EffortDisplay(RecentDisplay):
-    """The torques of turning joints, as rings about their axes that grow with the part of the limit that is used.
+    """The torques of revolute and continuous joints, as rings about their axes, larger the nearer to the limit.
 
     RViz draws those of revolute joints only, and turned away from axes other than z.
     """

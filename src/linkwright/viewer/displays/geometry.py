@@ -40,16 +40,16 @@ class AxesDisplay(ViewerDisplay):
     )
 
     def start(self) -> None:
-        """Say whether the frame can be placed."""
+        """Show in the status whether the frame can be placed."""
         self.frames_changed()
 
     def changed(self, path: Path) -> None:
-        """Another frame has another status."""
+        """Update the status for another frame."""
         if path == (_FRAME,):
             self.frames_changed()
 
     def frames_changed(self) -> None:
-        """Say whether the frame can be placed."""
+        """Show in the status whether the frame can be placed."""
         self.set_status([transform_status(self.host.frames, self.properties.text(_FRAME))])
 
 
@@ -77,16 +77,16 @@ class GridDisplay(ViewerDisplay):
     )
 
     def start(self) -> None:
-        """Say whether the reference frame can be placed."""
+        """Show in the status whether the reference frame can be placed."""
         self.frames_changed()
 
     def changed(self, path: Path) -> None:
-        """Another reference frame has another status."""
+        """Update the status for another reference frame."""
         if path == ("Reference Frame",):
             self.frames_changed()
 
     def frames_changed(self) -> None:
-        """Say whether the reference frame can be placed."""
+        """Show in the status whether the reference frame can be placed."""
         self.set_status([transform_status(self.host.frames, self.properties.text("Reference Frame"))])
 
 
@@ -117,7 +117,7 @@ class GridCellsDisplay(TopicDisplay):
             self.send(content, pose=pose, stamp_ns=self.frame_of(message)[1])
 
     def _refuse(self, level: StatusLevel, text: Phrase) -> None:
-        """RViz takes the cells before away too, and says so in the row of the topic."""
+        """Remove the cells before, too, and say so in the row of the topic, as RViz does."""
         self.forget()
         self.say(TOPIC, level, text)
 
@@ -176,11 +176,11 @@ class RangeDisplay(RecentDisplay):
     def content(self, message: Any) -> DataContent | None:
         """A cone; one of no length where the measurement is none."""
         angle = float(message.field_of_view)
-        return RangeCone(_shown(message), angle if math.isfinite(angle) else 0.0)
+        return RangeCone(_cone_length(message), angle if math.isfinite(angle) else 0.0)
 
 
-def _shown(message: Any) -> float:
-    """How long the cone is: RViz's rule, that of REP 117 for sensors with a fixed distance."""
+def _cone_length(message: Any) -> float:
+    """The length of the cone by RViz's rule, which is that of REP 117 for sensors with a fixed distance."""
     measured, least, most = float(message.range), float(message.min_range), float(message.max_range)
     if least <= measured <= most and math.isfinite(measured):
         return measured

@@ -59,7 +59,7 @@ class ImageTopicDisplay(TopicDisplay):
         return (cls.MESSAGE, "sensor_msgs/msg/CompressedImage")
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
-        """As the transport of the topic has it."""
+        """Type, topic and quality of service, by the transport of the topic."""
         source = self._named_source()
         return source.message_type, source.topic, super().subscription()[2]
 
@@ -102,11 +102,11 @@ class ImageTopicDisplay(TopicDisplay):
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
 
     def reduction(self, width: int, height: int) -> int:
-        """Of how many pixels along a side pages are sent the mean."""
+        """The number of pixels along a side whose mean is sent as one pixel."""
         return 1
 
     def _named_source(self) -> ImageSource:
-        """What the topic names, and, as far as the graph knows by now, carries."""
+        """The topic and transport that the property names, and the type that the graph knows by now."""
         source = ImageSource.of(self.properties.text(TOPIC))
         if not source.topic:
             return source
@@ -228,7 +228,7 @@ class ImageDisplay(ImageTopicDisplay):
             self.show_again()
 
     def reduction(self, width: int, height: int) -> int:
-        """So many that panels still show all pixels that are sent."""
+        """The largest number at which panels still show every pixel that is sent."""
         panel = self._panel
         if panel is None or panel.width <= 0 or panel.height <= 0:
             return 1
@@ -342,7 +342,7 @@ class CameraDisplay(ImageTopicDisplay):
         return _MOST_WAITING
 
     def take_image(self, message: Any, pose: Pose | None) -> None:
-        """Show an image, once it is known how the camera looks."""
+        """Show an image, once the camera's parameters are known."""
         camera = self._model(message)
         self.show_image(message, camera, pose)
 

@@ -28,7 +28,7 @@ _EVENTS = {"pose_update": 1, "menu_select": 2, "button_click": 3, "mouse_down": 
 
 
 class InteractiveMarkersDisplay(DataDisplay):
-    """The markers of an interactive marker server, and what the user does to them, told to the server."""
+    """The markers of an interactive marker server; the user's actions on them are sent to the server."""
 
     CLASS = "rviz_default_plugins/InteractiveMarkers"
     MESSAGE = "visualization_msgs/msg/InteractiveMarkerUpdate"
@@ -96,7 +96,7 @@ class InteractiveMarkersDisplay(DataDisplay):
                 take()
 
     def receive(self, message: Any) -> None:
-        """Tell the server what was done to a marker."""
+        """Send the user's action on a marker to the server."""
         if not isinstance(message, MarkerFeedback) or self._client is None:
             return
         marker = self._markers.get(message.marker)
@@ -150,7 +150,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.say(_CLIENT, level, text)
 
     def _soon(self, take: Callable[[], None]) -> None:
-        """Take something from the server, which waits while time is paused."""
+        """Pass on an update of the server, or hold it back while time is paused."""
         if self.host.time.paused:
             self._held.append(take)
         else:
@@ -234,7 +234,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.send(shape, key=f"marker {name}", frame=frame, pose=at)
 
     def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
-        """Where the marker's frame was; None for a marker that follows it, which one without a time does."""
+        """The pose of the marker's frame at its time; None for one without a time, which follows its frame."""
         fixed_frame = self.host.frames.fixed_frame
         stamp = marker.header.stamp
         pose = self.context.transforms.pose(fixed_frame, frame, stamp.sec * 1_000_000_000 + stamp.nanosec)

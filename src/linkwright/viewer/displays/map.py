@@ -115,7 +115,7 @@ class MapDisplay(TopicDisplay):
         self._follow_topic(file_too=False)
 
     def frames_changed(self) -> None:
-        """Say whether the map can be placed now."""
+        """Show in the status whether the map can be placed now."""
         super().frames_changed()
         if self._map is None or self.properties.flag(_USE_TIMESTAMP):
             return
@@ -180,7 +180,7 @@ class MapDisplay(TopicDisplay):
                 "Map", "error", phrase("Map is zero-sized ({width}x{height})", width=info.width, height=info.height)
             )
         elif info.width * info.height != cells.size:
-            self.say("Map", "error", _sizes(info, cells))
+            self.say("Map", "error", _size_mismatch(info, cells))
         else:
             self._map = message
             self._cells, self._is_own = cells.reshape(info.height, info.width), False
@@ -205,7 +205,7 @@ class MapDisplay(TopicDisplay):
             self.say("Update", "error", phrase("Update area outside of original map area."))
             return
         if part.size != update.width * update.height:
-            self.say("Update", "error", _sizes(update, part))
+            self.say("Update", "error", _size_mismatch(update, part))
             return
         if not self._is_own:
             self._cells, self._is_own = self._cells.copy(), True
@@ -214,7 +214,7 @@ class MapDisplay(TopicDisplay):
         self._send_soon()
 
     def _send_soon(self) -> None:
-        """Many updates at once make one map."""
+        """Send the map after a short wait, so that many updates at once make one map."""
         if self._sending is None:
             wait = max(0.0, self._sent_at + _UPDATE_PERIOD - time.monotonic())
             self._sending = asyncio.get_running_loop().call_later(wait, self._send_updated)
@@ -238,8 +238,8 @@ class MapDisplay(TopicDisplay):
         self.send(content, frame=frame.removeprefix("/"), pose=self._pose if timed else None, stamp_ns=stamp_ns)
 
 
-def _sizes(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
-    """What does not fit: of a MapMetaData or an update, and the cells that came with it."""
+def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
+    """The text about a size, in a MapMetaData or an update, that does not fit the number of cells."""
     return phrase(
         "Data size doesn't match width*height: width = {width}, height = {height}, data size = {size}",
         width=grid.width,
@@ -249,14 +249,14 @@ def _sizes(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
 
 
 def _pose_of(origin: Any) -> list[float]:
-    """Its x y z qx qy qz qw; a quaternion of zeros stands for no rotation."""
+    """The pose as x y z qx qy qz qw; a quaternion of zeros stands for no rotation."""
     p, q = origin.position, origin.orientation
     turn = [q.x, q.y, q.z, q.w]
     return [p.x, p.y, p.z, *(turn if any(turn) else [0.0, 0.0, 0.0, 1.0])]
 
 
 def _readings(info: Any) -> Iterator[tuple[Path, float | int]]:
-    """What the read-only properties show of a nav_msgs/msg/MapMetaData."""
+    """The values of the read-only properties, from a nav_msgs/msg/MapMetaData."""
     yield ("Resolution",), float(info.resolution)
     yield ("Width",), info.width
     yield ("Height",), info.height

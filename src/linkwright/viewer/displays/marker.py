@@ -30,7 +30,7 @@ _DUPLICATES = "Duplicate Marker Check"
 
 
 class _Marker:
-    """One marker: as it came, and until when it is shown (nanoseconds of the node's clock)."""
+    """A marker as it was received, and until when it is shown (nanoseconds of the node's clock)."""
 
     def __init__(self, reading: MarkerReading, message: Any, expires_ns: int | None) -> None:
         self.reading = reading
@@ -73,7 +73,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         )
 
     def take(self, message: Any, pose: Pose | None) -> None:
-        """Do what a marker says."""
+        """Apply the action of a marker."""
         self._do(message)
         while len(self._arriving) > self.most_waiting():
             self._remove(next(iter(self._arriving)))
@@ -230,7 +230,7 @@ class MarkerArrayDisplay(MarkerDisplay):
     SCHEMA = (topic_spec(default="visualization_marker_array", description="visualization_msgs/msg/MarkerArray"),)
 
     def take(self, message: Any, pose: Pose | None) -> None:
-        """Do what the markers say, one after the other."""
+        """Apply the actions of the markers, in their order."""
         self._check_duplicates(message.markers)
         for marker in message.markers:
             self._do(marker)
@@ -263,7 +263,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
 
     @abstractmethod
     def markers(self, message: Any) -> Iterable[Any]:
-        """What is drawn for a message, in place of that for the message before.
+        """The markers of a message; they replace those of the message before.
 
         Args:
             message: of the type `MESSAGE`; it must not be changed.

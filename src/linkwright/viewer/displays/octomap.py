@@ -74,7 +74,7 @@ class OctomapDisplay(StoredMarkersDisplay):
             self.show_again()
 
     def frames_changed(self) -> None:
-        """Say whether the frame of the map has a place."""
+        """Show in the status whether the frame of the map can be placed."""
         problem = self.host.frames.problem(self._frame) if self._frame else None
         if problem:
             self.say(TRANSFORM, "error", problem)
@@ -116,7 +116,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         self.frames_changed()
 
     def _chosen(self, cells: Cells, resolution: float) -> Cells:
-        """The cells that properties ask for, made larger where the tree is to be looked at less deep."""
+        """The cells that properties select, merged into larger ones above the maximum depth."""
         cells = rendered(cells, self.properties.text("Voxel Rendering"))
         height = cells.centers[:, 2]
         lowest, highest = (self.properties.number(f"{which}. Height Display") for which in ("Min", "Max"))

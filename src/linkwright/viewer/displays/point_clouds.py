@@ -82,7 +82,7 @@ class CloudDisplay(TopicDisplay):
         return 0.0
 
     def choose_transformer(self, transformer: str) -> None:
-        """Colour as the messages ask for; the file says what the user asked for, and is not changed by that."""
+        """Choose a transformer that the messages offer; the one in the file stays there."""
         if self.properties.tell((COLOUR_TRANSFORMER,), transformer):
             self.publish_properties()
 
@@ -142,7 +142,7 @@ class CloudDisplay(TopicDisplay):
         super().stop()
 
     def fields_of(self, key: str, index: int) -> dict[str, float | str] | None:
-        """The values of a point that is shown, besides its coordinates; None when it is shown no more."""
+        """The values of a point that is shown, besides its coordinates; None when it is not shown any more."""
         shown = next((each for each in self._shown if each.key == key), None)
         if shown is None or not 0 <= index < len(shown.points):
             return None
@@ -183,7 +183,7 @@ class CloudDisplay(TopicDisplay):
             self.choose_transformer(transformers[0])
 
     def _keep_bounds(self, auto: str, *paths: Path) -> None:
-        """Bounds that are computed no more begin with the last ones that were."""
+        """Set the bounds to the last computed ones, when they are not computed any more."""
         computed = self._computed.get(auto)
         if computed is None or self.properties.flag(auto):
             return
@@ -194,7 +194,7 @@ class CloudDisplay(TopicDisplay):
     # --- decay -------------------------------------------------------------------------------------------------
 
     def _expire(self) -> None:
-        """Take away what is older than the Decay Time; without one, all but the newest."""
+        """Remove points older than the Decay Time; without one, all but the newest."""
         if self._decay is not None:
             self._decay.cancel()
             self._decay = None
@@ -299,11 +299,11 @@ class LaserScanDisplay(PointsDisplay):
         self._projector = ScanProjector()
 
     def points_of(self, message: Any) -> Points:
-        """Where the rays hit something."""
+        """The end points of the rays that hit something."""
         return self._projector.points(message)
 
     def lack_of_points(self, message: Any) -> Phrase | None:
-        """Rays that the sensor could not measure, or that its own limits rule out; infinity is but far (REP 117)."""
+        """Rays that the sensor could not measure, or that its own limits rule out; infinity means far (REP 117)."""
         ranges = np.frombuffer(message.ranges, np.float32)
         finite = ranges[np.isfinite(ranges)]
         if len(finite):
@@ -398,7 +398,7 @@ class FluidPressureDisplay(ScalarDisplay):
 
 
 class IlluminanceDisplay(ScalarDisplay):
-    """How bright it is, in lux."""
+    """The illuminance, in lux."""
 
     CLASS = "rviz_default_plugins/Illuminance"
     MESSAGE = "sensor_msgs/msg/Illuminance"

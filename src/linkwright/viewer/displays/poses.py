@@ -50,7 +50,7 @@ def pose_shape(*, nested: bool = False) -> Schema:
 
 
 def covariance() -> PropertySpec:
-    """RViz's CovarianceProperty."""
+    """The properties of RViz's CovarianceProperty."""
     position = (
         PropertySpec("Color", "color", "#cc33cc", "Colour of the ellipsoid."),
         alpha("Opacity of the ellipsoid.", 0.3),
@@ -113,7 +113,7 @@ def pose_row(pose: Any) -> tuple[float, ...]:
 
 
 def pose_rows(poses: Iterable[Any]) -> Floats:
-    """Those of many; shape (N, 7)."""
+    """The poses as rows x y z qx qy qz qw; shape (N, 7)."""
     return np.array([pose_row(pose) for pose in poses], dtype=np.float32).reshape(-1, 7)
 
 
@@ -183,7 +183,7 @@ class PoseArrayDisplay(RecentDisplay):
 
 
 class ParticleCloudDisplay(RecentDisplay):
-    """Where a robot may be, as nav2's amcl tells: the likelier, the larger (nav2_rviz_plugins)."""
+    """The particles of nav2's amcl: the likelier, the larger (nav2_rviz_plugins)."""
 
     CLASS = "nav2_rviz_plugins/ParticleCloud"
     MESSAGE = "nav2_msgs/msg/ParticleCloud"
@@ -206,7 +206,7 @@ _NORM_TOLERANCE = 10e-3
 
 
 class OdometryDisplay(RecentDisplay):
-    """The way of a robot: a mark wherever it was a bit further or turned a bit more than at the mark before."""
+    """The path of a robot: a mark wherever it moved or turned so far since the mark before."""
 
     CLASS = "rviz_default_plugins/Odometry"
     MESSAGE = "nav_msgs/msg/Odometry"

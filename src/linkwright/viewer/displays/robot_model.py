@@ -183,7 +183,7 @@ class RobotModelDisplay(ViewerDisplay):
 
     @property
     def file_problems(self) -> dict[str, list[Phrase]]:
-        """What is wrong with the files that links name."""
+        """The problems with the files that links name."""
         return self._file_problems
 
     def schema(self) -> Schema:
@@ -218,7 +218,7 @@ class RobotModelDisplay(ViewerDisplay):
             self._box_changed(self._rows, path)
 
     def frames_changed(self) -> None:
-        """Say which links can be placed."""
+        """Show in the status which links can be placed."""
         self._show_status()
 
     def time_changed(self) -> None:
@@ -231,7 +231,7 @@ class RobotModelDisplay(ViewerDisplay):
         return [self.scene]
 
     def receive(self, status: MeshStatus) -> None:
-        """Take what a page says about a mesh of this robot; what it says of others is stale and passed over."""
+        """Show a page's report on a mesh of this robot in the status; one on an earlier robot is ignored."""
         link = next((link for link in self.scene.links if link.name == status.link), None)
         if link is None or not any(shape.url == status.url for shape in (*link.visuals, *link.collisions)):
             return
@@ -249,7 +249,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def provenance(self, link: str) -> LinkProvenance | None:
-        """Where a link was written; None for one that the robot lacks. Takes as long as an expansion does."""
+        """The place where a link was written; None for an unknown link. Takes as long as an expansion does."""
         from linkwright.xacro.tracing.provenance_text import provenance_lines
 
         element = self.robot.links[link].element if self.robot and link in self.robot.links else None
@@ -282,7 +282,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_robot(reading.robot)
 
     def _topic_row(self, is_other: bool) -> StatusRow:
-        """Whose description it is, where several nodes publish one; a warning once these were not the same."""
+        """The row that names the publisher, where several publish a description; a warning once these differed."""
         before = None if self._publisher is None else self._source.current(self._publisher)
         self._publisher = self._source.publisher
         publishers = self._source.publishers()
@@ -334,7 +334,7 @@ class RobotModelDisplay(ViewerDisplay):
         self._show_status()
 
     def recalled(self) -> None:
-        """Arrange the rows as they were, and have the boxes of joints follow again."""
+        """Restore the order of the rows, and derive the boxes of joints again."""
         if self._rows is not None:
             self._robot_specs = self._rows.specs(self.properties.text(*STYLE))
             self._derive_boxes(self._rows)
@@ -350,7 +350,7 @@ class RobotModelDisplay(ViewerDisplay):
             self.publish_properties()
 
     def _box_changed(self, rows: RobotRows, path: Path) -> None:
-        """Set the boxes that follow from one, as RViz does, and those of joints and of all that follow from these."""
+        """Set the boxes that follow from one, as RViz does, and then those that follow from these."""
         style = self.properties.text(*STYLE)
         followers: list[Path] = []
         if path == STYLE:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class FrameFilter:
-    """Says in which names its expression is found.
+    """A regular expression that selects names of frames.
 
     Args:
         text: the expression, empty for none.
@@ -46,7 +46,7 @@ class FrameFilter:
         return self._expression is not None
 
     def found_in(self, names: Collection[str]) -> set[str]:
-        """Those names in which the expression is found; with one that takes too long there is none from now on."""
+        """The names that match the expression; none from now on with an expression that takes too long."""
         if self._expression is not None:
             from linkwright.graph.names.expressions import TooCostlyError
 

@@ -1,4 +1,4 @@
-"""linkwright/World: the models of a simulated world, as its description says, where the simulation has them."""
+"""linkwright/World: the models of a simulated world, at the poses that the simulation publishes."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _UNMOVED = 1e-6
 
 
 class WorldDisplay(TopicDisplay):
-    """All models of a world, drawn by their visuals, each link where the simulation says that it is.
+    """All models of a world, drawn by their visuals, each link at its pose in the simulation.
 
     The poses are in the frame ``world``. Where neither tf nor the Fixed Frame has that name, the world is placed so
     that a link of it stands where tf has the frame of the same name: a robot, as a rule. Where the Fixed Frame has it
@@ -153,7 +153,7 @@ class WorldDisplay(TopicDisplay):
         self._rays.go_on()
 
     def time_reset(self) -> None:
-        """The world is what it was: nobody would say it again. Rays are measured anew."""
+        """Keep the world, which nobody would publish again; rays are measured anew."""
         self._rays.forget()
 
     def reset(self) -> None:
@@ -177,7 +177,7 @@ class WorldDisplay(TopicDisplay):
             self._show_poses()
 
     def receive(self, status: MeshStatus) -> None:
-        """Take what a page says about a mesh of the world."""
+        """Show a page's report on a mesh of the world in the status."""
         row = self._rows_of.get(status.link)
         if row is None:
             return
@@ -215,7 +215,7 @@ class WorldDisplay(TopicDisplay):
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def take(self, message: Any, pose: Pose | None) -> None:
-        """Read a description; as long as it is read the one before is shown."""
+        """Read a description; the one before is shown until that is done."""
         self._cancel()
         self._reading = asyncio.get_running_loop().create_task(self._read(message.data))
 
@@ -325,7 +325,7 @@ class WorldDisplay(TopicDisplay):
         self.send(rays, key=_rays_key(rays.lidar))
 
     def _locate(self) -> None:
-        """Find out where the world is, as of the last poses."""
+        """Compute the pose of the world in the Fixed Frame, from the last poses."""
         if not self._content.links:
             return
         frames = self.context.transforms.names()
@@ -357,7 +357,7 @@ class WorldDisplay(TopicDisplay):
             )
 
     def _place_frames(self, row: int, frame: str, pose: Transform) -> None:
-        """Place tf's frames in the world so that a link is where it is; `pose` is that of its frame in tf's root."""
+        """Place tf's frames in the world so that a link has its pose; `pose` is that of its frame in tf's root."""
         placed = np.array(compose(tuple(self._poses[row]), invert(pose)))
         transforms, root = self.context.transforms, self._root(frame)
         before = transforms.own(WORLD)
@@ -370,7 +370,7 @@ class WorldDisplay(TopicDisplay):
         )
 
     def _anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
-        """A link that tf has a frame of, and where that is in the Fixed Frame; in tf's root where the world leads."""
+        """A link that is a frame of tf, and its pose in the Fixed Frame, or in tf's root where the world leads."""
         for row in self._anchors:
             frame = _unscoped(self._content.links[row].name)
             if frame not in frames:
@@ -382,7 +382,7 @@ class WorldDisplay(TopicDisplay):
         return None
 
     def _root(self, frame: str) -> str:
-        """The frame that all frames which a frame is connected with hang from."""
+        """The root of the tree that a frame is in."""
         names, parents = self.host.frames.names, self.host.frames.parents
         if frame not in names:
             return frame
@@ -395,7 +395,7 @@ class WorldDisplay(TopicDisplay):
 
 
 def _content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
-    """The world that a text says, and what is drawn of it.
+    """The world of a text, and the content drawn for it.
 
     Raises:
         LinkwrightError: it is no SDF, or has neither a world nor a model in it.

@@ -53,7 +53,7 @@ class LidarRays:
         self._let_go(set())
 
     def follow(self, topic: str, choice: str) -> Phrase | None:
-        """Listen to what is needed.
+        """Subscribe to the topics of the lidars whose rays are drawn, and to no others.
 
         Args:
             topic: of the rays; empty for none.
@@ -81,7 +81,7 @@ class LidarRays:
             topic.go_on()
 
     def close(self) -> None:
-        """Listen no more."""
+        """Stop listening."""
         self.follow("", "")
 
     def _let_go(self, kept: set[str]) -> None:

@@ -1,4 +1,4 @@
-"""Interactive markers: a server is followed, and its markers become what the page draws.
+"""Interactive markers: a client of a server, and the conversion of its markers to what the page draws.
 
 All its markers come first, then what changes, and all of them again when a change was lost. Controls without markers
 get the arrows, rings and buttons that the ``interactive_markers`` package gives them.
@@ -44,7 +44,7 @@ _UPDATE = 1
 
 @dataclass(slots=True)
 class ClientEvents:
-    """What happens at a server.
+    """The events of a connection to a server.
 
     Attributes:
         everything: its markers, at the beginning and when updates were lost.
@@ -96,7 +96,7 @@ class InteractiveMarkerClient:
         self._watch()
 
     def publish(self, feedback: Any) -> None:
-        """Tell the server what was done to a marker."""
+        """Send feedback on a marker to the server."""
         self._feedback.publish(feedback)
 
     def close(self) -> None:
@@ -182,7 +182,7 @@ FramePlacer = Callable[[str, str], Transform]
 def read_interactive_marker(
     message: Any, index: MeshIndex, frames: FramePlacer, *, transparent: bool
 ) -> InteractiveMarkerShape:
-    """What an interactive marker looks like.
+    """The shape and the controls of an interactive marker.
 
     Args:
         message: a visualization_msgs/msg/InteractiveMarker.

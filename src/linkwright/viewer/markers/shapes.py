@@ -60,7 +60,7 @@ def made_marker(
     colors: NDArray[np.float32] = _NO_COLORS,
     mesh: MarkerMesh | None = None,
 ) -> MarkerShape:
-    """A marker that no message brought.
+    """A marker made of its parts, without a message.
 
     Args:
         namespace: with the name, what it is known by.
@@ -92,12 +92,12 @@ def made_marker(
 
 
 def marker_id(message: Any) -> str:
-    """Its name in RViz's status rows: ``<namespace>/<number>``."""
+    """The name in RViz's status rows: ``<namespace>/<number>``."""
     return f"{message.ns}/{message.id}"
 
 
 def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
-    """What a marker looks like.
+    """The shape of a marker.
 
     Args:
         message: a visualization_msgs/msg/Marker whose action is ADD.
@@ -341,14 +341,14 @@ class MarkerStore:
         return True
 
     def clear(self) -> None:
-        """Show none."""
+        """Remove all markers."""
         self._change += 1
         self._oldest = self._change
         self._shown.clear()
         self._gone.clear()
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """What a page lacks that has seen the changes up to one."""
+        """The changes since a revision, for a page that has seen those up to it."""
         if seen == self._change:
             return None, seen
         if self._packed is None or self._packed[:2] != (seen, self._change):

@@ -188,7 +188,7 @@ class ViewerDisplay:
         """Values were restored and `changed` was called for each: update what depends on them."""
 
     def enabled_changed(self) -> None:
-        """Its enable box was set, or that of a group around it."""
+        """The display's enable box, or that of a group around it, was set."""
         self.frames_changed()
 
     def arranged(self, displays: Sequence[ViewerDisplay]) -> None:
@@ -270,7 +270,7 @@ class DataDisplay(ViewerDisplay):
             self.set_status(list(self._rows.values()))
 
     def data(self) -> list[Payload]:
-        """What is drawn now."""
+        """The content drawn now."""
         return list(self._data.values())
 
     def _replaced(self, key: str) -> None:

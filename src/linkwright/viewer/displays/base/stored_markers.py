@@ -1,4 +1,4 @@
-"""Displays that are drawn as markers: pages are sent those that are new or others now, and which have gone."""
+"""Displays that are drawn as markers: pages are sent new and changed markers, and the ids of removed ones."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class StoredMarkersDisplay(TopicDisplay):
         return [self._store]
 
     def receive(self, message: Any) -> None:
-        """Take what a page says of a marker's mesh or texture."""
+        """Show a page's report on a marker's mesh or texture in the status."""
         if isinstance(message, MeshStatus) and message.error is not None and message.link in self._store:
             self.say(
                 message.link,

@@ -71,7 +71,7 @@ class SideTopic:
 
 
 def camera_info_topic(image: str) -> str:
-    """Where the CameraInfo of an image topic is by ROS's convention: beside the image, whatever its transport."""
+    """The topic of an image's CameraInfo by ROS's convention: beside the image, whatever its transport."""
     for transport in ("/compressed", "/compressedDepth", "/theora"):
         image = image.removesuffix(transport)
     return image.rpartition("/")[0] + "/camera_info"
@@ -158,7 +158,7 @@ class TopicDisplay(DataDisplay, ABC):
         self.forget()
 
     def transforms_came(self) -> None:
-        """There are new transforms."""
+        """New transforms were received."""
         self._try_waiting()
 
     def frame_of(self, message: Any) -> tuple[str, int]:
@@ -171,7 +171,7 @@ class TopicDisplay(DataDisplay, ABC):
         return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
 
     def most_waiting(self) -> int:
-        """How many messages may wait for their transforms."""
+        """The number of messages that may wait for their transforms."""
         return int(self.properties.number(TOPIC, FILTER_SIZE))
 
     # --- what subclasses call ----------------------------------------------------------------------------------
@@ -320,13 +320,13 @@ class TopicDisplay(DataDisplay, ABC):
             self._telling = asyncio.get_running_loop().call_later(_COUNT_PERIOD, tell)
 
     def _publishers(self, topic: str) -> list[tuple[str, str]]:
-        """Node and type of all that publish a topic besides this viewer, whose tools do."""
+        """Node and type of all publishers of a topic but this viewer's own, which are its tools."""
         node = self.context.node
         found = node.get_publishers_info_by_topic(topic)
         return [(each.node_name, each.topic_type) for each in found if each.node_name != node.get_name()]
 
     def _silence(self) -> Phrase:
-        """Why nothing comes, as far as the graph knows, and where such messages are."""
+        """The reason why nothing is received, as far as the graph knows, and topics that have such messages."""
         message, topic, _ = self.subscription()
         publishers = self._publishers(topic)
         types = {topic_type for _, topic_type in publishers}
@@ -395,7 +395,7 @@ class TopicDisplay(DataDisplay, ABC):
         return True
 
     def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
-        """Say so, if it is only that transforms are late then when nothing could be placed for a while."""
+        """Report that a message has no transform; if it is only late, once nothing could be placed for a while."""
         if not is_late:
             self.say(TRANSFORM, "error", reason)
             return
@@ -404,7 +404,7 @@ class TopicDisplay(DataDisplay, ABC):
             self._late = asyncio.get_running_loop().call_later(_LATE, self._tell_late)
 
     def _with_clocks(self, reason: Phrase, stamp_ns: int) -> Phrase:
-        """With what is to be looked at where a message has the time of another clock."""
+        """The reason, with advice about clocks where the stamp of a message is far from the time here."""
         ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
         if abs(ahead) < _OTHER_CLOCK:
             return reason
@@ -465,7 +465,7 @@ class _Shown:
 
 
 class RecentDisplay(TopicDisplay):
-    """Shows what `content` makes of each of the last messages, each where its frame was at its time.
+    """Shows the content of each of the last messages, posed where its frame was at its time.
 
     A subclass says how many with the property at `LENGTH` (0 for all of them); without one it is a single message.
     """
@@ -482,7 +482,7 @@ class RecentDisplay(TopicDisplay):
 
     @abstractmethod
     def content(self, message: Any) -> DataContent | None:
-        """What pages draw of a message, in the frame of `frame_of`; None for nothing new."""
+        """The content of a message, in the frame of `frame_of`; None for nothing new."""
 
     def take(self, message: Any, pose: Pose | None) -> None:
         """Show a message, and drop the oldest one."""

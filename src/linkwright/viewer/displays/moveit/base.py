@@ -50,7 +50,7 @@ class MoveItDisplay(StoredMarkersDisplay):
     # --- what subclasses call ----------------------------------------------------------------------------------
 
     def put(self, group: str, shapes: Iterable[MarkerShape]) -> None:
-        """Make these the markers of a group; those of before that are missing now go."""
+        """Replace the markers of a group."""
         before = self._groups.get(group, {})
         now = {shape.id: shape for shape in shapes}
         for identity in before.keys() - now.keys():
@@ -61,12 +61,12 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._groups[group] = now
 
     def drawn(self) -> None:
-        """Send what `put` has changed, and say which frames have no place."""
+        """Send what `put` has changed, and show in the status which frames cannot be placed."""
         self.show_markers()
         self._tell_frames()
 
     def say_unknown(self, joints: list[str]) -> None:
-        """Say which joints of a state the robot does not have."""
+        """Show in the status which joints of a state the robot does not have."""
         if joints:
             names, more = quoted_names(joints[:5]), len(joints) - 5
             text = phrase("The robot has no joint {names}", names=names)
@@ -112,7 +112,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self.draw()
 
     def frames_changed(self) -> None:
-        """Say which frames have no place."""
+        """Show in the status which frames cannot be placed."""
         self._tell_frames()
 
     def time_changed(self) -> None:
@@ -165,7 +165,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self.draw()
 
     def robot_changed(self) -> None:
-        """There is another robot; `draw` is called after."""
+        """The robot was replaced; `draw` is called after."""
 
     def _tell_frames(self) -> None:
         frames = {shape.frame for shapes in self._groups.values() for shape in shapes.values()}

@@ -44,7 +44,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._motions = SideTopic(host, "moveit_msgs/msg/DisplayTrajectory", self._player.play)
 
     def schema(self) -> Schema:
-        """Those of the scene and of motions."""
+        """The properties of the scene and of motions."""
         path = PropertySpec(PATH, "group", description="The motions.", children=path_specs(self.link_names))
         return (*super().schema(), _REQUEST_SPEC, path)
 

@@ -51,7 +51,7 @@ class Cells:
     probabilities: NDArray[np.float64]
 
     def chosen(self, mask: NDArray[np.bool_]) -> Cells:
-        """Those where the mask is set."""
+        """The cells where the mask is set."""
         return Cells(self.centers[mask], self.sizes[mask], self.probabilities[mask])
 
 

@@ -60,7 +60,7 @@ class PlanningSceneDisplay(MoveItDisplay):
         return (NAMESPACE_SPEC, DESCRIPTION_SPEC, SCENE_TOPIC_SPEC, GEOMETRY_SPEC, scene_robot_spec(self.link_names))
 
     def description_topic(self) -> str:
-        """In the namespace of move_group, if there is one."""
+        """The topic in the namespace of move_group, if there is one."""
         name, namespace = super().description_topic(), self.properties.text(NAMESPACE).strip("/ ")
         return f"/{namespace}/{name}" if namespace and name and not name.startswith("/") else name
 

@@ -63,7 +63,7 @@ ATTACHED = PropertySpec(
 
 
 def visibility(visual: str, collision: str) -> tuple[PropertySpec, ...]:
-    """Which shapes of links are drawn."""
+    """The boxes for the visuals and the collisions of links."""
     return (
         PropertySpec(visual, "bool", True, "Draw what the robot looks like."),
         PropertySpec(collision, "bool", False, "Draw the shapes that contacts are worked out with."),
@@ -84,7 +84,7 @@ def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
 
 
 def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
-    """How a motion is shown."""
+    """The properties of playing a motion."""
     return (
         PropertySpec(
             TRAJECTORY_TOPIC,
@@ -130,7 +130,7 @@ def rgb(text: str) -> tuple[float, float, float]:
 
 
 def rgba(message: object) -> Color:
-    """Those of a std_msgs/msg/ColorRGBA, and alpha."""
+    """The components of a std_msgs/msg/ColorRGBA, and alpha."""
     parts = (getattr(message, part) for part in "rgba")
     red, green, blue, opacity = (min(max(float(part), 0.0), 1.0) for part in parts)
     return red, green, blue, opacity
@@ -149,7 +149,7 @@ def link_alphas(properties: PropertyStore, robot: PosableRobot, above: Path = ()
 def look(
     properties: PropertyStore, robot: PosableRobot, namespace: str, above: Path = (), color: str | None = None
 ) -> Look:
-    """How a robot is drawn by the properties below a path.
+    """The look of a robot by the properties below a path.
 
     Args:
         properties: of the display.

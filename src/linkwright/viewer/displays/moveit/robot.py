@@ -1,4 +1,4 @@
-"""A robot in a state that a message tells, as markers: its joints say where its links are, and not tf."""
+"""A robot as markers in a state from a message: its joint positions place its links, and not tf."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _RED: Color = (1.0, 0.0, 0.0, 1.0)
 
 @dataclass(slots=True)
 class JointPositions:
-    """Where the joints of a robot are.
+    """The positions of a robot's joints, and the pose of its root.
 
     Attributes:
         values: rad or m, by joint.
@@ -39,13 +39,13 @@ class JointPositions:
     frame: str = ""
 
     def copy(self) -> JointPositions:
-        """The same positions, to be changed."""
+        """A copy, to be changed."""
         return JointPositions(dict(self.values), self.root_in_frame, self.frame)
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """How a robot is drawn.
+    """Colours and opacity of a robot, and which links and shapes are drawn.
 
     Attributes:
         namespace: of the markers.
@@ -108,7 +108,7 @@ class PosableRobot:
         return name in self._joints
 
     def links_moved_by(self, joints: AbstractSet[str]) -> set[str]:
-        """The links that are somewhere else when one of these joints moves."""
+        """The links whose poses depend on one of these joints."""
         pending = [self._children[name] for name in joints if name in self._children]
         found: set[str] = set()
         while pending:
@@ -119,7 +119,7 @@ class PosableRobot:
         return found
 
     def set_state(self, state: JointPositions, message: Any) -> list[str]:
-        """Take what a moveit_msgs/msg/RobotState says of joints into a state.
+        """Write the joint positions of a moveit_msgs/msg/RobotState into a state.
 
         Returns:
             The joints that it names and the robot does not have.
@@ -145,7 +145,7 @@ class PosableRobot:
         return unknown
 
     def set_root(self, state: JointPositions, frame: str, transform: Any) -> None:
-        """Put the root of the robot where a geometry_msgs/msg/Transform in a frame says."""
+        """Set the pose of the root to a geometry_msgs/msg/Transform in a frame."""
         at, turn = transform.translation, transform.rotation
         if not all(map(math.isfinite, (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w))):
             raise UnusableStateError(phrase("The state has invalid floating point values (nans or infs)"))
@@ -154,7 +154,7 @@ class PosableRobot:
         state.root_in_frame = (x, y, z, qx, qy, qz, qw)
 
     def set_joints(self, state: JointPositions, names: Any, positions: Any) -> list[str]:
-        """Take positions of joints into a state; as `set_state`."""
+        """Write positions of joints into a state; as `set_state`."""
         if len(names) != len(positions):
             raise UnusableStateError(
                 phrase(
@@ -174,7 +174,7 @@ class PosableRobot:
         return unknown
 
     def link_poses(self, state: JointPositions) -> dict[str, Transform]:
-        """Where the links are in the frame of a state."""
+        """The poses of the links in the frame of a state."""
         matrices = self._tree.forward(state.values)
         turns = quaternion_from_matrix(matrices[:, :3, :3]).tolist()
         places = matrices[:, :3, 3].tolist()
@@ -188,7 +188,7 @@ class PosableRobot:
         return state.frame or self.root
 
     def markers(self, state: JointPositions, look: Look) -> list[MarkerShape]:
-        """The robot in a state."""
+        """The markers of the robot in a state."""
         frame = self.frame_of(state)
         made: list[MarkerShape] = []
         for name, pose in self.link_poses(state).items():
@@ -259,7 +259,7 @@ def _in_link(shape: Shape) -> Transform:
 
 
 def _own_color(shape: Shape) -> Color:
-    """That of the description. The materials of a mesh's own are only tinted by it, so that white leaves them."""
+    """The colour of the description. It only tints a mesh's own materials, so that white leaves them."""
     if shape.kind == "mesh" and not (shape.format or "").startswith("stl"):
         alpha = shape.color[3] if shape.color else 1.0
         return (1.0, 1.0, 1.0, alpha)

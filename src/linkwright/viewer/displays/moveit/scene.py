@@ -25,7 +25,7 @@ OCTOMAP = "<octomap>"
 
 @dataclass(frozen=True, slots=True)
 class SceneObject:
-    """What a moveit_msgs/msg/CollisionObject says of an object, with the names that it has there."""
+    """A moveit_msgs/msg/CollisionObject, with the names that it has there."""
 
     id: str
     frame: str
@@ -39,17 +39,17 @@ class SceneObject:
 
     @classmethod
     def of(cls, message: Any) -> SceneObject:
-        """That of a message."""
+        """The object of a message."""
         shapes: dict[str, Any] = {name: tuple(getattr(message, name)) for name in _SHAPES}
         return cls(message.id, message.header.frame_id.removeprefix("/"), message.pose, **shapes)
 
     def with_more(self, message: Any) -> SceneObject:
-        """With the shapes of a message, too."""
+        """The object with the shapes of a message added."""
         shapes: dict[str, Any] = {name: (*getattr(self, name), *getattr(message, name)) for name in _SHAPES}
         return replace(self, **shapes)
 
     def moved(self, message: Any) -> SceneObject:
-        """Where a message says."""
+        """The object at the pose of a message."""
         poses: dict[str, Any] = {name: tuple(found) for name in _POSES if (found := getattr(message, name))}
         return replace(self, frame=message.header.frame_id.removeprefix("/"), pose=message.pose, **poses)
 
@@ -65,7 +65,7 @@ _SHAPES = ("primitives", "meshes", "planes", *_POSES)
 
 @dataclass(frozen=True, slots=True)
 class PlacedCells:
-    """The cells of an octomap, and where it is."""
+    """The cells of an octomap, and their pose."""
 
     cells: Cells
     frame: str
@@ -73,7 +73,7 @@ class PlacedCells:
 
 
 class Scene:
-    """What is around a robot, what it holds, and where its joints are.
+    """The objects around a robot, those that it holds, and its joint positions.
 
     Attributes:
         name: that the scene was given.
@@ -94,7 +94,7 @@ class Scene:
         self._colors: dict[str, Color] = {}
 
     def apply(self, message: Any) -> None:
-        """Take a moveit_msgs/msg/PlanningScene, all of a scene or what has changed, without the joints of the robot."""
+        """Apply a moveit_msgs/msg/PlanningScene, a whole scene or a difference, without the joints of the robot."""
         if not message.is_diff:
             self._objects.clear()
             self._held.clear()
@@ -116,7 +116,7 @@ class Scene:
             self._map(octomap)
 
     def attach(self, messages: Iterable[Any]) -> None:
-        """Take moveit_msgs/msg/AttachedCollisionObject: what the robot holds, or lets go."""
+        """Apply a moveit_msgs/msg/AttachedCollisionObject, which attaches or detaches an object."""
         for each in messages:
             self._attach(each)
 

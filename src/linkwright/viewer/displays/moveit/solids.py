@@ -35,7 +35,7 @@ class BadObjectError(ValueError):
 
 
 def object_markers(message: Any, namespace: str, color: Color, *, frame: str, base: Transform) -> list[MarkerShape]:
-    """What a moveit_msgs/msg/CollisionObject looks like.
+    """The markers of a moveit_msgs/msg/CollisionObject.
 
     Args:
         message: the object. A pose that was not given is no translation and no rotation.
@@ -121,7 +121,7 @@ def _cone(_: Any, sizes: list[float]) -> Form:
 
 
 def _prism(shape: Any, sizes: list[float]) -> Form:
-    """A polygon as high as is said, half of it below; corners go round it."""
+    """A polygon extruded to a height, half of it below; corners go round it."""
     flat = [(point.x, point.y) for point in shape.polygon.points]
     if len(flat) < 3:
         raise BadObjectError(phrase("The polygon of a prism has {corners} corners", corners=len(flat)))

@@ -1,4 +1,4 @@
-"""moveit_rviz_plugin/Trajectory, and what plays motions."""
+"""moveit_rviz_plugin/Trajectory, and the player of motions."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Motion:
 
 
 def read_motion(robot: PosableRobot, message: Any) -> Motion:
-    """What a moveit_msgs/msg/DisplayTrajectory says.
+    """The states of a moveit_msgs/msg/DisplayTrajectory.
 
     Raises:
         UnusableStateError: it has no states, too many, or some that cannot be shown.
@@ -141,7 +141,7 @@ class MotionPlayer:
         self._begin()
 
     def begin_again(self) -> None:
-        """Play the last motion from its start: the robot is another, or it is to be repeated."""
+        """Play the last motion from its start: the robot was replaced, or it is to be repeated."""
         if self._message is not None:
             self._begin()
 
@@ -151,7 +151,7 @@ class MotionPlayer:
         self._message = self._next = self.motion = None
 
     def draw(self, group: str) -> None:
-        """Put what is to be seen now into groups of markers of the display."""
+        """Put the present state and the trail into groups of markers of the display."""
         robot, motion = self._display.robot, self.motion
         now, trail = [], []
         if robot is not None and motion is not None:

@@ -40,7 +40,7 @@ def rendered(cells: Cells, rendering: str) -> Cells:
 def octomap_markers(
     cells: Cells, namespace: str, *, frame: str, base: Transform, alpha: float, by_probability: bool
 ) -> list[MarkerShape]:
-    """Boxes for the cells of an octree, a marker for each of their sizes; those that others hide are left out.
+    """Boxes for the cells of an octree, a marker for each of their sizes; hidden ones are left out.
 
     Args:
         cells: in the frame of the tree.
@@ -90,7 +90,7 @@ _RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) fo
 
 
 def _is_seen(cells: Cells) -> NDArray[np.bool_]:
-    """Which cells have a side without a neighbour of their own size."""
+    """The cells that have a side without a neighbour of their own size, as a mask."""
     seen = np.ones(len(cells.sizes), dtype=np.bool_)
     for size in np.unique(cells.sizes):
         mask = cells.sizes == size
