@@ -56,7 +56,7 @@ Message = TypeVar("Message")
 
 @dataclass(frozen=True, slots=True)
 class Request(Generic[Message]):
-    """What a page asks for, and the configuration that it sees."""
+    """A request of a page, and the configuration that the page sees."""
 
     page: Page
     manager: VisualizationManager
@@ -64,7 +64,7 @@ class Request(Generic[Message]):
 
 
 class ConfigurationFeature(PageFeature):
-    """Carries out what pages ask for.
+    """Carries out pages' requests about the configuration.
 
     Nothing unsaved is lost unless the page says that it may be.
 
@@ -95,7 +95,7 @@ class ConfigurationFeature(PageFeature):
             manager.publish(state)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Carry out what a page asks for, or say why not."""
+        """Carry out a request, or send the reason why not."""
         manager = self.managers.of(page)
         try:
             _DEEDS[type(message)](self, Request(page, manager, message))
@@ -260,7 +260,7 @@ def _found(manager: VisualizationManager, identities: list[str]) -> list[ViewerD
 
 
 def _folder(manager: VisualizationManager) -> Path:
-    """What paths are relative to: the folder of the open file, or the working directory."""
+    """The folder to which paths are relative: that of the open file, or the working directory."""
     path = manager.config.path
     return path.absolute().parent if path is not None else Path.cwd()
 
@@ -292,7 +292,7 @@ class PanelsFeature(PageFeature):
         return [Panels(manager.opened, config.document.source.name, config.panels.shown)]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Have the file show what the page shows."""
+        """Write the panels of the page into the file."""
         manager = self.managers.of(page)
         config = manager.config
         if config.panels.show(message.shown) and config.path is not None:

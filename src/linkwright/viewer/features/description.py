@@ -38,7 +38,7 @@ Part = TypeVar("Part")
 
 
 class KnownDescription:
-    """One description of a display. All of it may be asked for in another thread.
+    """The description of a display. All methods may be called in another thread.
 
     Args:
         display: the RobotModel display.
@@ -68,7 +68,7 @@ class KnownDescription:
 
     @cached_property
     def account(self) -> Description:
-        """Its links and joints."""
+        """The details of its links and joints."""
         from linkwright.viewer.features.description_details import account
 
         return account(
@@ -81,7 +81,7 @@ class KnownDescription:
         )
 
     def changed_from(self, before: KnownDescription | None) -> DescriptionChanged:
-        """What has changed since the description before; of a first one nothing has."""
+        """The links and joints that differ from the description before; of a first one none."""
         links = _changed(before.robot.links, self.robot.links) if before else []
         joints = _changed(before.robot.joints, self.robot.joints) if before else []
         return DescriptionChanged(self.display, self.revision, links, joints)
@@ -92,14 +92,14 @@ class KnownDescription:
         return DescriptionText(self.display, self.revision, file, text)
 
     def findings(self, finder: PackageFinder) -> InertiaFindings:
-        """What is implausible about its masses; found anew, for meshes may have changed."""
+        """The implausible masses; computed anew, because meshes may have changed."""
         from linkwright.viewer.features.description_details import implausible
 
         return InertiaFindings(self.display, self.revision, implausible(self.robot, finder))
 
 
 def _changed(before: Mapping[str, Part], after: Mapping[str, Part]) -> list[str]:
-    """The links or joints that a robot lacked before or had otherwise; where they are written does not count."""
+    """The links or joints that are new or different in another robot; their places in the text do not count."""
     # Elements, which know the places, take no part in comparisons of the model.
     return [name for name, part in after.items() if before.get(name) != part]
 
@@ -141,7 +141,7 @@ class DescriptionFeature(PageFeature):
         self._faulty = {each.source.name: each.source.text for each in diagnostics if each.source is not None}
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """Which descriptions can be asked for; nothing counts as changed."""
+        """The descriptions that can be asked for; no link counts as changed."""
         known = [self._look_at(display) for display in manager.robot_models()]
         return [DescriptionChanged(each.display, each.revision, [], []) for each in known if each is not None]
 
@@ -189,7 +189,7 @@ class DescriptionFeature(PageFeature):
             page.send(told)
 
     def _look_at(self, display: RobotModelDisplay) -> KnownDescription | None:
-        """What is known of the description that a display shows now."""
+        """The known description that a display shows now."""
         robot, prefix = display.robot, display.properties.text("TF Prefix")
         known = self._known.get(display.id)
         if robot is None:
@@ -203,7 +203,7 @@ class DescriptionFeature(PageFeature):
 
 
 def _text(known: KnownDescription | None, faulty: dict[str, str], question: AskDescriptionText) -> DescriptionText:
-    """A text; of a file that something is wrong with, the one that it is wrong with and not that of the robot shown."""
+    """The text of a file; for one with findings the text they refer to, and not that of the robot shown."""
     file = question.file
     if file in faulty:
         return DescriptionText(question.display, known.revision if known else 0, file, faulty[file])
@@ -213,7 +213,7 @@ def _text(known: KnownDescription | None, faulty: dict[str, str], question: AskD
 
 
 class DiagnosticsFeature(PageFeature):
-    """Shows every page what is wrong with the description."""
+    """Shows every page the findings on the description."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -221,7 +221,7 @@ class DiagnosticsFeature(PageFeature):
         self._shown = Diagnostics([])
 
     def opening(self) -> list[ServerMessage]:
-        """What is wrong now."""
+        """The present findings."""
         return [self._shown]
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
@@ -231,7 +231,7 @@ class DiagnosticsFeature(PageFeature):
         self.context.pages.publish(self._shown)
 
     def robot_changed(self) -> None:
-        """Say whether a robot is there of which nothing is seen."""
+        """Show a finding while nothing of the robot can be seen."""
         shown = self._all()
         if shown != self._shown:
             self._shown = shown
@@ -244,7 +244,7 @@ class DiagnosticsFeature(PageFeature):
 
 
 def _unseen(model: RobotModelDisplay) -> Diagnostic | None:
-    """That none of the visuals of a robot can be drawn (VIEW207)."""
+    """The finding that none of the visuals of a robot can be drawn (VIEW207)."""
     robot, problems = model.robot, model.file_problems
     if robot is None or not problems or not model.enabled or any(link.visuals for link in model.scene.links):
         return None

@@ -60,7 +60,7 @@ class Places:
             self._expanded.setdefault(key, element)
 
     def of(self, tag: str, name: str, element: Element | None) -> Written:
-        """Where a link or joint is written; `element` is the one that the robot was read from."""
+        """The place of a link or joint; `element` is the one that the robot was read from."""
         twin = self._expanded.get((tag, name))
         expanded = None if twin is None else _range(twin)
         if element is None or element.source is None or element.source.name.startswith("<"):
@@ -229,7 +229,7 @@ _RULES = "LW3"
 
 
 def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
-    """What the rules about masses and inertias have to say of each link.
+    """The findings of the rules about masses and inertias, by link.
 
     The links of a macro that is called four times are four links here, where `linkwright check` reports one place. May
     take long, for meshes are read to see how large links are.

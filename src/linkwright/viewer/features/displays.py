@@ -39,7 +39,7 @@ class DisplaysFeature(PageFeature):
                 display.receive(message)
 
     def page_gone(self, page: Page) -> None:
-        """Make pictures for the panels of the other pages alone."""
+        """Forget the panels of a page; images are made for those of the others."""
         for display, sizes in list(self._sizes.items()):
             if sizes.pop(page, None) is not None:
                 self._tell_size(display)
@@ -89,7 +89,7 @@ def choices(node: Node) -> DisplayChoices:
 
 
 def show_topic(display: ViewerDisplay, topic: str) -> None:
-    """Have a display that was just made show a topic, with the quality of service that its publishers offer.
+    """Set the topic of a new display, with the quality of service that its publishers offer.
 
     RViz takes its defaults, with which nothing comes of a sensor's Best Effort.
     """

@@ -25,7 +25,7 @@ class GoalSender:
         self._client = ActionClient(node, kind, name)
 
     def send(self, pose: Any) -> None:
-        """Send a pose; the log says when nobody takes it.
+        """Send a pose; the log warns when no server accepts it.
 
         Args:
             pose: a geometry_msgs/msg/PoseStamped.

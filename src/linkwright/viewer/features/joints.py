@@ -27,7 +27,7 @@ _LAG = 0.01
 
 
 class JointsFeature(PageFeature):
-    """Between the page's Joints panel and the one that moves the joints, once there is one."""
+    """Connects the page's Joints panel with the one that moves the joints, once there is one."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = (SetJoint, SetJoints, RandomizeJoints, CenterJoints)
 
@@ -50,13 +50,13 @@ class JointsFeature(PageFeature):
             self.context.pages.publish(message)
 
     def opening(self) -> list[ServerMessage]:
-        """The sliders, and where they stand."""
+        """The sliders and their values."""
         if self._panel is None:
             return [Joints(None)]
         return [self._controls(self._panel), JointPositions(self._panel.positions())]
 
     def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
-        """Do what a page asks for. Joints that are not, or only follow another, are passed over."""
+        """Carry out a request. Unknown joints, and those that mimic another, are ignored."""
         panel = self._panel
         if panel is None:
             return

@@ -1,4 +1,4 @@
-"""Features that are made when there is something for them to do: a page asks, or a topic of theirs is published.
+"""Features that are made when they are needed: when a page asks for one, or a topic of theirs is published.
 
 Their modules are imported then. Until then pages are told what there is without them.
 """
@@ -99,7 +99,7 @@ _WITHOUT: dict[str, ServerMessage] = {
 
 
 class OnDemandFeatures(PageFeature):
-    """Makes each of them, once, and hands it what a page asked; what comes after that goes to it at once."""
+    """Makes each of them, once, and passes on the message that asked for it; later messages go to it directly."""
 
     RECEIVES: ClassVar[tuple[type, ...]] = tuple(message for asked in _ANSWERED_BY.values() for message in asked)
 
@@ -110,7 +110,7 @@ class OnDemandFeatures(PageFeature):
         self._listening = False
 
     def opening(self) -> list[ServerMessage]:
-        """What there is without those that are not made; listens for their topics while there are pages."""
+        """The messages of features that are not made yet; listens for their topics while there are pages."""
         if not self._listening and self._asleep:
             self._listening = True
             self.context.graph_changes.listen(self._review)
@@ -118,13 +118,13 @@ class OnDemandFeatures(PageFeature):
         return [told for where, told in _WITHOUT.items() if where not in self._made]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Make what answers the first question of its kind, and ask it."""
+        """Make the feature that takes the message, and pass it on."""
         self._make(next(where for where, asked in _ANSWERED_BY.items() if type(message) in asked)).receive(
             page, message
         )
 
     def recording_shown(self) -> None:
-        """Make those that say that something is not possible beside a recording; they are told next."""
+        """Make the features that are refused beside a recording; they are told next."""
         for where in (_SIMULATION, _RECORDING):
             self._make(where)
 
@@ -134,7 +134,7 @@ class OnDemandFeatures(PageFeature):
             self._stop()
 
     def close(self) -> None:
-        """Make nothing more."""
+        """Make no more features."""
         self._stop()
 
     def _stop(self) -> None:
@@ -142,7 +142,7 @@ class OnDemandFeatures(PageFeature):
         self.context.graph_changes.ignore(self._review)
 
     def _review(self) -> None:
-        """Make those whose topics are there now."""
+        """Make the features whose topics are published now."""
         for topic, where in list(self._asleep.items()):
             if self.context.node.count_publishers(topic):
                 self._make(where)

@@ -1,4 +1,4 @@
-"""Page features, what pages can ask for besides displays: their base class, and those that there are.
+"""Page features, which answer pages' requests besides displays: their base class, and making them.
 
 They are found through the entry points ``linkwright.page_features``.
 """
@@ -36,7 +36,7 @@ class FeatureHost(Protocol):
     live: LiveHistory | None
 
     def add_feature(self, cls: type[F], receives: Iterable[type] = ()) -> F:
-        """A feature of a class, told of all that features are told from now on; the one there is, if any.
+        """A feature of a class, told of all events from now on; the present one, if any.
 
         Args:
             cls: its class.
@@ -72,7 +72,7 @@ class PageFeature:
         self.managers = viewer.managers
 
     def start(self) -> None:
-        """The viewer listens now."""
+        """The viewer has begun to listen."""
 
     def opening(self) -> list[ServerMessage]:
         """Messages for a page that opens now."""
@@ -89,22 +89,22 @@ class PageFeature:
         """A manager was closed: drop what is kept for it."""
 
     def robot_changed(self) -> None:
-        """A display has another robot."""
+        """A display shows another robot."""
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
         """The findings about the description have changed; an empty list when it is in order."""
 
     def recording_shown(self) -> None:
-        """What is shown is a recording: nobody does what robots and simulations could be asked for."""
+        """A recording is shown: requests to robots and simulations are refused from now on."""
 
     def receive(self, page: Page, message: Any) -> None:
-        """Do what a page asks for; the message is of one of the classes that it takes."""
+        """Carry out a request; the message is of one of the classes that it takes."""
 
     def page_gone(self, page: Page) -> None:
         """A page was closed."""
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Keep what pages edited and did not save, before the program ends; the notices about it."""
+        """Keep unsaved edits of pages, before the program ends; returns the notices about it."""
         return []
 
     def close(self) -> None:
@@ -116,7 +116,7 @@ GROUP = "linkwright.page_features"
 
 
 def make_features(viewer: FeatureHost) -> list[PageFeature]:
-    """A feature of each kind; one of another package that cannot be made is told of in the log, and left out."""
+    """A feature of each kind; one of another package that cannot be made is logged, and left out."""
     made: list[PageFeature] = []
     for name, entry in extensions(GROUP).items():
         try:

@@ -46,7 +46,7 @@ _NANO = 1_000_000_000
 
 
 class RecordingFeature(PageFeature):
-    """Records what pages ask for. It goes on when its page is closed, and ends well when the program does.
+    """Records topics for pages. It goes on when its page is closed, and ends well when the program does.
 
     Attributes:
         folder: where recordings go.
@@ -67,16 +67,16 @@ class RecordingFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def recording_shown(self) -> None:
-        """Record nothing."""
+        """Refuse to record."""
         self._possible = False
         self._tell()
 
     def opening(self) -> list[ServerMessage]:
-        """How it goes."""
+        """The state of the recording."""
         return [self._state()]
 
     def receive(self, page: Page, message: RecordTopics | StopRecording | SaveMinutes) -> None:
-        """Do what a page asks for."""
+        """Carry out a request."""
         if not self._possible:
             return
         match message:
@@ -89,7 +89,7 @@ class RecordingFeature(PageFeature):
                     self._attempt(partial(self._save, self.viewer.live, start, end))
 
     def close(self) -> None:
-        """End what is being recorded."""
+        """End the recording."""
         self._possible = False
         self._end()
         if self._saving is not None:
@@ -121,7 +121,7 @@ class RecordingFeature(PageFeature):
         self._tell_later()
 
     def _guarded(self, callback: Callable[..., object]) -> Callable[..., object]:
-        """What the recorder's node calls back; where the disk refuses something, the recording ends."""
+        """A callback for the recorder's node that ends the recording when a write fails."""
 
         def call(*arguments: Any) -> None:
             try:
@@ -208,7 +208,7 @@ class RecordingFeature(PageFeature):
         return path
 
     def _check_room(self, needed: int) -> None:
-        """See that the disk has room left.
+        """Check that the disk has room left.
 
         Raises:
             LinkwrightError: BAG110, it has too little.
@@ -227,7 +227,7 @@ class RecordingFeature(PageFeature):
             )
 
     def _free(self) -> int:
-        """Bytes that are free where recordings go; without end where nobody can tell: writing fails then."""
+        """The free bytes where recordings go; infinite where that cannot be told, since writing fails then."""
         try:
             return shutil.disk_usage(self.folder).free
         except OSError:
@@ -251,7 +251,7 @@ class RecordingFeature(PageFeature):
         self._tell()
 
     def _refused(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Tell pages and the terminal what is wrong."""
+        """Show pages and the terminal an error."""
         for each in diagnostics:
             self.context.report(each)
         self._problem = in_one_line(diagnostics)
@@ -286,7 +286,7 @@ class RecordingFeature(PageFeature):
 
 
 class _Running:
-    """A recording that is being made."""
+    """A recording in progress."""
 
     def __init__(self, node: Node, writer: BagWriter, recorder: Recorder, jumps: JumpHandle) -> None:
         self.node = node

@@ -1,4 +1,4 @@
-"""The simulation bar, and what pages do to the models of a simulated world: through topics and services alone.
+"""The simulation bar, and moving models of a simulated world: through topics and services alone.
 
 Source of their names: gazebo_ros and simulation_interfaces.
 """
@@ -55,7 +55,7 @@ _ACTIONS = {
 
 @dataclass(slots=True)
 class _Drag:
-    """A model that a page moves: where it was, once that is known, and the newest place that nobody was told of."""
+    """A model that a page moves: its pose before, once that is known, and the newest one not sent yet."""
 
     model: str
     start: Any = None
@@ -64,7 +64,7 @@ class _Drag:
 
 
 class SimulationFeature(PageFeature):
-    """Tells pages how a simulation in the graph goes, and asks of it what they want; listens while there are pages."""
+    """Tells pages the state of a simulation, and passes their requests on; listens while there are pages."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -77,7 +77,7 @@ class SimulationFeature(PageFeature):
         self._spawning: set[asyncio.Task[None]] = set()
 
     def opening(self) -> list[ServerMessage]:
-        """How the simulation goes."""
+        """The state of the simulation."""
         if not self._listening and not self._recorded:
             self._listening = True
             self.context.graph_changes.listen(self._review)
@@ -85,12 +85,12 @@ class SimulationFeature(PageFeature):
         return [self._status]
 
     def recording_shown(self) -> None:
-        """Have no bar: what a simulation told then controls none now."""
+        """Hide the bar: the recorded simulation cannot be controlled."""
         self._recorded = True
         self._stop()
 
     def page_gone(self, page: Page) -> None:
-        """Let go of what it moves, and stop listening after the last page."""
+        """Let go of the models that the page moves, and stop listening after the last page."""
         self._drags.pop(page, None)
         if self._listening and len(self.context.pages) == 0:
             self._stop()
@@ -102,7 +102,7 @@ class SimulationFeature(PageFeature):
             task.cancel()
 
     def receive(self, page: Page, message: Any) -> None:
-        """Do what a page asks for."""
+        """Carry out a request."""
         match message:
             case ControlSimulation(action):
                 kind, name = _ACTIONS[action]
@@ -233,7 +233,7 @@ class SimulationFeature(PageFeature):
             self._put(page, drag)
 
     def _put(self, page: Page, drag: _Drag) -> None:
-        """Tell the newest place, when the simulation has done what it was told before."""
+        """Send the newest pose, when the simulation has answered the request before."""
         if drag.start is None or drag.wanted is None or drag.calling:
             return
         start = drag.start.pose.position
@@ -262,7 +262,7 @@ class SimulationFeature(PageFeature):
 
 
 def _tell_other_name(page: Page, name: str, free: str, response: Any) -> None:
-    """Tell that a model was given another name, as the one that it has is taken."""
+    """Tell a page that a model was renamed, since its name was taken."""
     if response is not None and response.success:
         told = phrase(
             "There is a '{name}' already: this one is '{free}', and the topics of its plugins begin with /{free}. "

@@ -1,4 +1,4 @@
-"""Calling services of a simulation for pages, which are told why something was not done."""
+"""Calls services of a simulation for pages, which are told why a call failed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from linkwright.viewer.web.audience import Page
 
 
 class SimulationServices:
-    """Clients of services, each made when it is needed first.
+    """Clients of services, each made when it is first needed.
 
     Args:
         context: of the viewer, whose node asks.
@@ -66,7 +66,7 @@ class SimulationServices:
         future.add_done_callback(done)
 
     def close(self) -> None:
-        """Destroy the clients; those that are needed again are made anew."""
+        """Destroy the clients; they are made anew when they are needed again."""
         with suppress(ValueError):  # the node may have been destroyed before
             for client in self._clients.values():
                 self._node.destroy_client(client)
@@ -74,5 +74,5 @@ class SimulationServices:
 
 
 def refuse(page: Page, text: str | Phrase) -> None:
-    """Tell a page why something was not done."""
+    """Tell a page why a request was refused."""
     page.send(SimulationNotice(text))

@@ -23,14 +23,14 @@ _PERIOD = 0.1
 
 @dataclass(slots=True)
 class _Since:
-    """When elapsed time began, nanoseconds."""
+    """The times from which elapsed time is counted, nanoseconds."""
 
     ros: int
     wall: int
 
 
 class TimeFeature(PageFeature):
-    """Time, for the pages that show it.
+    """The Time panel of pages.
 
     Clocks that go as the wall clock does are told once, and pages count on; others are told while they change.
     """
@@ -46,12 +46,12 @@ class TimeFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def start(self) -> None:
-        """Begin anew whenever simulated time goes back, as RViz does."""
+        """Reset time whenever simulated time goes back, as RViz does."""
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=True)
         self._jumps = self.context.node.get_clock().create_jump_callback(threshold, post_callback=self._jumped)
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """How time goes."""
+        """The state of time."""
         self._begin(manager)
         return [_state(manager)]
 
@@ -60,7 +60,7 @@ class TimeFeature(PageFeature):
         self._since.pop(manager, None)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Do what a page asks for."""
+        """Carry out a request."""
         manager = self.managers.of(page)
         if isinstance(message, SetTime):
             manager.set_time(paused=message.paused, mode=message.mode, source=message.source)
@@ -75,11 +75,11 @@ class TimeFeature(PageFeature):
                 self.page_gone(page)
 
     def page_gone(self, page: Page) -> None:
-        """Stop sending it clocks."""
+        """Stop sending the page clocks."""
         self._watching.pop(page, None)
 
     def close(self) -> None:
-        """Tell nothing more."""
+        """Stop sending clocks."""
         if self._timer is not None:
             self._timer.cancel()
         if self._jumps is not None:
@@ -118,7 +118,7 @@ class TimeFeature(PageFeature):
         self._tick()
 
     def _tick(self) -> None:
-        """Tell each page that watches the clocks, unless it counts them itself."""
+        """Send the clocks to each page that watches them, unless it counts them itself."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None

@@ -1,4 +1,4 @@
-"""The timeline of a recording, or of the last minutes: its times for pages, and what they have it do."""
+"""The timeline of a recording, or of the last minutes: its times for pages, and their control of it."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _SECOND = 1_000_000_000
 
 
 class TimelineFeature(PageFeature):
-    """Shows pages where a recording is, and has it do what they ask for.
+    """Shows pages the position in a recording, and controls its playback for them.
 
     Without a recording, nor a history of what comes, it does nothing. A recording begins to play
     when the first page opens.
@@ -73,7 +73,7 @@ class TimelineFeature(PageFeature):
         self._loop = asyncio.get_running_loop()
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
-        """Have pages see a recording; `failed` is to be called when it cannot be read."""
+        """Show pages a recording; `failed` is to be called when it cannot be read."""
         from linkwright.bag.publishing import untyped
 
         counts = bag.counts(_PARTS)
@@ -92,20 +92,20 @@ class TimelineFeature(PageFeature):
         self._changed()
 
     def keep(self, most_bytes: int) -> LiveHistory:
-        """Keep what comes in the last minutes, so many bytes of it, and have pages see it; returns what keeps it."""
+        """Keep messages of the last minutes, up to so many bytes, for pages; returns the history."""
         self._live = LiveHistory(self.context, most_bytes, self.failed)
         self._live.begin_anew = self._begin_anew
         self._live.changed = self._changed
         return self._live
 
     def failed(self, error: LinkwrightError) -> None:
-        """The recording cannot be read on."""
+        """Show an error: the recording cannot be read on."""
         self._problem = in_one_line(error.diagnostics)
         for diagnostic in error.diagnostics:
             self.context.report(diagnostic)
 
     def opening(self) -> list[ServerMessage]:
-        """The recording, and where it is."""
+        """The recording, and the position in it."""
         playback = self._recorded
         if self._live is not None:
             kept = self._kept(self._live)
@@ -120,7 +120,7 @@ class TimelineFeature(PageFeature):
         return [self._timeline, self._playhead(playback)]
 
     def receive(self, page: Page, message: Play | SeekTime | StepTime | SetPlayback | GoLive) -> None:
-        """Do what a page asks for."""
+        """Carry out a request."""
         from linkwright.bag.playback import FASTEST, SLOWEST
 
         playback = self._recorded if self._live is None else self._live.playback
@@ -161,7 +161,7 @@ class TimelineFeature(PageFeature):
         return source.before(topics, round(seconds * _SECOND), most_bytes)
 
     def close(self) -> None:
-        """Play nothing more."""
+        """Stop playing."""
         if self._timer is not None:
             self._timer.cancel()
         if self._telling is not None:
@@ -175,7 +175,7 @@ class TimelineFeature(PageFeature):
     # -----------------------------------------------------------------------------------------------------------
 
     def _begin_anew(self) -> None:
-        """Forget what was shown, and what waits to be shown: it is of another time."""
+        """Drop what is shown, and queued messages: they are of another time."""
         for subscription in self.context.node.subscriptions:
             subscription.discard()
         for manager in self.managers.all():

@@ -56,7 +56,7 @@ class ViewsFeature(PageFeature):
         return [self._classes]
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """The view of the file, wherever pages have gone since, and the saved ones."""
+        """The view of the file, whichever pages have now, and the saved ones."""
         return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved(manager)]
 
     def receive(self, page: Page, message: Any) -> None:
@@ -98,7 +98,7 @@ _POINT_TOOL = "rviz_default_plugins/PublishPoint"
 
 @dataclass(slots=True)
 class _Shelf:
-    """The tools of one configuration, and what they publish with, by their ids."""
+    """The tools of a configuration with their publishers, by their ids."""
 
     config: ToolsConfig
     publishers: dict[str, Publisher[Any]] = field(default_factory=dict)
@@ -118,7 +118,7 @@ class ToolsFeature(PageFeature):
         self._shelves: dict[VisualizationManager, _Shelf] = {}
 
     def start(self) -> None:
-        """Announce what the tools publish."""
+        """Make the publishers of the tools."""
         for manager in self.managers.all():
             self._shelf(manager)
 
@@ -133,7 +133,7 @@ class ToolsFeature(PageFeature):
             self._clear(shelf)
 
     def receive(self, page: Page, message: Any) -> None:
-        """Do what a page asks for; tools that are gone are passed over."""
+        """Carry out a request; tools that are gone are ignored."""
         manager = self.managers.of(page)
         shelf = self._shelf(manager)
         if isinstance(message, SetToolProperty):
@@ -156,7 +156,7 @@ class ToolsFeature(PageFeature):
             self.manager_closed(manager)
 
     def _shelf(self, manager: VisualizationManager) -> _Shelf:
-        """The tools of a manager; those of another configuration than the last time are announced anew."""
+        """The tools of a manager; those of another configuration than the last time get new publishers."""
         shelf = self._shelves.get(manager)
         if shelf is None or shelf.config is not manager.config.tools:
             if shelf is not None:

@@ -1,4 +1,4 @@
-"""Tells pages how two descriptions differ that are in one scene."""
+"""Tells pages how two descriptions in one scene differ."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _ALPHA = 0.4
 
 
 def show_old(config: RvizConfig, name: str) -> None:
-    """Have a configuration of one robot show the old one besides, seen through."""
+    """Add the display of the old robot, translucent, to the configuration of the new one."""
     display = config.make("rviz_default_plugins/RobotModel", name)
     for path, value in (
         (("Description Topic", "Value"), TOPIC),
@@ -42,7 +42,7 @@ def show_old(config: RvizConfig, name: str) -> None:
 
 
 class ComparisonFeature(PageFeature):
-    """Compares the robots of two displays, whenever one of them is another. Without a pair it does nothing."""
+    """Compares the robots of two displays, whenever one of them is replaced. Without a pair it does nothing."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -52,7 +52,7 @@ class ComparisonFeature(PageFeature):
         self._told: dict[VisualizationManager, ComparedDescriptions] = {}
 
     def attach(self, pair: Pair, node: Node) -> Callable[[str], None]:
-        """Have pages see how two descriptions differ.
+        """Show pages the differences of two descriptions.
 
         Args:
             pair: the two; their displays are those of `RvizConfig.for_model` and of `show_old`.
@@ -65,7 +65,7 @@ class ComparisonFeature(PageFeature):
         return self._old.publish
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
-        """How they differ."""
+        """The differences, as told last."""
         message = self._message(manager)
         if message is None:
             return []
@@ -73,7 +73,7 @@ class ComparisonFeature(PageFeature):
         return [message]
 
     def robot_changed(self) -> None:
-        """Compare what is shown now."""
+        """Compare the robots that are shown now."""
         if self._pair is None or self._old is None:
             return
         old, new = next(
@@ -89,11 +89,11 @@ class ComparisonFeature(PageFeature):
             self._tell(manager)
 
     def edited(self, manager: VisualizationManager) -> None:
-        """Displays may have come or gone."""
+        """Compare again, as displays may have been added or removed."""
         self._tell(manager)
 
     def manager_closed(self, manager: VisualizationManager) -> None:
-        """Forget what its pages were told."""
+        """Forget the messages that its pages were sent."""
         self._told.pop(manager, None)
 
     def _tell(self, manager: VisualizationManager) -> None:
@@ -118,7 +118,7 @@ class ComparisonFeature(PageFeature):
 
 
 def without_paths(message: ComparedDescriptions) -> ComparedDescriptions:
-    """The same for those who have no such files: places are texts, and none tells a folder above the current one."""
+    """The comparison for readers without those files: places are texts, without folders above the current one."""
     for each in (message.old, message.new):
         each.label = _shareable(each.label)
     for item in message.items:
@@ -153,7 +153,7 @@ def _identity(display: RobotModelDisplay | None) -> str:
 
 
 def _marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Mark], dict[str, Mark]]:
-    """What happened to links of the old robot and of the new one."""
+    """The marks on links of the old robot and of the new one."""
     of_old: dict[str, Mark] = {name: "removed" for name in old.links if name not in comparison.links}
     before = {after: name for name, after in comparison.links.items()}
     of_new: dict[str, Mark] = {name: "added" for name in new.links if name not in before}

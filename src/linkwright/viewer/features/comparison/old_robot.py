@@ -1,4 +1,4 @@
-"""The old one of two descriptions as a robot of the graph: its text, and its links where those of the new one are."""
+"""The older of two descriptions as a robot of the graph: its text, and its links at the poses of the new one's."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TOPIC = "/old/robot_description"
 
 
 class OldRobot:
-    """Publishes a description, and transforms by which its joints stand as those of another robot do.
+    """Publishes a description, and transforms that give its joints the positions of another robot's.
 
     What both have is where it is in the other one; joints that only the old one has stand at zero, or in the middle of
     limits without zero.
@@ -52,11 +52,11 @@ class OldRobot:
         listener.create_subscription(JointState, "joint_states", self._moved, SENSOR_DATA_QOS)
 
     def publish(self, text: str) -> None:
-        """Publish a description; `place` says where it is."""
+        """Publish a description; `place` publishes the poses of its links."""
         self._text.publish(String(text))
 
     def place(self, old: Robot, new: Robot, comparison: Comparison) -> None:
-        """Publish where the links are.
+        """Publish the poses of the links.
 
         Args:
             old: what the text says.

@@ -25,7 +25,7 @@ _AXES = "xyz"
 
 
 class EditingFeature(PageFeature):
-    """Tells pages what can be edited, shows what edits come to, and writes them."""
+    """Tells pages the editable parts, previews edits, and writes them."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -37,7 +37,7 @@ class EditingFeature(PageFeature):
         self._worker: asyncio.Task[None] | None = None
 
     def receive(self, page: Page, message: Any) -> None:
-        """Do what a page asks for, after all that pages asked for before."""
+        """Queue a request; requests are carried out in their order."""
         if isinstance(message, editing.PreviewEdit):
             self._newest[page] = message.number
         self._watching.add(page)
@@ -46,7 +46,7 @@ class EditingFeature(PageFeature):
             self._worker = asyncio.get_running_loop().create_task(self._work())
 
     def page_gone(self, page: Page) -> None:
-        """Forget what it was shown."""
+        """Forget the previews of a page."""
         self._watching.discard(page)
         self._plans.pop(page, None)
         self._newest.pop(page, None)

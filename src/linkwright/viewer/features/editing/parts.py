@@ -18,7 +18,7 @@ _AROUND = 1
 
 
 def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
-    """What can be edited of a link: the joint above it, its axis, its visuals and collisions, and where its mass is."""
+    """The editable parts of a link: the joint above it, its axis, visuals, collisions and inertial."""
     link = robot.links.get(link_name)
     if link is None:
         return []
@@ -31,7 +31,7 @@ def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
 
 
 def request_of(message: PreviewEdit) -> EditRequest:
-    """What a page asks for."""
+    """The edit that a page requests."""
     return EditRequest(message.part, message.name, message.index, message.xyz, message.rpy, message.together)
 
 

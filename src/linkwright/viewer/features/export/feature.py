@@ -1,4 +1,4 @@
-"""Pages ask for the robot as a file, in one of the formats that there are, and fetch it once."""
+"""Exports the robot as a file in one of several formats, for a page to fetch once."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.viewer.web.files import Download
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A kind of file.
+    """A file format.
 
     Attributes:
         content_type: its MIME type.
@@ -64,7 +64,7 @@ def export_snapshot(snapshot: Snapshot, ending: str) -> bytes:
 
 
 class ExportFeature(PageFeature):
-    """Makes files of what a page sees."""
+    """Exports the configuration that a page sees."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

@@ -52,7 +52,7 @@ class GltfFile:
         return len(entries) - 1
 
     def entry(self, kind: str, index: int) -> dict[str, Any]:
-        """What was added, to be changed."""
+        """An entry that was added, to be changed."""
         return self._parts[kind][index]
 
     def vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:
@@ -288,7 +288,7 @@ class _Neighbours:
     __getitem__ = get
 
     def keys(self) -> list[str]:
-        """There is no list."""
+        """No names: trimesh asks for files by `get` alone."""
         return []
 
 

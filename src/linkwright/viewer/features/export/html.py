@@ -73,7 +73,7 @@ def _policy(script: str) -> str:
 
 
 def _recorded(snapshot: Snapshot, program: str) -> str:
-    """What a server would tell the page, as JSON that can stand in HTML."""
+    """The messages of a server to a new page, as JSON that can stand in HTML."""
     robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
     files = FileSet(snapshot.meshes).collect([*addresses(robots), *snapshot.marker_meshes])
     messages = without_secrets(",".join(encode(message) for message in snapshot.messages))

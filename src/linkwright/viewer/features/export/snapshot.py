@@ -1,4 +1,4 @@
-"""Snapshots of what a viewer shows at one moment, with the files that drawing it takes, for pages without a server."""
+"""Snapshots of what a viewer shows at one moment, with the files needed for drawing it, for pages without a server."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ _PATHS = frozenset({"Description File"})
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A robot, and all that is seen with it.
+    """A robot, and all messages that pages draw it from.
 
     Attributes:
         name: of the robot.
@@ -212,7 +212,7 @@ class Snapshot:
 
 
 def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View | None = None) -> Snapshot:
-    """What is seen now of a configuration, to be exported.
+    """A snapshot of a configuration as it is seen now.
 
     Args:
         viewer: that shows it.
@@ -241,7 +241,7 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
 
 
 def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
-    """The files that a description is made of which who gets it may not be meant to see.
+    """The files of a description that whoever gets the export may not be meant to see.
 
     Includes, ``load_yaml`` and ``file://`` reach any file of the machine, as under ROS.
 
@@ -307,7 +307,7 @@ def take_snapshot(
 
 
 def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
-    """What of a robot cannot be drawn."""
+    """The findings on shapes of a robot that cannot be drawn."""
     return [
         Diagnostic(
             "VIEW203",
@@ -326,7 +326,7 @@ def no_robot() -> LinkwrightError:
 
 
 def _whole(payload: Payload) -> bytes | str | None:
-    """All of a content, as a page that has nothing is sent it."""
+    """The complete content, as for a page that has none of it."""
     if isinstance(payload, ScaledData):
         return payload.whole
     return payload if isinstance(payload, (bytes, str)) else payload.since(0)[0]

@@ -1,4 +1,4 @@
-"""A world that is edited: its text, what that was before, and the file that it is saved into."""
+"""A world that is edited: its text, earlier texts, and the file that it is saved into."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class EditedWorld:
             return False  # there is none, or it cannot be read: what is here is all there is
 
     def reserve(self, names: Iterable[str]) -> None:
-        """Give new things none of these names but those that the world has itself."""
+        """Keep new models and lights from taking these names, unless the world has them itself."""
         world = self.world
         self.world = WorldText(world.text, world.path, world.finder, frozenset(names) - world.things.keys())
 
@@ -133,19 +133,19 @@ class EditedWorld:
             self.world = changed
 
     def undo(self) -> None:
-        """Take the last change back; nothing where there is none."""
+        """Undo the last edit, if there is one."""
         if self._before:
             self._after.append(self.world.text)
             self.world = self.world.with_text(self._before.pop())
 
     def redo(self) -> None:
-        """Make the change again that was taken back last; nothing where there is none."""
+        """Repeat the edit that was undone last, if there is one."""
         if self._after:
             self._before.append(self.world.text)
             self.world = self.world.with_text(self._after.pop())
 
     def save(self, name: str | None) -> None:
-        """Save it.
+        """Save the world.
 
         Args:
             name: another file, absolute, from ``~`` or from the folder of the world; None for its own.
@@ -174,7 +174,7 @@ class EditedWorld:
             self.world = WorldText(self.world.text, target, self.world.finder, self.world.reserved)
 
     def keep(self, folder: Path) -> Diagnostic:
-        """Write what is not saved into a folder, in which a later text of the same world takes its place.
+        """Write a text that is not saved into a folder, in place of earlier texts of the same world.
 
         Returns:
             Where it is (RVIZ301), or that it is lost (RVIZ104).

@@ -1,4 +1,4 @@
-"""Modelling a world in the page: its text is edited, and the simulation makes its world that of the text.
+"""Modelling a world in the page: pages edit its text, and the simulation loads it.
 
 The text is that of the file that the simulator's parameter ``world`` names; where there is none, or another world is in
 it, the text is what the simulator tells about its world. All pages edit one text, one thing after the other.
@@ -40,7 +40,7 @@ _PATIENCE = 30.0
 
 
 class ModellingFeature(PageFeature):
-    """Tells pages what stands in the world, and edits it as they ask."""
+    """Tells pages the models and lights of the world, and edits it on their requests."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -61,7 +61,7 @@ class ModellingFeature(PageFeature):
         return [self._state()]
 
     def page_gone(self, page: Page) -> None:
-        """Stop listening after the last page; what was edited stays."""
+        """Stop listening after the last page; edits stay."""
         if self._listening and len(self.context.pages) == 0:
             self._listening = False
             self.context.graph_changes.ignore(self._review)
@@ -80,7 +80,7 @@ class ModellingFeature(PageFeature):
             self._worker.cancel()
 
     def receive(self, page: Page, message: Any) -> None:
-        """Do what a page asks for, after all that pages asked for before."""
+        """Queue a request; requests are carried out in their order."""
         self._waiting.put_nowait((page, message))
         if self._worker is None:
             self._worker = asyncio.get_running_loop().create_task(self._work())
@@ -115,7 +115,7 @@ class ModellingFeature(PageFeature):
     # --- what they ask for -------------------------------------------------------------------------------------
 
     async def _work(self) -> None:
-        """Do what was asked for, one thing after the other: reading a large world takes a while."""
+        """Carry out the queued requests one after the other: reading a large world takes a while."""
         from linkwright.sdf.editing import EditError
 
         while True:
@@ -177,7 +177,7 @@ class ModellingFeature(PageFeature):
         return self._edited
 
     async def _read(self) -> EditedWorld:
-        """The world that is simulated: of its file, where that can be found, else as the simulator tells about it."""
+        """The simulated world, from its file if that can be found, else from the simulator's description."""
         from linkwright.sdf.editing import EditError
         from linkwright.sdf.resources import ResourceFinder
         from linkwright.viewer.features.modelling.edited_world import EditedWorld
@@ -195,7 +195,7 @@ class ModellingFeature(PageFeature):
         return told
 
     async def _file_told(self) -> str:
-        """What the parameter ``world`` of the simulator says; empty where there is none."""
+        """The value of the simulator's parameter ``world``; empty where there is none."""
         node = self.context.node
         publishers = node.get_publishers_info_by_topic(_DESCRIPTION)
         if not publishers:
@@ -219,7 +219,7 @@ class ModellingFeature(PageFeature):
             node.destroy_client(client)
 
     async def _described(self) -> str:
-        """What the simulator tells about its world.
+        """The description that the simulator publishes.
 
         Raises:
             EditError: it tells nothing.
@@ -242,7 +242,7 @@ class ModellingFeature(PageFeature):
             node.destroy_subscription(subscription)
 
     async def _load(self, page: Page, edited: EditedWorld) -> None:
-        """Have the simulation make its world that of the text."""
+        """Replace the simulated world by that of the text."""
         resource = get_message("simulation_interfaces/msg/Resource")
         named = resource(uri=str(edited.path.absolute()), resource_string=edited.world.text)
         fields = {"world_resource": named, "ignore_missing_or_unsupported_assets": True}
@@ -264,7 +264,7 @@ class ModellingFeature(PageFeature):
 
 
 def _edit(edited: EditedWorld, message: PageMessage) -> Callable[[], None]:
-    """What a message does to a world; heavy, for a thread."""
+    """Apply the request of a page to a world; slow, for a thread."""
     from linkwright.viewer.features.modelling.things import changed
 
     if isinstance(message, UndoWorld):

@@ -63,7 +63,7 @@ def choices(packages: PackageFinder) -> ModelChoices:
 
 
 def changed(world: WorldText, message: PageMessage) -> WorldText:
-    """A world with what a page asks for.
+    """A world after the edit of a page.
 
     Raises:
         EditError: it cannot be.

@@ -69,7 +69,7 @@ class FieldPath:
             at += 1
 
     def check(self, message_class: type[Message]) -> None:
-        """Make sure that the path leads to a number in messages of a class.
+        """Check that the path leads to a number in messages of a class.
 
         Raises:
             FieldPathError: it does not.

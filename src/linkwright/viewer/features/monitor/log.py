@@ -35,7 +35,7 @@ class _Reader:
         return len(self._waiting)
 
     def add(self, line: LogLine) -> None:
-        """Have a record sent; the oldest is dropped when too many wait."""
+        """Queue a record; the oldest is dropped when too many wait."""
         if len(self._waiting) == _MOST_WAITING:
             self._missed += 1
         self._waiting.append(line)
@@ -51,7 +51,7 @@ class _Reader:
 
 
 class LogFeature(PageFeature):
-    """Sends pages what nodes log."""
+    """Sends pages the records of ``/rosout``."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

@@ -61,7 +61,7 @@ class NavigationFeature(PageFeature):
         self._watch: _Watch | None = None
 
     def receive(self, page: Page, message: WatchNavigation | CommandNavigation) -> None:
-        """Begin or end to tell a page, or pass a command on."""
+        """Start or stop telling a page, or pass a command on."""
         if isinstance(message, CommandNavigation):
             if self._watch is not None and page in self._pages:
                 self._watch.command(message.command)
@@ -74,14 +74,14 @@ class NavigationFeature(PageFeature):
             self.page_gone(page)
 
     def page_gone(self, page: Page) -> None:
-        """Tell the page no more."""
+        """Stop telling the page."""
         self._pages.discard(page)
         if not self._pages and self._watch is not None:
             self._watch.close()
             self._watch = None
 
     def close(self) -> None:
-        """Tell nobody any more."""
+        """Stop telling pages."""
         for page in tuple(self._pages):
             self.page_gone(page)
 
@@ -91,7 +91,7 @@ class NavigationFeature(PageFeature):
 
 
 class _Watch:
-    """What is known of nav2 now.
+    """The state of nav2, as it was heard and asked.
 
     Attributes:
         state: for pages.
@@ -121,13 +121,13 @@ class _Watch:
         self._ask()
 
     def command(self, command: NavigationCommand) -> None:
-        """Do what a button says; one command after the other."""
+        """Carry out the command of a button; one after the other."""
         if self._work is None or self._work.done():
             self._change(busy=True, problem="")
             self._work = asyncio.get_running_loop().create_task(self._do(command))
 
     def close(self) -> None:
-        """Ask and listen no more."""
+        """Stop asking and listening."""
         if self._next is not None:
             self._next.cancel()
         if self._work is not None:

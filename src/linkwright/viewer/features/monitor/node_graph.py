@@ -11,7 +11,7 @@ from linkwright.viewer.web.audience import Page
 
 
 class NodeGraphFeature(PageFeature):
-    """Tells pages of the nodes and topics, and of every change."""
+    """Sends pages the nodes and topics, and every change."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

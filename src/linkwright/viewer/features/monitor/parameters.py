@@ -41,7 +41,7 @@ _LONGS = range(-(2**63), 2**63)
 
 
 def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
-    """What the page shows of a parameter.
+    """The row of the page for a parameter.
 
     Args:
         descriptor: rcl_interfaces/msg/ParameterDescriptor.
@@ -121,7 +121,7 @@ _TELL_PERIOD = 0.05
 
 
 class RemoteNode:
-    """Reads and sets the parameters of a node, and knows them while it is watched.
+    """Reads and sets the parameters of a node, and follows them while it is watched.
 
     Args:
         node: makes the clients.
@@ -150,7 +150,7 @@ class RemoteNode:
         self._run(self._refresh())
 
     def take(self, event: Any) -> None:
-        """Note a rcl_interfaces/msg/ParameterEvent of the node."""
+        """Apply a rcl_interfaces/msg/ParameterEvent of the node."""
         for parameter in event.deleted_parameters:
             self._rows.pop(parameter.name, None)
         for parameter in event.changed_parameters:
@@ -242,7 +242,7 @@ class ParametersFeature(PageFeature):
         self._events: TopicTap | None = None
 
     def receive(self, page: Page, message: WatchParameters | SetParameter | DumpParameters) -> None:
-        """Do what a page asks for; a node's parameters can be set and dumped by who watches them."""
+        """Carry out a request; a node's parameters are set and dumped by whoever watches them."""
         if isinstance(message, WatchParameters):
             self._watch(page, message)
             return

@@ -67,7 +67,7 @@ class SampleQueue:
 
 
 def thinned(samples: NDArray[Any], most: int) -> NDArray[Any]:
-    """At most so many of the samples, so that a plot of them looks the same.
+    """A subset of the samples of limited size whose plot looks the same.
 
     Of each of equal shares in a row the least and the greatest value stay, in their order.
 
@@ -106,7 +106,7 @@ _LONGEST_PAST = 600.0
 
 @dataclass(slots=True)
 class _Series:
-    """One series of one page."""
+    """A series of a page."""
 
     wanted: PlotSeries
     path: FieldPath | None
@@ -119,18 +119,18 @@ class _Series:
         return self.past is not None or len(self.queue) > 0
 
     def take(self) -> NDArray[np.float64]:
-        """What waits to be sent: array, shape (3, M). What was before comes first, and the page begins anew there."""
+        """The samples to be sent: array, shape (3, M). Those of the past come first, and the page begins anew there."""
         waiting, past, self.past = self.queue.take(), self.past, None
         return waiting if past is None else np.hstack([past, waiting])
 
     def forget(self) -> None:
-        """Drop what waits: it is of another time than the one that is shown."""
+        """Drop queued samples: they are of another time than the one that is shown."""
         self.past = None
         self.queue.take()
 
 
 class _Channel:
-    """One topic with all the series that take numbers from it."""
+    """A topic with all the series that take numbers from it."""
 
     def __init__(self, context: ViewerContext, topic: str, came: Callable[[], None]) -> None:
         self._came = came
@@ -153,7 +153,7 @@ class _Channel:
         self._came()
 
     def _check(self, series: _Series) -> None:
-        """Find out whether the path leads to a number of the topic's messages."""
+        """Check whether the path leads to a number of the topic's messages."""
         if series.path is None:
             return
         error = self.tap.error
@@ -178,7 +178,7 @@ class _Channel:
         self._came()
 
     def take_past(self, seconds: Callable[[_Series], float], timeline: TimelineFeature) -> None:
-        """Give those that wait for it what was before the time that is shown."""
+        """Give the series that wait for it their samples before the time that is shown."""
         cls = self.tap.message_class
         feeding = [each for each in self.series if each.error is None and each.path is not None]
         if cls is None or not feeding:
@@ -195,7 +195,7 @@ class _Channel:
 
 
 class _Plots:
-    """What one page plots. The frame with its samples is made when its turn in the outbox comes."""
+    """The series of a page. The frame with its samples is made when its turn in the outbox comes."""
 
     key = "samples"
 
@@ -228,7 +228,7 @@ class PlotsFeature(PageFeature):
         self._reading: asyncio.TimerHandle | None = None
 
     def receive(self, page: Page, message: AskFields | WatchSeries) -> None:
-        """Do what a page asks for."""
+        """Carry out a request."""
         if isinstance(message, WatchSeries):
             self._watch(page, message.series, message.seconds)
         else:
@@ -330,7 +330,7 @@ class PlotsFeature(PageFeature):
     # --- what can be plotted -----------------------------------------------------------------------------------
 
     def _ask(self, page: Page, topic: str) -> None:
-        """Answer what can be plotted of a topic, and again with what its first message tells of arrays."""
+        """Answer with the fields that can be plotted, and again once a message tells the lengths of arrays."""
 
         def take(message: Any, _: MessageInfo) -> None:
             page.send(TopicFields(topic, message.TYPE_NAME, plot_fields(type(message), message), None))

@@ -17,7 +17,7 @@ _SILENCE = 0.4
 
 
 class TeleopFeature(PageFeature):
-    """Publishes what pads of pages say; a publisher is there while a page has its pad open."""
+    """Publishes the velocities of pages' pads; a publisher exists while a page has its pad open."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -54,7 +54,7 @@ class TeleopFeature(PageFeature):
 
 
 class _Pad:
-    """One page's pad."""
+    """The pad of a page."""
 
     def __init__(self, node: Node, target: TeleopTarget, tell: Callable[[TeleopState], None]) -> None:
         self._node = node
@@ -81,7 +81,7 @@ class _Pad:
             self._topic.close()
 
     def review(self) -> None:
-        """Look which type the topic's subscribers have, and how many they are. A pad that drives keeps its own type."""
+        """Adopt the type of the topic's subscribers, and count them. A pad that drives keeps its own type."""
         target = self._target
         try:
             if self._topic is None:

@@ -21,7 +21,7 @@ from linkwright.viewer.context import ViewerContext
 
 
 class Paced:
-    """Work that is asked for more often than it is to be done.
+    """Work that is requested more often than it is done.
 
     Args:
         work: what is done.
@@ -36,12 +36,12 @@ class Paced:
         self._due: asyncio.TimerHandle | None = None
 
     def ask(self) -> None:
-        """Have the work done: as soon as the period since the last turn is over."""
+        """Do the work as soon as the period since the last time is over."""
         if self._due is None:
             self._due = self._loop.call_at(max(self._loop.time(), self._done_at + self._period), self._do)
 
     def cancel(self) -> None:
-        """Do not do what was asked for."""
+        """Drop a request that was not carried out yet."""
         if self._due is not None:
             self._due.cancel()
             self._due = None

@@ -101,7 +101,7 @@ _NANO = 1e-9
 
 @dataclass(slots=True)
 class _Wish:
-    """What one page wants to know."""
+    """The topics that a page lists, measures and opens."""
 
     listed: bool = False
     measured: frozenset[str] = frozenset()
@@ -112,7 +112,7 @@ class _Wish:
 
 
 class _Gauge:
-    """Measures a topic, and keeps its last message as bytes: it is read only when somebody looks at it."""
+    """Measures a topic, and keeps its last message as bytes: it is decoded only when somebody looks at it."""
 
     def __init__(self, feature: TopicsFeature, context: ViewerContext, topic: str) -> None:
         self._feature = feature
@@ -122,7 +122,7 @@ class _Gauge:
         self.tap = TopicTap(context, topic, self._take, raw=True, changed=feature.measure_soon)
 
     def message(self) -> TopicMessage | None:
-        """The last message; None before there is one, or when its bytes are none."""
+        """The last message; None before there is one, or when its bytes cannot be decoded."""
         from linkwright.messages import deserialize
 
         if self.last is None or self.tap.message_class is None:
@@ -147,7 +147,7 @@ class _Gauge:
 
 
 class TopicsFeature(PageFeature):
-    """Lists topics, and measures those that a page wants to have measured; there are no other subscriptions."""
+    """Lists topics, and measures those that a page asks for; there are no other subscriptions."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -157,7 +157,7 @@ class TopicsFeature(PageFeature):
         self._messages = Paced(self._send_messages, _MESSAGES_PERIOD)
 
     def receive(self, page: Page, message: WatchTopics) -> None:
-        """Note what a page wants to know from now on."""
+        """Replace what a page lists, measures and opens."""
         before = self._wishes.get(page, _Wish())
         opened = frozenset(message.opened)
         wish = _Wish(message.listed, frozenset(message.measured), opened, before.told if message.listed else None)
@@ -178,18 +178,18 @@ class TopicsFeature(PageFeature):
         self._keep()
 
     def came(self, topic: str) -> None:
-        """A message of a topic came."""
+        """Note that a topic has a message for the pages that opened it."""
         for wish in self._wishes.values():
             if topic in wish.opened:
                 wish.due.add(topic)
                 self._messages.ask()
 
     def measure_soon(self) -> None:
-        """Something about a topic is to be told with the next figures."""
+        """Send something about a topic with the next figures."""
         self._figures.ask()
 
     def _keep(self, page: Page | None = None) -> None:
-        """Have the subscriptions that pages want, and no others; tell the page that has new wishes."""
+        """Open the subscriptions that pages need and close all others; tell the page that has new wishes."""
         wishes = self._wishes.values()
         wanted = set[str]().union(*(wish.measured | wish.opened for wish in wishes))
         for topic in self._gauges.keys() - wanted:

@@ -1,4 +1,4 @@
-"""Sound of pages' microphones becomes audio_common_msgs; what is heard and answered comes back."""
+"""Publishes the sound of pages' microphones as audio_common_msgs, and tells them what is heard and answered."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _LONGEST_TEXT = 500
 
 
 class VoiceFeature(PageFeature):
-    """Publishes what one page says at a time, and tells those that watch what was made of it.
+    """Publishes the speech of one page at a time, and tells those that watch what was understood.
 
     The topics of sound are there while a page has its microphone open, the others while a page watches.
     """
@@ -63,7 +63,7 @@ class VoiceFeature(PageFeature):
         self._words = WordBook()
 
     def receive(self, page: Page, message: Any) -> None:
-        """Publish sound or a text, note who talks, or begin or end to tell a page."""
+        """Publish sound or a text, note who talks, or start or stop telling a page."""
         if isinstance(message, SoundBlock):
             self._hear(page, message)
         elif isinstance(message, Talk):
@@ -77,7 +77,7 @@ class VoiceFeature(PageFeature):
             self._text_input.publish(self._text_input.msg_type(data=message.text[:_LONGEST_TEXT]))
 
     def page_gone(self, page: Page) -> None:
-        """A page that is gone does not talk any more."""
+        """End the speech of a page."""
         self._cut.discard(page)
         self._words.page_gone(page)
         self._talk(page, Talk("off"))
@@ -116,7 +116,7 @@ class VoiceFeature(PageFeature):
         self._review()
 
     def _pass_on(self) -> None:
-        """Say on the topic that a button is held, or no longer; another page's begins anew."""
+        """Publish whether a button is held; another page's press begins anew."""
         holder = self._floor.holder
         if holder is self._holder or self._listen is None:
             return

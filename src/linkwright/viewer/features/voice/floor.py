@@ -1,4 +1,4 @@
-"""Which of several pages talks, and how much."""
+"""The floor: the page that talks among several, and the bounds of its sound."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Floor:
         return bool(self._modes)
 
     def set(self, page: Page, mode: TalkMode) -> None:
-        """A page says what it does with its microphone; it stands behind those that do the same already."""
+        """Change what a page does with its microphone; it comes after those that do the same already."""
         if self._modes.get(page) == mode:
             return
         self._modes.pop(page, None)
@@ -46,7 +46,7 @@ class Floor:
 
 
 class SoundBudget:
-    """How much sound a page may send, and how much it may say was lost: as much of each as time passes.
+    """The sound that a page may send, and the loss that it may report: as much of each as time passes.
 
     The two are apart because what was lost may be in what is sent, as silence.
 

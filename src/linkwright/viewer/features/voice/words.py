@@ -32,7 +32,7 @@ _LONGEST = 8 * RATE
 
 
 class Recording:
-    """A word that is being said.
+    """A word that is being recorded.
 
     Args:
         name: the word.
@@ -44,7 +44,7 @@ class Recording:
         self._length = 0
 
     def add(self, samples: Samples) -> None:
-        """Take the next block; of what is too long the end is left out."""
+        """Append the next block; what is too long is cut off at the end."""
         if self._length < _LONGEST:
             self._blocks.append(samples)
             self._length += samples.size
@@ -56,7 +56,7 @@ class Recording:
 
 
 class WordBook:
-    """The user's file of words, and the pages that see it. It is read anew before each change: others write it, too."""
+    """The user's file of words, and the pages that see it. Read anew before each change: others write it, too."""
 
     def __init__(self) -> None:
         self._watchers: set[Page] = set()
@@ -64,7 +64,7 @@ class WordBook:
         self._judged = 0
 
     def receive(self, page: Page, message: object) -> None:
-        """Do what a page asks for."""
+        """Carry out a request."""
         match message:
             case WatchWords(watched=True):
                 self._watchers.add(page)
@@ -85,7 +85,7 @@ class WordBook:
                 self._send_file(page)
 
     def hear(self, page: Page, samples: Samples) -> bool:
-        """Take sound of a page that records a word; whether it does."""
+        """Take sound of a page that records a word; returns whether it does."""
         recording = self._recordings.get(page)
         if recording is not None:
             recording.add(samples)
@@ -118,7 +118,7 @@ class WordBook:
             )
 
     def _change(self, page: Page, change: Callable[[Words], object]) -> bool:
-        """Change the file, and tell all pages; the page alone what stands in the way."""
+        """Change the file, and send it to all pages; or tell the page why that failed."""
         try:
             words = _read()
             change(words)
@@ -160,7 +160,7 @@ def _read() -> Words:
 
 
 def _rename(words: Words, name: str, new_name: str) -> None:
-    """Call a word something else, with its takes."""
+    """Rename a word, which keeps its takes."""
     reason = name_problem(new_name)
     if reason is None and new_name in words.names and new_name != name:
         reason = phrase("there is a word of that name")
@@ -188,5 +188,5 @@ def _merge(words: Words, text: str) -> None:
 
 
 def _text(error: LinkwrightError) -> str:
-    """What is wrong, in the language of the terminal."""
+    """The error, in the language of the terminal."""
     return str(next(iter(translated(error.diagnostics))).message)
