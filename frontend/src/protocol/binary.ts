@@ -12,7 +12,7 @@ export interface FrameTable {
 
 export const DATA_KIND = 2;
 
-/** Content of a display is to be drawn no more: that with a key, or all of it. */
+/** Remove a display's content: that with a key, or all of it. */
 export interface DisplayForgotten {
   display: string;
   key: string | null;

@@ -2,21 +2,21 @@
 
 export type Mark = "added" | "removed" | "changed";
 
-/** One of two descriptions: its RobotModel display, empty where none shows it, its name, and the links to mark. */
+/** A robot of the comparison: its RobotModel display, empty where none shows it, its name, and the links to mark. */
 export interface ComparedRobot {
   display: string;
   label: string;
   marks: Record<string, Mark>;
 }
 
-/** Where something is written, from 1: as readers know the place, and as the Source panel does, or with no file. */
+/** A place in a text, from 1: as readers know it, and as the Source panel does, or with no file. */
 export interface ComparedPlace {
   text: string;
   file: string;
   line: number;
 }
 
-/** One difference, as `linkwright diff` tells it. */
+/** A difference, as `linkwright diff` prints it. */
 export interface ComparedItem {
   subject: "robot" | "link" | "joint" | "extension";
   name: string;

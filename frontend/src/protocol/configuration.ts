@@ -115,17 +115,17 @@ export interface GroupDisplays {
   type: "group_displays";
 }
 
-/** Take back the last edit of any page. */
+/** Undo the last edit of any page. */
 export interface Undo {
   type: "undo";
 }
 
-/** Do again what was taken back. */
+/** Repeat the edit that was undone last. */
 export interface Redo {
   type: "redo";
 }
 
-/** Which displays can be added, which topics there are, and which displays show them. */
+/** Asks for the classes of displays that can be added, the topics, and the displays that show them. */
 export interface AskDisplayChoices {
   type: "ask_display_choices";
 }
@@ -169,7 +169,7 @@ export interface SaveConfiguration {
   type: "save_configuration";
 }
 
-/** The file as it would be saved now, to be kept on the browser's machine. */
+/** Asks for the file as it would be saved now, to be kept on the browser's machine. */
 export interface AskConfigurationText {
   type: "ask_configuration_text";
 }

@@ -8,13 +8,13 @@ export type PropertyValue = boolean | number | string | null;
 
 export type RowDetails = "frame" | "link" | "joint" | "effort";
 
-/** Which topics are offered for a row: those of one of the types with one of the words, if any, in their names. */
+/** The topics offered for a row: those of one of the types with one of the words, if any, in their names. */
 export interface TopicOffer {
   messages: string[];
   words: string[];
 }
 
-/** One row of a property tree, as RViz shows it. */
+/** A row of a property tree, as RViz shows it. */
 export interface Property {
   id: string;
   name: string;
@@ -31,7 +31,7 @@ export interface Property {
   topics: TopicOffer | null;
 }
 
-/** One row below a display's Status. Its text, as a rule a phrase, goes to each page in the page's language. */
+/** A row below a display's Status. Its text, as a rule a phrase, goes to each page in the page's language. */
 export interface StatusRow {
   name: string;
   level: StatusLevel;
@@ -46,7 +46,7 @@ export interface Place {
   trail: string[];
 }
 
-/** One display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``. */
+/** A display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``. */
 export interface Display {
   id: string;
   cls: string;
@@ -76,7 +76,7 @@ export interface DisplayProperties {
   type: "display_properties";
 }
 
-/** One value, set by any page or by the server. Enable boxes are the property ``<display>/Enabled``. */
+/** A new value, set by any page or by the server. Enable boxes are the property ``<display>/Enabled``. */
 export interface PropertyChanged {
   id: string;
   value: PropertyValue;

@@ -41,7 +41,7 @@ export interface EditPreview {
   type: "edit_preview";
 }
 
-/** Files were written, or not: then `refusal` says why. `files` are those that were, after an undo too. */
+/** The outcome of writing files: `refusal` says why they were not; `files` were written, after an undo too. */
 export interface EditWritten {
   files: string[];
   refusal: DiagnosticItem | null;

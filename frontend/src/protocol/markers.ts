@@ -23,7 +23,7 @@ export interface MarkerMesh {
   embedded: boolean;
 }
 
-/** One marker, as visualization_msgs/msg/Marker has it. */
+/** A marker, as visualization_msgs/msg/Marker has it. */
 export interface MarkerShape {
   id: string;
   namespace: string;
@@ -40,7 +40,7 @@ export interface MarkerShape {
   texture: string | null;
 }
 
-/** Marker and MarkerArray: markers that are new or others now, and those that have gone. */
+/** Marker and MarkerArray: new and changed markers, and the ids of removed ones. */
 export interface MarkersChanged {
   everything: boolean;
   gone: string[];

@@ -228,7 +228,7 @@ export interface WatchLog {
 
 export type TwistKind = "auto" | "Twist" | "TwistStamped";
 
-/** Where a pad publishes; `auto` takes the type that the topic's subscribers have, Twist where there are none. */
+/** The topic and type of a pad; `auto` takes the type of the topic's subscribers, Twist where there are none. */
 export interface TeleopTarget {
   topic: string;
   kind: TwistKind;

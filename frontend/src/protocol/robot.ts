@@ -101,7 +101,7 @@ export interface AskProvenance {
   type: "ask_provenance";
 }
 
-/** Where a link was written, through which macro calls, with which values, as lines; answers `AskProvenance`. */
+/** The place of a link with its macro calls and their values, as lines; answers `AskProvenance`. */
 export interface LinkProvenance {
   display: string;
   link: string;

@@ -27,7 +27,7 @@ export interface Kept {
   type: "kept";
 }
 
-/** Where a recording is. While `playing`, told a few times a second. */
+/** The position in a recording. While `playing`, sent a few times a second. */
 export interface Playhead {
   position: number;
   playing: boolean;

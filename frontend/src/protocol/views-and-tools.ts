@@ -96,7 +96,7 @@ export interface Tools {
   type: "tools";
 }
 
-/** One setting of a tool, set by any page; a refused value is answered with the one that stands. */
+/** A new setting of a tool, set by any page; a refused value is answered with the present one. */
 export interface ToolPropertyChanged {
   id: string;
   value: PropertyValue;

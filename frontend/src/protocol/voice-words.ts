@@ -6,44 +6,44 @@ export interface EnrolledWord {
   takes: number;
 }
 
-/** The words are to be sent, now and when they change, or no longer. */
+/** Start or stop sending the words, now and whenever they change. */
 export interface WatchWords {
   watched: boolean;
   type: "watch_words";
 }
 
-/** The sound that comes until `EndTake` is a word, said once; it is not published. */
+/** Begin a take: the sound until `EndTake` is a word, said once; it is not published. */
 export interface BeginTake {
   name: string;
   type: "begin_take";
 }
 
-/** The word was said. */
+/** End the take. */
 export interface EndTake {
   has_gaps: boolean;
   type: "end_take";
 }
 
-/** Forget a word. */
+/** Remove a word. */
 export interface RemoveWord {
   name: string;
   type: "remove_word";
 }
 
-/** Call a word something else. */
+/** Rename a word. */
 export interface RenameWord {
   name: string;
   new_name: string;
   type: "rename_word";
 }
 
-/** Take in the words of a file; they take the place of words of the same names. */
+/** Add the words of a file; they replace words of the same names. */
 export interface ImportWords {
   text: string;
   type: "import_words";
 }
 
-/** The file of the words is to be sent. */
+/** Asks for the file of the words. */
 export interface AskWordsFile {
   type: "ask_words_file";
 }
@@ -57,7 +57,7 @@ export interface VoiceWords {
   type: "voice_words";
 }
 
-/** What became of a recording. */
+/** The outcome of a take. */
 export interface TakeJudged {
   number: number;
   name: string;

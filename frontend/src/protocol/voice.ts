@@ -8,7 +8,7 @@ export const MOST_SAMPLES = 1600;
 
 export const MOST_LOST_SAMPLES = 80000;
 
-/** What is heard and answered is to be sent, or no longer. */
+/** Start or stop sending what is heard and answered. */
 export interface WatchVoice {
   watched: boolean;
   type: "watch_voice";
@@ -16,7 +16,7 @@ export interface WatchVoice {
 
 export type TalkMode = "off" | "ready" | "held" | "open";
 
-/** What the page does with its microphone. */
+/** The mode of the page's microphone. */
 export interface Talk {
   mode: TalkMode;
   type: "talk";
@@ -30,7 +30,7 @@ export interface SayCommand {
 
 export type Talking = "nobody" | "you" | "another";
 
-/** Who talks, and who listens in the graph. */
+/** The page that talks, and the listeners in the graph. */
 export interface VoiceState {
   talking: Talking;
   sound_listeners: number;

@@ -76,14 +76,14 @@ export interface WorldScene {
   kind: "world_scene";
 }
 
-/** World: where the links are in the frame of the content, shape (N, 7): x y z qx qy qz qw, in the scene's order. */
+/** World: the poses of the links in the frame of the content, shape (N, 7): x y z qx qy qz qw, in the scene's order. */
 export interface WorldPoses {
   revision: number;
   poses: Float32Array;
   kind: "world_poses";
 }
 
-/** World: how far the rays of the lidar with this name go, m, shape (vertical * horizontal,). */
+/** World: the lengths of the rays of the lidar with this name, m, shape (vertical * horizontal,). */
 export interface WorldRays {
   lidar: string;
   ranges: Float32Array;

@@ -31,7 +31,7 @@ class FrameTable(ServerMessage):
 
 
 def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDArray[Any]) -> bytes:
-    """One binary frame: header, poses, ages, little endian.
+    """A binary frame of transforms: header, poses, ages, little endian.
 
     The header is four uint32 (kind 1, revision of the frame table, number of frames N, 0) and a float64 stamp in
     seconds; then float32 N x 7 (x y z qx qy qz qw in the fixed frame, NaN where there is no transform) and float32 N
@@ -78,7 +78,7 @@ _EMPTY: dict[str, dict[str, list[Any]]] = {kind: {"$": [name, 0, 0]} for kind, (
 
 
 class DisplayForgotten(ServerMessage):
-    """Content of a display is to be drawn no more: that with a key, or all of it."""
+    """Remove a display's content: that with a key, or all of it."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display", "key")
 
@@ -95,7 +95,7 @@ def pack_data(
     pose: NDArray[Any] | None = None,
     stamp: float = 0.0,
 ) -> bytes:
-    """One binary frame with what a display draws.
+    """A binary frame with a display's content.
 
     Args:
         display: its id.
@@ -137,11 +137,11 @@ class _Arrays:
         self._length = 0
 
     def put_aside(self, value: Any) -> Any:
-        """Add an array; what stands for it in the header. Other values are made plain."""
+        """Add an array; returns its placeholder in the header. Other values become plain ones."""
         return self.put(value) if isinstance(value, np.ndarray) else plain(value)
 
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:
-        """Add one; what stands for it in the header."""
+        """Add an array; returns its placeholder in the header."""
         if array.size == 0:
             return _EMPTY[array.dtype.kind]
         name, wire = _TYPES[array.dtype.kind]

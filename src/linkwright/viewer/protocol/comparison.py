@@ -11,7 +11,7 @@ Mark = Literal["added", "removed", "changed"]
 
 
 class ComparedRobot(Record):
-    """One of two descriptions: its RobotModel display, empty where none shows it, its name, and the links to mark."""
+    """A robot of the comparison: its RobotModel display, empty where none shows it, its name, and the links to mark."""
 
     display: str
     label: str
@@ -19,7 +19,7 @@ class ComparedRobot(Record):
 
 
 class ComparedPlace(Record):
-    """Where something is written, from 1: as readers know the place, and as the Source panel does, or with no file."""
+    """A place in a text, from 1: as readers know it, and as the Source panel does, or with no file."""
 
     text: str
     file: str
@@ -27,7 +27,7 @@ class ComparedPlace(Record):
 
 
 class ComparedItem(Record):
-    """One difference, as `linkwright diff` tells it.
+    """A difference, as `linkwright diff` prints it.
 
     `property` is empty where it is about all of the thing; `old` and `new` are None where a description says nothing.
     `element` is the link or joint that shows it, empty where there is none, and `in_old` whether only the old

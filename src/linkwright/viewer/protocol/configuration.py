@@ -137,15 +137,15 @@ class GroupDisplays(PageMessage):
 
 
 class Undo(PageMessage):
-    """Take back the last edit of any page."""
+    """Undo the last edit of any page."""
 
 
 class Redo(PageMessage):
-    """Do again what was taken back."""
+    """Repeat the edit that was undone last."""
 
 
 class AskDisplayChoices(PageMessage):
-    """Which displays can be added, which topics there are, and which displays show them."""
+    """Asks for the classes of displays that can be added, the topics, and the displays that show them."""
 
 
 class AskFolder(PageMessage):
@@ -192,7 +192,7 @@ class SaveConfiguration(PageMessage):
 
 
 class AskConfigurationText(PageMessage):
-    """The file as it would be saved now, to be kept on the browser's machine."""
+    """Asks for the file as it would be saved now, to be kept on the browser's machine."""
 
 
 PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation", "navigation"]

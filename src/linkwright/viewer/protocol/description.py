@@ -11,7 +11,7 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 
 
 class CallSite(Record):
-    """Where a macro was called, or, without a macro, a file included; 1-based."""
+    """A call of a macro, or, without a macro, an include of a file; 1-based."""
 
     macro: str | None
     file: str
@@ -30,7 +30,7 @@ class SourceRange(Record):
 
 
 class Written(Record):
-    """Where an element stands in the expanded text and where it was written, with the calls between them.
+    """The place of an element: in the expanded text, and where it was written, with the calls between them.
 
     `origin` is None where only the expanded text is known. `calls` has macro calls and includes, innermost first;
     of very many the outermost are left out.

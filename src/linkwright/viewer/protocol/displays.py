@@ -15,14 +15,14 @@ RowDetails = Literal["frame", "link", "joint", "effort"]
 
 
 class TopicOffer(Record):
-    """Which topics are offered for a row: those of one of the types with one of the words, if any, in their names."""
+    """The topics offered for a row: those of one of the types with one of the words, if any, in their names."""
 
     messages: list[str]
     words: list[str]
 
 
 class Property(Record):
-    """One row of a property tree, as RViz shows it.
+    """A row of a property tree, as RViz shows it.
 
     `id` is unique in the page and stable for the life of a display. Colours are ``#rrggbb``. A `group` has no value;
     any other kind may have children too (``Line Style`` > ``Line Width``).
@@ -49,7 +49,7 @@ class Property(Record):
 
 
 class StatusRow(Record):
-    """One row below a display's Status. Its text, as a rule a phrase, goes to each page in the page's language."""
+    """A row below a display's Status. Its text, as a rule a phrase, goes to each page in the page's language."""
 
     name: str
     level: StatusLevel
@@ -66,7 +66,7 @@ class Place(Record):
 
 
 class Display(Record):
-    """One display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``.
+    """A display of the Displays panel. `cls` is RViz's class, such as ``rviz_default_plugins/Grid``.
 
     `group` is the id of the group it is in, ``rviz_common/Group``, which comes before it. `enabled` is its own box; it
     is drawn when those of the groups around it are on too.
@@ -112,7 +112,7 @@ class DisplayProperties(ServerMessage):
 
 
 class PropertyChanged(ServerMessage):
-    """One value, set by any page or by the server. Enable boxes are the property ``<display>/Enabled``."""
+    """A new value, set by any page or by the server. Enable boxes are the property ``<display>/Enabled``."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
 

@@ -62,7 +62,7 @@ class EditPreview(ServerMessage):
 
 
 class EditWritten(ServerMessage):
-    """Files were written, or not: then `refusal` says why. `files` are those that were, after an undo too."""
+    """The outcome of writing files: `refusal` says why they were not; `files` were written, after an undo too."""
 
     files: list[str]
     refusal: DiagnosticItem | None

@@ -38,7 +38,7 @@ class MarkerMesh(Record):
 
 
 class MarkerShape(Record):
-    """One marker, as visualization_msgs/msg/Marker has it.
+    """A marker, as visualization_msgs/msg/Marker has it.
 
     `id` is ``<namespace>/<number>``. `pose` (x y z qx qy qz qw) is in the Fixed Frame, or, when `frame` is not empty,
     in that frame wherever it goes. `scale` is x, y, z; `color` red, green, blue, alpha. `points` has shape (N, 3),
@@ -61,7 +61,7 @@ class MarkerShape(Record):
 
 
 class MarkersChanged(DataContent):
-    """Marker and MarkerArray: markers that are new or others now, and those that have gone.
+    """Marker and MarkerArray: new and changed markers, and the ids of removed ones.
 
     With `everything` set, whatever was there before has gone too.
     """

@@ -53,7 +53,7 @@ class BadMessageError(ValueError):
 
 
 def plain(value: Any) -> Any:
-    """A text or number of a derived class, such as those of numpy, as the plain one that JSON has."""
+    """The plain text or number of a derived class, such as those of numpy, for JSON."""
     if isinstance(value, str):
         return str.__str__(value)
     if isinstance(value, float):
@@ -89,7 +89,7 @@ def _said(value: Any, language: str | None) -> Any:
 
 
 def redundancy_key(message: ServerMessage) -> str:
-    """Messages with one key make those before them needless: of each class, or of each thing its `NEWEST_OF` names."""
+    """The key by which a message replaces earlier ones: one for each class, or for each value of its `NEWEST_OF`."""
     return "\n".join((tag_of(message), *(str(getattr(message, name)) for name in message.NEWEST_OF)))
 
 
@@ -108,7 +108,7 @@ def decode(text: str) -> PageMessage:
 
 @lru_cache(maxsize=1)
 def _decoder(_known: int) -> msgspec.json.Decoder[Any]:
-    """Reads every message that is defined; made anew when one more is, by a feature that was imported since."""
+    """The decoder of all messages defined so far; made anew when a feature was imported that defines more."""
     by_tag: dict[str, type[PageMessage]] = {}
     for cls in PageMessage.__subclasses__():
         tag = str(cls.__struct_config__.tag)

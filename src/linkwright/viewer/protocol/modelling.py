@@ -1,4 +1,4 @@
-"""Modelling a world: what stands in its file, and how pages change it.
+"""Modelling a world: the models and lights of its file, and pages' edits of them.
 
 Poses are x, y, z in metres and roll, pitch, yaw in radians, in the frame of the world. A size is that of a shape in
 metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere. The frame of a shape is

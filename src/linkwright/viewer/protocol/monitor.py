@@ -137,7 +137,7 @@ class WatchSeries(PageMessage):
 
 
 def pack_samples(series: Sequence[tuple[int, NDArray[Any]]]) -> bytes:
-    """One binary frame.
+    """A binary frame of samples.
 
     Args:
         series: ids, each with an array of shape (3, M): received (s), stamp (s), value.
@@ -283,7 +283,7 @@ TwistKind = Literal["auto", "Twist", "TwistStamped"]
 
 
 class TeleopTarget(Record):
-    """Where a pad publishes; `auto` takes the type that the topic's subscribers have, Twist where there are none."""
+    """The topic and type of a pad; `auto` takes the type of the topic's subscribers, Twist where there are none."""
 
     topic: str
     kind: TwistKind

@@ -128,7 +128,7 @@ class AskProvenance(PageMessage):
 
 
 class LinkProvenance(ServerMessage):
-    """Where a link was written, through which macro calls, with which values, as lines; answers `AskProvenance`."""
+    """The place of a link with its macro calls and their values, as lines; answers `AskProvenance`."""
 
     display: str
     link: str

@@ -1,4 +1,4 @@
-"""A simulation that runs in the graph: how it goes, and what pages have it do. Metres, seconds, newtons."""
+"""A simulation that runs in the graph: its state, and control of it. Metres, seconds, newtons."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The timeline: which time of a recording is shown, and what pages have it do. Times are seconds since the epoch."""
+"""The timeline: which time of a recording is shown, and control of its playback. Times are seconds since the epoch."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Kept(ServerMessage):
 
 
 class Playhead(ServerMessage):
-    """Where a recording is. While `playing`, told a few times a second.
+    """The position in a recording. While `playing`, sent a few times a second.
 
     `live` is whether the present is shown, of a timeline of the last minutes.
     `seeks` is how often somebody went to another time: a page whose own has been done goes on to the next.

@@ -119,7 +119,7 @@ class Tools(ServerMessage):
 
 
 class ToolPropertyChanged(ServerMessage):
-    """One setting of a tool, set by any page; a refused value is answered with the one that stands."""
+    """A new setting of a tool, set by any page; a refused value is answered with the present one."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("id",)
 

@@ -55,7 +55,7 @@ def unpack_sound(frame: bytes) -> SoundBlock | None:
 
 
 class WatchVoice(PageMessage):
-    """What is heard and answered is to be sent, or no longer."""
+    """Start or stop sending what is heard and answered."""
 
     watched: bool
 
@@ -64,7 +64,7 @@ TalkMode = Literal["off", "ready", "held", "open"]
 
 
 class Talk(PageMessage):
-    """What the page does with its microphone.
+    """The mode of the page's microphone.
 
     It is off; ready, which publishes nothing yet; or its sound is meant: as long as a button is held, or all of it.
     """
@@ -82,7 +82,7 @@ Talking = Literal["nobody", "you", "another"]
 
 
 class VoiceState(ServerMessage):
-    """Who talks, and who listens in the graph.
+    """The page that talks, and the listeners in the graph.
 
     Attributes:
         talking: whose sound is published. One page talks at a time: the first that holds its button, else the first

@@ -15,19 +15,19 @@ class EnrolledWord(Record):
 
 
 class WatchWords(PageMessage):
-    """The words are to be sent, now and when they change, or no longer."""
+    """Start or stop sending the words, now and whenever they change."""
 
     watched: bool
 
 
 class BeginTake(PageMessage):
-    """The sound that comes until `EndTake` is a word, said once; it is not published."""
+    """Begin a take: the sound until `EndTake` is a word, said once; it is not published."""
 
     name: str
 
 
 class EndTake(PageMessage):
-    """The word was said.
+    """End the take.
 
     Attributes:
         has_gaps: the page knows that some of the sound was lost.
@@ -37,26 +37,26 @@ class EndTake(PageMessage):
 
 
 class RemoveWord(PageMessage):
-    """Forget a word."""
+    """Remove a word."""
 
     name: str
 
 
 class RenameWord(PageMessage):
-    """Call a word something else."""
+    """Rename a word."""
 
     name: str
     new_name: str
 
 
 class ImportWords(PageMessage):
-    """Take in the words of a file; they take the place of words of the same names."""
+    """Add the words of a file; they replace words of the same names."""
 
     text: str
 
 
 class AskWordsFile(PageMessage):
-    """The file of the words is to be sent."""
+    """Asks for the file of the words."""
 
 
 class VoiceWords(ServerMessage):
@@ -76,7 +76,7 @@ class VoiceWords(ServerMessage):
 
 
 class TakeJudged(ServerMessage):
-    """What became of a recording.
+    """The outcome of a take.
 
     Attributes:
         number: counts the recordings.

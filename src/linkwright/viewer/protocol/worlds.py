@@ -111,7 +111,7 @@ class WorldScene(DataContent):
 
 
 class WorldPoses(DataContent):
-    """World: where the links are in the frame of the content, shape (N, 7): x y z qx qy qz qw, in the scene's order.
+    """World: the poses of the links in the frame of the content, shape (N, 7): x y z qx qy qz qw, in the scene's order.
 
     Only for the scene of the same revision.
     """
@@ -121,7 +121,7 @@ class WorldPoses(DataContent):
 
 
 class WorldRays(DataContent):
-    """World: how far the rays of the lidar with this name go, m, shape (vertical * horizontal,).
+    """World: the lengths of the rays of the lidar with this name, m, shape (vertical * horizontal,).
 
     inf for those that met nothing, -inf for those that met something too near to be measured.
     """
