@@ -1,4 +1,4 @@
-"""Recordings that pages gave, or had made: each in a graph and a viewer of its own, on that viewer's server.
+"""Recordings that pages uploaded or made: each in a graph and a viewer of its own, on that viewer's server.
 
 Nothing of them comes to the graph of that viewer, nor to the network.
 """
@@ -40,7 +40,7 @@ class _Guest:
 
 
 class GuestRecordings:
-    """Shows the recordings that pages gave to a viewer.
+    """Shows recordings to the pages that uploaded or made them.
 
     Args:
         host: the viewer, on whose server they are shown.
@@ -53,7 +53,7 @@ class GuestRecordings:
         self._closing: set[asyncio.Task[None]] = set()
 
     async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
-        """Show a recording until a minute after its last page has gone; what pages name it by.
+        """Show a recording until a minute after its last page has gone; returns its name for pages.
 
         Args:
             path: of its file or folder.
@@ -109,14 +109,14 @@ class GuestRecordings:
         return None if guest is None else guest.viewer.audience
 
     async def close(self) -> None:
-        """Show nothing more."""
+        """Stop showing recordings."""
         if self._looking is not None:
             self._looking.cancel()
         guests, self._guests = self._guests, {}
         await asyncio.gather(*(_end(each) for each in guests.values()), *self._closing)
 
     async def _make_room(self) -> None:
-        """End the one that was left first where as many are shown as may be, so that one may be tried after another."""
+        """At the limit, end the recording that its pages left first, so that one may be tried after another."""
         if len(self._guests) < _MOST:
             return
         until = asyncio.get_running_loop().time() - _LEFT
@@ -130,7 +130,7 @@ class GuestRecordings:
             self._looking = asyncio.get_running_loop().call_later(_LOOK, self._look)
 
     def _look(self) -> None:
-        """End those that nobody looks at."""
+        """End the recordings that have no pages."""
         self._looking = None
         loop = asyncio.get_running_loop()
         for key, guest in list(self._guests.items()):

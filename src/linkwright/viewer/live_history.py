@@ -29,7 +29,7 @@ _MOST_FRESH = 16
 
 
 class LiveHistory:
-    """Keeps what comes for the viewer's subscriptions, and shows them another time than the present.
+    """Keeps messages of the viewer's subscriptions, and shows them at another time than the present.
 
     Nothing is subscribed to for it. While another time is shown, what comes is kept but shown to nobody.
 
@@ -63,13 +63,13 @@ class LiveHistory:
 
     @property
     def history(self) -> History:
-        """What is kept, to the newest message."""
+        """The kept messages, to the newest one."""
         with self._lock:
             return self._written()
 
     @cached_property
     def playback(self) -> Playback:
-        """Shows it; its output are the subscriptions. Made when another time than the present is first asked for."""
+        """The playback whose output are the subscriptions; made when another time than the present is first shown."""
         from linkwright.bag.playback import Playback
 
         made = Playback(self._handle, self.history, self, self._failed)
@@ -93,11 +93,11 @@ class LiveHistory:
 
     @property
     def size(self) -> int:
-        """Bytes that it takes, but for the newest messages."""
+        """The bytes that it takes, but for the newest messages."""
         return 0 if self._kept is None else self._kept.size
 
     def freeze(self) -> None:
-        """Have everything stand as it is now, while messages go on being kept."""
+        """Pause what is shown, while messages go on being kept."""
         if not self.live:
             return
         with self._lock:
@@ -132,7 +132,7 @@ class LiveHistory:
         return found
 
     def part(self, topics: Mapping[str, KeptTopic], start_ns: int, end_ns: int, *, simulated: bool) -> list[Recorded]:
-        """What is kept of some time, with what is needed to show its beginning, as a recording has it.
+        """The kept messages between two times, with those that its beginning is shown by, as a recording has them.
 
         Args:
             topics: see `topics`.
@@ -154,7 +154,7 @@ class LiveHistory:
         return in_simulated_time(messages)
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
-        """The messages of some topics of so much time up to the one that is shown; none of more bytes."""
+        """The messages of some topics in the time up to the one that is shown; none where they are too many bytes."""
         if not self.live:
             return self.playback.before(topics, length_ns, most_bytes)
         history = self.history
@@ -170,7 +170,7 @@ class LiveHistory:
         return found
 
     def close(self) -> None:
-        """Keep nothing more."""
+        """Stop keeping messages."""
         self._handle.intake = None
         self._context.graph_changes.ignore(self._review)
         if self._kept is not None:
@@ -185,7 +185,7 @@ class LiveHistory:
         return frozenset(each.name for each in self._subscriptions()) - {CLOCK_TOPIC}
 
     def tell_time(self, stamp_ns: int) -> None:
-        """Have the viewer's clock show a time, or the simulated one that was told then."""
+        """Set the viewer's clock to a time, or publish the simulated time of then."""
         if self.live:
             return
         self._went_back = self._went_back or stamp_ns < self.playback.position_ns
@@ -201,7 +201,7 @@ class LiveHistory:
     # ----------------------------------------------------------------------------------------------------------
 
     def _intake(self, subscription: Subscription[Any], message: Any) -> bool:
-        """Keep a message, once for all subscriptions of its topic; whether it is to be shown. Called in any thread."""
+        """Keep a message, once for all subscriptions of its topic; returns whether to deliver it. Thread-safe."""
         topic = subscription.name
         keeper = self._keepers.get(topic)
         if keeper is None or keeper.destroyed:
@@ -217,7 +217,7 @@ class LiveHistory:
             return self.live
 
     def _written(self) -> History:
-        """What is kept, once what just came was written too; what is published never changes, so that it can wait."""
+        """The history with the newest messages appended; published messages never change, so that this can wait."""
         if self._kept is None:
             from linkwright.bag.history import History
 
@@ -243,7 +243,7 @@ class LiveHistory:
                 each.enqueue(data, MessageInfo(stamp_ns, stamp_ns))
 
     def _review(self) -> None:
-        """Show those who subscribe while time stands still what was then."""
+        """Give new subscriptions the state at the time that is shown."""
         fresh = [each for each in self._subscriptions() if each not in self._known]
         if self.live or not fresh:
             return

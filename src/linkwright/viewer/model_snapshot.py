@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 def snapshot_of_model(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None = None
 ) -> Snapshot:
-    """What `linkwright view` would show of a model, its joints at zero or as near as their limits allow.
+    """A snapshot of what `linkwright view` shows of a model, its joints at zero or as near as their limits allow.
 
     Args:
         text: the description.
@@ -43,7 +43,7 @@ def snapshot_of_model(
 
 @dataclass(frozen=True)
 class OldDescription:
-    """The old one of two descriptions.
+    """The older of two descriptions.
 
     Attributes:
         pair: both.

@@ -1,4 +1,4 @@
-"""Waiting for what another node says of its parameters."""
+"""Waiting for another node's answers about its parameters."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class NoAnswerError(Exception):
     """A node did not answer in time; the text says what was asked."""
 
 
-async def offered(client: AsyncParameterClient) -> None:
-    """Wait until a node offers its parameters.
+async def services_ready(client: AsyncParameterClient) -> None:
+    """Wait until a node's parameter services are there.
 
     Raises:
-        NoAnswerError: it does not.
+        NoAnswerError: they do not appear in time.
     """
     loop = asyncio.get_running_loop()
     deadline = loop.time() + _PATIENCE
@@ -33,7 +33,7 @@ async def offered(client: AsyncParameterClient) -> None:
 
 
 async def answer(client: AsyncParameterClient, future: Awaitable[Any]) -> Any:
-    """The response that a method of a client promised.
+    """The response to a request that a method of a client has sent.
 
     Raises:
         NoAnswerError: none comes.

@@ -1,4 +1,4 @@
-"""The robot of a recording without transforms: where its links are follows from the joint states that were recorded."""
+"""The robot of a recording without transforms: the poses of its links follow from recorded joint states."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class PlacedRobot:
         node.get_logger().info("The recording has no /tf: where the robot's links are follows from its joint states")
 
     def wanted(self) -> frozenset[str]:
-        """The topics that have subscriptions, and those that say where the robot is when somebody listens to that."""
+        """The topics with subscriptions, and those that the robot's transforms follow from when they have some."""
         wanted = self._recording.wanted()
         if self._moving.get_subscription_count():
             wanted |= {each for each in (self._description, self._joint_states) if each is not None}
@@ -98,7 +98,7 @@ class PlacedRobot:
         self._recording.tell_time(stamp_ns)
 
     def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
-        """Publish a message, and what follows from it."""
+        """Publish a message, and the transforms that follow from it."""
         self._recording.publish(topic, stamp_ns, data)
         if stamp_ns < self._shown_ns:
             self._positions = dict(self._zeros)
@@ -119,7 +119,7 @@ class PlacedRobot:
 
 
 def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecording | PlacedRobot:
-    """What publishes a recording that has a graph to itself.
+    """The publisher for a recording that has a graph to itself.
 
     Args:
         bag: the recording.

@@ -41,7 +41,7 @@ _DISPLAYS = (
 
 
 def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
-    """What is shown of a recording at first: its robot, and a display for each topic of the usual types.
+    """The first configuration for a recording: its robot, and a display for each topic of the usual types.
 
     Transforms are drawn where there is no robot, which their axes would cover.
 
@@ -87,7 +87,7 @@ def _add(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> No
 
 
 def _bases(robot: Robot | None) -> list[str]:
-    """What the frame of a robot as a whole may be, the best first (REP 105, REP 120)."""
+    """The candidates for the frame of a robot as a whole, the best first (REP 105, REP 120)."""
     return ["base_footprint", "base_link"] if robot is None else [robot.root, *robot.links]
 
 
@@ -111,7 +111,7 @@ def _tree(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
 
 
 def _frame_of_messages(bag: BagReader) -> str:
-    """The frame that the first message of what is shown is in: where nothing tells of others, it is looked from."""
+    """The frame of the first message that is shown: without transforms, it becomes the Fixed Frame."""
     for message, _, _ in _DISPLAYS:
         for topic in (each for each in bag.topics if each.type_name == message and each.count):
             first = next(iter(bag.messages([topic.name])), None)

@@ -1,4 +1,4 @@
-"""A robot for the page: where its description comes from, and what is drawn of it.
+"""A robot for the page: the source of its description, and its shapes.
 
 A description comes from a topic of the graph, or a file. Drawn are links with their shapes, colours, files and places.
 """
@@ -124,14 +124,14 @@ class DescriptionSource:
         return None
 
     def publishers(self) -> dict[bytes, str]:
-        """Whose descriptions came, by GIDs, without those who are gone: node, and machine where that is told."""
+        """The publishers of received descriptions that are still there, by GID: node, and machine where known."""
         if not self._heard:
             return {}
         gids = set(map(self.current, self._heard))
         return {each.gid: _node_text(each) for each in self._context.node.graph.endpoints() if each.gid in gids}
 
     def current(self, gid: bytes) -> bytes:
-        """The GID that a publisher of descriptions has now: another in this process, once that joined a network."""
+        """The present GID of a publisher of descriptions: one in this process gets another by joining a network."""
         known = self._heard.get(gid)
         if known is None or not known.local:
             return gid
@@ -190,7 +190,7 @@ def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
 
 
 def place_of(element: Element | None) -> Place | None:
-    """Where an element was written, and through which macro calls and includes it came; None if a program made it."""
+    """The place where an element was written, with its macro calls and includes; None if a program made it."""
     if element is None:
         return None
     origin = origin_of(element)
@@ -227,7 +227,7 @@ def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
 
 
 class SceneBuilder:
-    """Turns a robot into what the page draws.
+    """Converts a robot to what the page draws.
 
     A visual has the colour of its material; each of several visuals its own, which RViz gets wrong. A collision has
     that of the link's first visual, as in RViz.

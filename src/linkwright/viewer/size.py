@@ -1,4 +1,4 @@
-"""The size of a robot, as far as its description tells without its meshes."""
+"""The size of a robot, as far as its description gives it without its meshes."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ _TWILIGHT = 1.0
 
 
 def daylight(sky: Sky | None) -> float | None:
-    """How bright a sky is, from 0 at night to 1; None for none."""
+    """The brightness of a sky, from 0 at night to 1; None for none."""
     if sky is None:
         return None
     time = sky.time % 24.0

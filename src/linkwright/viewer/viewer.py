@@ -168,13 +168,13 @@ class Viewer:
                 stack.push_async_callback(self.guests.close)
 
     def keep_unsaved(self) -> list[Diagnostic]:
-        """Keep what pages edited and did not save, before the program ends; returns the notices about it."""
+        """Keep unsaved edits of pages, before the program ends; returns the notices about it."""
         kept = keep_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
         return [*kept, *(notice for feature in self._features for notice in feature.keep_unsaved())]
 
     @property
     def url(self) -> str:
-        """What to open in a browser, token included; empty before `start`."""
+        """The address to open in a browser, token included; empty before `start`."""
         return self._url
 
     @property
@@ -184,7 +184,7 @@ class Viewer:
 
     @property
     def manager(self) -> VisualizationManager:
-        """What all pages see that have no displays of their own."""
+        """The manager of all pages without displays of their own."""
         return self.managers.shared
 
     @property
@@ -204,18 +204,18 @@ class Viewer:
         self.add_feature(JointsFeature).attach(panel)
 
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
-        """Have pages show a recording's timeline."""
+        """Show pages the timeline of a recording."""
         self.live = None
         self._timeline.attach(playback, bag)
         for feature in self._features:
             feature.recording_shown()
 
     def playback_failed(self, error: LinkwrightError) -> None:
-        """Tell pages that the recording cannot be read on."""
+        """Show pages an error: the recording cannot be read on."""
         self._timeline.failed(error)
 
     def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
-        """Have pages see how two descriptions differ; see `ComparisonFeature.attach`."""
+        """Show pages the differences of two descriptions; see `ComparisonFeature.attach`."""
         from linkwright.viewer.features.comparison.feature import ComparisonFeature
 
         return self.add_feature(ComparisonFeature).attach(pair, node)
@@ -225,7 +225,7 @@ class Viewer:
         return self.add_feature(TimelineFeature)
 
     def add_feature(self, cls: type[F], receives: Iterable[type] = ()) -> F:
-        """A feature of a class, told of all that features are told from now on; the one there is, if any.
+        """A feature of a class, told of all events from now on; the present one, if any.
 
         Args:
             cls: its class.
@@ -244,7 +244,7 @@ class Viewer:
         self._receivers.update((message, feature.receive) for message in (*feature.RECEIVES, *receives))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
-        """Show what is wrong with the description; none clears the list."""
+        """Show the findings on the description; none clears the list."""
         for feature in self._features:
             feature.diagnostics_changed(diagnostics)
 
@@ -289,7 +289,7 @@ class Viewer:
             feature.edited(manager)
 
     def robot_changed(self) -> None:
-        """A display has another robot."""
+        """A display shows another robot."""
         for feature in self._features:
             feature.robot_changed()
 

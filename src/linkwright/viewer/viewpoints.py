@@ -1,4 +1,4 @@
-"""From where a page looks at a world first: what the file says, and which models it is about."""
+"""The first view of a world: its own camera, or the models that it is about."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _POSE_NUMBERS = 6
 
 
 def camera_of(world: World) -> Transform | None:
-    """Where the camera of the window is that a world asks for, in the frame of the world; it looks along its x axis.
+    """The pose of the camera that a world asks for, in the frame of the world; it looks along its x axis.
 
     Gazebo classic reads ``<gui><camera><pose>``, gz the ``<camera_pose>`` of the window's plugin that draws. None
     where the world says neither, or no six numbers.

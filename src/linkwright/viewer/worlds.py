@@ -1,4 +1,4 @@
-"""A world for the page: what is drawn of the links of all its models, and where they stand at first."""
+"""A world for the page: the shapes of the links of all its models, and their first poses."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _Place = Callable[[RawPose], Transform]
 
 @dataclass(slots=True)
 class WorldContent:
-    """What is drawn of a world.
+    """The content drawn for a world.
 
     Attributes:
         links: all links that draw something or move, named as in the poses of the simulation: ``robot::arm::tip``.
@@ -58,7 +58,7 @@ class WorldContent:
 
 
 def content_of(world: World, index: MeshIndex) -> WorldContent:
-    """What is drawn of a world.
+    """The content drawn for a world.
 
     Args:
         world: with its includes resolved.
@@ -117,7 +117,7 @@ class _Builder:
         return shape if shape.size else None
 
     def _form(self, link: str, shape: Shape, geometry: SdfShape) -> Transform | None:
-        """Say what form a shape has; where that stands in its pose, None for right there."""
+        """Set kind and size of a shape; returns its pose in the geometry's frame, None for the identity."""
         match geometry:
             case Box():
                 shape.kind, shape.size = "box", list(geometry.size)

@@ -9,7 +9,7 @@ from contextlib import suppress
 from linkwright.graph import Node, Parameter
 from linkwright.graph.parameters.client import AsyncParameterClient
 from linkwright.graph.parameters.parameter import ParameterType
-from linkwright.viewer.parameter_answers import NoAnswerError, answer, offered
+from linkwright.viewer.parameter_answers import NoAnswerError, answer, services_ready
 from linkwright.viewer.protocol.displays import StatusLevel
 
 _NAMES = ["threshold", "confidence_threshold", "detection.threshold"]
@@ -63,7 +63,7 @@ class DetectorThreshold:
         (name,) = publishers
         client = AsyncParameterClient(self._node, name)
         try:
-            await offered(client)
+            await services_ready(client)
             names = (await answer(client, client.list_parameters())).result.names
             known = next((each for each in _NAMES if each in names), None)
             if known is None:

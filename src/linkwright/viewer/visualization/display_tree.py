@@ -208,7 +208,7 @@ class DisplayTree:
         return now
 
     def _box_set(self, display: ViewerDisplay, enabled: dict[DisplayConfig, bool]) -> None:
-        """A display's box was set: tell pages, and what is on or off with it; `enabled` is what was on before."""
+        """Tell pages that a display's box was set, and displays that are on or off by it; `enabled` is from before."""
         display.set_checked(display.config.checked)
         for other in self.displays:
             if other.enabled != enabled[other.config]:
@@ -231,7 +231,7 @@ class DisplayTree:
         return {display.config: display.enabled for display in self.displays}
 
     def _follow(self, enabled: dict[DisplayConfig, bool], made: Sequence[ViewerDisplay] = ()) -> None:
-        """Make displays match the entries: start those that are new, stop those that are gone."""
+        """Make the displays match the entries: start new ones, stop removed ones."""
         there = {display.config: display for display in self.displays}
         new = {display.config: display for display in made}
         entries = list(self._config.walk())
@@ -273,17 +273,17 @@ def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig]
 
 
 def _depth(group: DisplayConfig | None) -> int:
-    """How many groups are around what is in a group."""
+    """The number of groups around the content of a group."""
     return 0 if group is None else 1 + _depth(group.group)
 
 
 def _height(entry: DisplayConfig) -> int:
-    """How many groups are around the innermost display of an entry, itself among them."""
+    """The number of groups around the innermost display of an entry, itself included."""
     return 1 + max(map(_height, entry.displays), default=0) if entry.is_group else 0
 
 
 def _outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:
-    """The entries of displays without those that are inside of others among them."""
+    """The entries that are in no other one of them."""
     entries = [display.config for display in displays]
     return [entry for entry in entries if not any(entry in other.walk() for other in entries if other is not entry)]
 

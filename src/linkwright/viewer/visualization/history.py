@@ -41,7 +41,7 @@ class Edit(Generic[State]):
 
 
 class History:
-    """The edits that can be undone and redone, and which of them are in the saved file.
+    """The edits that can be undone and redone, and how many of them the saved file has.
 
     Args:
         changed: called whenever `undoable`, `redoable` or `unsaved` may have changed.
@@ -59,12 +59,12 @@ class History:
 
     @property
     def undoable(self) -> EditName | None:
-        """What `undo` would take back."""
+        """The edit that `undo` would revert."""
         return self._done[-1].name if self._done else None
 
     @property
     def redoable(self) -> EditName | None:
-        """What `redo` would do again."""
+        """The edit that `redo` would repeat."""
         return self._undone[-1].name if self._undone else None
 
     @property

@@ -1,4 +1,4 @@
-"""What pages see: a configuration, its displays, and what was edited in it.
+"""A visualization: a configuration, its displays, and its undo history.
 
 There is one that pages share, and one for each page that asks for its own.
 """
@@ -42,13 +42,13 @@ _FRAME_RATE = "Frame Rate"
 
 
 class ManagerOwner(Protocol):
-    """Who keeps managers, and is told of what happens to them."""
+    """The owner of managers, which is told of their events."""
 
     def edited(self, manager: VisualizationManager) -> None:
         """Undo, redo or whether something is unsaved may have changed."""
 
     def robot_changed(self) -> None:
-        """A display has another robot."""
+        """A display shows another robot."""
 
     def fixed_frame_changed(self, manager: VisualizationManager) -> None:
         """The Fixed Frame has changed."""
@@ -149,7 +149,7 @@ class VisualizationManager:
         self.pages.publish(message)
 
     def opening(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
-        """What a new page is sent: messages, then the frame table, then binary frames."""
+        """The first messages for a new page: messages, then the frame table, then binary frames."""
         self._stream.refresh()
         table, transforms = self._stream.opening
         messages: list[ServerMessage] = [self.tree_message()]
@@ -196,7 +196,7 @@ class VisualizationManager:
         return display.properties
 
     def set_property(self, page: Page, identity: str, value: object) -> None:
-        """Take a value from a page; one that is refused is answered with that which stands."""
+        """Set a property for a page; a value that is refused is answered with the present one."""
         owner, _, rest = identity.partition("/")
         display = self.display(owner)
         if display is None and owner != GLOBAL:
@@ -225,7 +225,7 @@ class VisualizationManager:
             self._set_option(path[0], value)
 
     def _edit(self, identity: str, path: Path, change: Callable[[], None]) -> None:
-        """Change a property so that it can be undone; of a drag only the first step is remembered."""
+        """Change a property so that it can be undone; a drag is a single edit."""
         if self.history.is_at(identity):
             change()
             self.history.prolong()
@@ -256,14 +256,14 @@ class VisualizationManager:
                 self._option_changed(path[0])
 
     def measured(self, diagonal: float, ground: float) -> None:
-        """A page has drawn the robot with its meshes: grid and axes take its size and ground, m, where nobody chose."""
+        """Fit grid and axes, where nobody set them, to size and ground, m, of a robot that a page has drawn."""
         for config, path, value in self.config.sizes_for(diagonal, ground):
             for display in self.displays:
                 if display.config is config:
                     display.set_property(path, value)
 
     def edited(self) -> None:
-        """Something of the file was changed that undo does not know of."""
+        """Record an edit of the file that undo does not cover."""
         self.history.touch()
 
     # --- time --------------------------------------------------------------------------------------------------
@@ -286,7 +286,7 @@ class VisualizationManager:
             display.time_reset()
 
     def _synchronize(self) -> None:
-        """Begin with what the file says of time, and not paused."""
+        """Set time to the file's synchronization, not paused."""
         wanted = read_synchronization(self.config.document)
         self.set_time(paused=False, mode=wanted.mode, source=wanted.source)
 
@@ -385,7 +385,7 @@ class Managers:
         return [self.shared, *self._own.values()]
 
     def of(self, page: Page) -> VisualizationManager:
-        """What a page sees."""
+        """The manager for a page."""
         return self._own.get(page.own, self.shared)
 
     def enter(self, page: Page) -> VisualizationManager:

@@ -1,4 +1,4 @@
-"""Who may talk to the server: those who know the token, under a name that is this machine's, from its own pages.
+"""Access to the server: only with the token, under a name that is this machine's, and from its own pages.
 
 The token is in the address that the program prints; the page keeps it in the browser's storage, which belongs to this
 host and port alone, and shows it when it opens its WebSocket. There is no cookie: browsers send cookies to whatever
@@ -36,7 +36,7 @@ class Gate:
         self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
 
     def refusal(self, headers: Mapping[str, str]) -> str | None:
-        """Why a request is refused, whatever it asks for (403); None when it may pass."""
+        """The reason why a request is refused, whatever it asks for (403); None when it may pass."""
         host = headers.get("Host", "")
         if not self.knows(host):
             return f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"
@@ -112,7 +112,7 @@ PATIENCE = 10.0
 
 
 class Admission:
-    """Bounds the connections of a server.
+    """Limits the connections of a server.
 
     When there are as many as may be, a new one takes the place of the oldest that has not shown the token yet, nor
     named a file that only who has it knows; where all have, it is refused. So neither connections left half open nor
@@ -128,17 +128,17 @@ class Admission:
         self._count = 0
 
     def __call__(self) -> asyncio.Protocol:
-        """What serves the next connection."""
+        """The protocol for the next connection."""
         return Entrance(self, self._make())
 
     def asked(self, served: object) -> None:
-        """A request came on a connection; it may stay as long as its place is not needed, however slow its line is."""
+        """Let a connection that made a request stay until its place is needed, however slow its line is."""
         entrance = self._strangers.get(served)  # type: ignore[call-overload]
         if entrance is not None:
             entrance.may_stay()
 
     def admit(self, served: object) -> None:
-        """A connection has shown the token; it may stay."""
+        """Let a connection that has shown the token stay."""
         entrance = self._strangers.pop(served, None)  # type: ignore[call-overload]
         if entrance is not None:
             entrance.may_stay()
@@ -155,7 +155,7 @@ class Admission:
         return True
 
     def closed(self, entrance: Entrance) -> None:
-        """A connection that `opened` let stay has ended."""
+        """Release the place of a connection."""
         self._count -= 1
         self._strangers.pop(entrance.served, None)
 
@@ -164,7 +164,7 @@ _PASSED_ON = ("data_received", "eof_received", "pause_writing", "resume_writing"
 
 
 class Entrance(asyncio.Protocol):
-    """Stands at the beginning and the end of a connection; what comes between goes to what serves it, at once."""
+    """Counts and bounds a connection at its beginning and end; its data goes directly to the protocol behind it."""
 
     def __init__(self, admission: Admission, served: asyncio.Protocol) -> None:
         self.served = served
@@ -176,13 +176,13 @@ class Entrance(asyncio.Protocol):
             setattr(self, name, getattr(served, name))
 
     def may_stay(self) -> None:
-        """The connection is no longer waited for."""
+        """Cancel the deadline for the first request."""
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
 
     def end(self) -> None:
-        """Cut the connection off, at once."""
+        """Abort the connection."""
         self.may_stay()
         if self._counted:
             self._counted = False
@@ -193,7 +193,7 @@ class Entrance(asyncio.Protocol):
     # --- asyncio.Protocol --------------------------------------------------------------------------------------
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Serve it, if it may stay."""
+        """Serve the connection, if it may stay."""
         self._transport = transport
         self._counted = self._admission.opened(self)
         self.served.connection_made(transport)
@@ -203,7 +203,7 @@ class Entrance(asyncio.Protocol):
             self.end()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """It has ended."""
+        """Release the connection's place."""
         self.may_stay()
         if self._counted:
             self._counted = False

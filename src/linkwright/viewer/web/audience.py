@@ -1,4 +1,4 @@
-"""The open pages: what each is sent, and what it sends."""
+"""The open pages, and the sending and receiving of their messages."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def language_asked(request: Request) -> str:
 
 
 class Page:
-    """One open page: its socket and its outbox.
+    """An open page: its socket and its outbox.
 
     Args:
         socket: of the page.
@@ -91,7 +91,7 @@ class Page:
             pass  # the reading side sees the end too, and tidies up
 
     def received(self, count: int) -> None:
-        """The page says how many messages it has."""
+        """Note how many messages the page has acknowledged."""
         self.line.received(count)
         self._line_changed()
 
@@ -114,7 +114,7 @@ class Page:
         self._line_changed()
 
     async def _fitted(self, payload: ScaledData) -> bytes:
-        """As much of a content as the line carries; all of it follows when the line has nothing else to carry."""
+        """As much of a content as the line carries; the whole of it follows when the line is idle."""
         room = self.line.room
         frame = await payload.fitting(room)
         if frame is payload.whole:
@@ -143,7 +143,7 @@ class Page:
             self._completing = asyncio.get_running_loop().call_later(_QUIET, self._complete)
 
     def _complete(self) -> None:
-        """Begin to send all of something that comes seldom, in pieces, however slow the line is."""
+        """Send the whole of a content that seldom changes, in pieces, however slow the line is."""
         self._completing = None
         for payload, _ in self._reduced.values():
             if payload.key not in self.outbox:
@@ -161,7 +161,7 @@ class Page:
             del self._reduced[completion.key]
 
     def _piece(self) -> int:
-        """Bytes of which two are on the line at most."""
+        """The size of a piece in bytes; at most two are on the line."""
         return max(BULK, self.line.room // 2)
 
 
@@ -231,7 +231,7 @@ class Audience(PageGroup):
 
     @property
     def is_full(self) -> bool:
-        """Whether no more pages may come."""
+        """Whether no more pages are accepted."""
         return len(self) + self._expected >= MAXIMUM_PAGES
 
     @contextmanager
@@ -244,7 +244,7 @@ class Audience(PageGroup):
             self._expected -= 1
 
     async def attend(self, page: Page, socket: WebSocketResponse) -> None:
-        """Serve a page, whose socket this is, until it goes."""
+        """Serve a page on its socket until that closes."""
         page.open(self._opening(page))
         self.add(page)
         self._sockets.add(socket)
@@ -307,7 +307,7 @@ _BURST = 4000.0
 
 
 class Pace:
-    """Says when a sender has to wait, so that one page cannot keep the program from the others.
+    """Limits the rate of a sender's messages, so that one page cannot keep the program from the others.
 
     Args:
         clock: seconds.
@@ -319,7 +319,7 @@ class Pace:
         self._at = clock()
 
     def wait(self) -> float:
-        """Seconds to wait before the message that came is worked on."""
+        """The seconds to wait before a message is handled."""
         now = self._clock()
         self._left = min(_BURST, self._left + (now - self._at) * _RATE) - 1.0
         self._at = now

@@ -1,4 +1,4 @@
-"""Which files a page may fetch: meshes that a description names, what lies beside them, and files made for the page.
+"""The files that pages may fetch: meshes named by descriptions, files beside them, and files made for a page.
 
 A description may come from a stranger, and so may a request. A page is served only meshes and images, only from
 folders that a description shown now names, and only where the real path, links followed, is still inside. A file that
@@ -71,7 +71,7 @@ class ServedFolder:
 
     @property
     def key(self) -> str:
-        """What stands for it in addresses: telling, yet nothing of the path above it, and nobody can guess it.
+        """The key of the folder in addresses: readable, yet nothing of the path above it, and hard to guess.
 
         The image elements of textures can show no token, so an address that only pages were told must do.
         """
@@ -82,7 +82,7 @@ class ServedFolder:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """Where a file named by a description is: an address for the page, or why there is none."""
+    """The outcome of locating a file of a description: an address for the page, or why there is none."""
 
     url: str | None
     problem: Phrase | None = None
@@ -168,11 +168,11 @@ class MeshFolders:
         self._folders: dict[str, dict[str, ServedFolder]] = {}
 
     def replace(self, owner: str, folders: dict[str, ServedFolder]) -> None:
-        """Make these the folders of one display, in place of those it had."""
+        """Replace the folders of a display."""
         self._folders[owner] = folders
 
     def copy(self) -> MeshFolders:
-        """The folders as they are now, whatever becomes of the displays."""
+        """A copy, which later changes of the displays do not affect."""
         made = MeshFolders()
         made._folders.update(self._folders)
         return made
@@ -244,7 +244,7 @@ _MOST_KEPT = 4
 
 @dataclass(frozen=True, slots=True)
 class Download:
-    """A file that waits to be fetched."""
+    """A file to be fetched."""
 
     name: str
     content_type: str
@@ -253,24 +253,24 @@ class Download:
 
 
 class Downloads:
-    """Files by a key that only the page knows that asked."""
+    """Files by keys that only the page knows which asked."""
 
     def __init__(self) -> None:
         self._files: dict[str, Download] = {}
         self._kept: dict[str, Path] = {}
 
     def keep(self, path: Path) -> str:
-        """Let a file be fetched as often as pages like; its address."""
+        """Offer a file to be fetched any number of times; returns its address."""
         key = secrets.token_urlsafe(16)
         self._kept[key] = path
         return f"/export/{key}/{quote(path.name)}"
 
     def path(self, key: str) -> Path | None:
-        """The file with a key that `keep` has made."""
+        """The file with a key of `keep`."""
         return self._kept.get(key)
 
     def put(self, file: Download) -> str:
-        """Keep a file; its address."""
+        """Offer a file to be fetched; returns its address."""
         while len(self._files) >= _MOST_KEPT:
             del self._files[next(iter(self._files))]
         key = secrets.token_urlsafe(16)

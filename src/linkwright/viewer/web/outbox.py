@@ -1,4 +1,4 @@
-"""What waits to be sent to one page, and how much of it the page's line carries.
+"""The queue of payloads for a page, and the measured rate of the page's line.
 
 Of each kind only the newest waits, transforms go before the rest, and large content is reduced for a slow line or sent
 in pieces.
@@ -23,7 +23,7 @@ Shrink = Callable[[int], DataContent]
 
 
 class ScaledData:
-    """One content of a display, packed for a page when its turn comes.
+    """A content of a display, packed for a page when its turn comes.
 
     Args:
         key: under which it waits in outboxes.
@@ -49,7 +49,7 @@ class ScaledData:
         return self._pack(self._content)
 
     async def fitting(self, room: int) -> bytes:
-        """The frame with as much as goes into so many bytes; what pages of like lines get is made once."""
+        """The frame with as much as fits into so many bytes; cached for pages of similar lines."""
         if len(self.whole) <= room:
             return self.whole
         size = 1 << (room.bit_length() - 1)
@@ -62,7 +62,7 @@ class ScaledData:
 
 
 class InPieces:
-    """Gives a piece each time its turn comes in an outbox, so that whatever else waits goes between them.
+    """A frame in pieces, one each time its turn comes in an outbox, so that other payloads go between them.
 
     Args:
         payload: the content.
@@ -83,7 +83,7 @@ class InPieces:
         return self.payload.gone or self._given >= len(self.payload.whole)
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
-        """The next piece; None when there is none. What the page has seen does not matter: it is counted here."""
+        """The next piece; None when there is none. The argument is ignored: pieces are counted here."""
         if self.done:
             return None, seen
         size = self._size()
@@ -101,7 +101,7 @@ Made = str | bytes
 
 
 class Changes(Protocol):
-    """Content that is sent as changes: each page gets what it lacks, put together when its turn comes.
+    """Content that is sent as changes: each page gets those it lacks, put together when its turn comes.
 
     A slow page so gets many changes in one frame, and nothing that has gone again meanwhile.
     """
@@ -124,7 +124,7 @@ Payload = Made | Changes | ScaledData
 
 
 class Outbox:
-    """Payloads by redundancy key.
+    """A queue of payloads by redundancy key.
 
     A payload replaces one that waits under its key and goes to the end, so that what is sent is in the order in which
     it came to be; heavy content keeps the place, or that which comes most often would starve the rest. Frame tables and
@@ -159,7 +159,7 @@ class Outbox:
         return key in self._urgent or key in self._ordinary
 
     def hold(self, held: bool) -> None:
-        """Have only frame tables and transforms taken, or everything again."""
+        """Hold back all but frame tables and transforms, or release them."""
         self.is_held = held
         self._filled.set()
 
@@ -177,7 +177,7 @@ class Outbox:
                 return made
 
     def make(self, payload: Payload) -> Made | ScaledData | None:
-        """What is sent for a payload now; None when that is nothing."""
+        """The message or frame to send for a payload now; None for nothing."""
         if isinstance(payload, (str, bytes)):
             return payload
         if isinstance(payload, ScaledData):
@@ -233,7 +233,7 @@ class Line:
 
     @property
     def room(self) -> int:
-        """How many bytes a reducible payload should have."""
+        """The size in bytes that a reducible payload should have."""
         return _FIRST_ROOM if self.rate is None else max(_LEAST_ROOM, int(self.rate * _SHARE))
 
     @property
@@ -247,7 +247,7 @@ class Line:
         return self._answers and not self._on_the_way
 
     def sending(self, size: int) -> float:
-        """A message of so many bytes is handed to the socket; returns the time, which `sent` takes."""
+        """Note that a message of so many bytes is handed to the socket; returns the time, which `sent` takes."""
         now = self._clock()
         self._number += 1
         if self._number == 1:
@@ -257,7 +257,7 @@ class Line:
         return now
 
     def sent(self, size: int, since: float) -> None:
-        """The socket has accepted a message that it was handed at a time."""
+        """Note that the socket has accepted a message that it was handed at a time."""
         if self._answers or size < BULK:
             return
         while len(self._on_the_way) > _MOST_ON_THE_WAY:
@@ -269,7 +269,7 @@ class Line:
             self._learn(float("inf"))
 
     def received(self, count: int) -> None:
-        """The page says that it has so many messages."""
+        """Note how many messages the page has acknowledged."""
         now = self._clock()
         if not self._answers:
             self._answers = True
@@ -283,6 +283,6 @@ class Line:
                 self._learn(arrived.size / max(took - self._shortest, took / 10, 1e-4))
 
     def _learn(self, rate: float) -> None:
-        """Take a measurement. A single one may be chance: twice as much is tried at most, or half as much."""
+        """Adopt a measured rate. A single one may be chance: it changes the rate to twice or half at most."""
         known = self.room / _SHARE
         self.rate = min(max(rate, known / 2), known * 2)

@@ -84,7 +84,7 @@ _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 
 def _is_no_malformed_request(record: logging.LogRecord) -> bool:
-    """Keep faults of ours; whoever sends what is no HTTP is answered with 400 and writes nothing on the terminal."""
+    """Let our own errors pass to the log; a malformed request is answered with 400 and logs nothing."""
     return not (record.exc_info and isinstance(record.exc_info[1], (HttpProcessingError, web.RequestPayloadError)))
 
 
@@ -230,7 +230,7 @@ class WebServer:
         cache: str,
         packing: Mapping[str, str] | None = None,
     ) -> web.StreamResponse:
-        """A file of the page. Whoever asks gets it, so it is in memory once, however many do not read it."""
+        """A file of the page. It is in memory once for all requests, however slow their readers are."""
         async with self._reading:
             kept = self._page_contents.get(path)
             try:
@@ -284,7 +284,7 @@ class WebServer:
     def _shielded(
         self, handler: Callable[[web.Request], Awaitable[web.Response]]
     ) -> Callable[[web.Request], Awaitable[web.StreamResponse]]:
-        """Ask a handler only for those who show the token."""
+        """A handler that refuses requests without the token."""
 
         async def asked(request: web.Request) -> web.StreamResponse:
             return await handler(request) if self._gate.is_shown_token(request.query) else _without_token()
@@ -400,7 +400,7 @@ def _no_file() -> web.HTTPNotFound:
 
 @dataclass(frozen=True, slots=True)
 class _FileRead:
-    """What a file was: its ETag, when it was changed (seconds), and what is in it."""
+    """The version of a file: its ETag, its time of change (seconds), and its content."""
 
     tag: str
     modified: float

@@ -1,4 +1,4 @@
-"""Recordings that pages give to the server, to be shown: their files come in blocks and go into a folder for a while.
+"""Recordings that pages upload to be shown: their files come in blocks and go into a temporary folder.
 
 A page says first what is to come and is told whether there is room. What it gives up, or what comes to a standstill, is
 removed. Whoever knows the token may give some; names are checked, and none leads out of the folder.
@@ -46,7 +46,7 @@ class Guests(Protocol):
     """Shows recordings to pages of this server."""
 
     async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
-        """Show a recording; what pages name it by. `scratch`, if any, is removed when it is no longer shown.
+        """Show a recording; returns its name for pages. `scratch`, if any, is removed when it is no longer shown.
 
         Raises:
             LinkwrightError: it cannot be shown; `scratch` is still there.
@@ -56,7 +56,7 @@ class Guests(Protocol):
         """The pages of a recording that is shown; None where there is none of that name."""
 
     async def close(self) -> None:
-        """Show nothing more."""
+        """Stop showing recordings."""
 
 
 class _File(msgspec.Struct, forbid_unknown_fields=True):
@@ -65,7 +65,7 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class _Announcement(msgspec.Struct, forbid_unknown_fields=True):
-    """What a page is about to send: the name of the file or folder, and its files."""
+    """The announcement of an upload: the name of the file or folder, and its files."""
 
     name: str
     files: list[_File]
@@ -73,7 +73,7 @@ class _Announcement(msgspec.Struct, forbid_unknown_fields=True):
 
 @dataclass(slots=True)
 class _Upload:
-    """Files that come."""
+    """An upload in progress."""
 
     announced: _Announcement
     scratch: TemporaryDirectory[str]
@@ -87,7 +87,7 @@ class _Upload:
 
     @property
     def target(self) -> Path:
-        """What is to be opened."""
+        """The path to be opened."""
         files = self.announced.files
         return self.folder / files[0].name if len(files) == 1 else self.folder
 
@@ -113,7 +113,7 @@ class Uploads:
             [Callable[[web.Request], Awaitable[web.Response]]], Callable[[web.Request], Awaitable[web.StreamResponse]]
         ],
     ) -> None:
-        """Take requests.
+        """Add the routes of uploads.
 
         Args:
             router: of the server.
@@ -125,7 +125,7 @@ class Uploads:
         router.add_delete("/recordings/{key}", shielded(self._give_up))
 
     def close(self) -> None:
-        """Remove what has come."""
+        """Remove what was uploaded."""
         if self._sweeping is not None:
             self._sweeping.cancel()
         for upload in self._uploads.values():
@@ -133,7 +133,7 @@ class Uploads:
         self._uploads.clear()
 
     async def show(self, request: web.Request, path: Path) -> web.Response:
-        """Show a recording that is on this machine, and stays there; the answer to the page that asks."""
+        """Show a recording that is on this machine, and stays there; returns the answer for the page that asks."""
         try:
             return web.json_response({"recording": await self._guests.open(path, None)})
         except LinkwrightError as error:
@@ -220,7 +220,7 @@ class Uploads:
     # -----------------------------------------------------------------------------------------------------------
 
     async def _write(self, request: web.Request, upload: _Upload, path: Path, size: int) -> int:
-        """Write what comes, a block at a time; returns how many bytes came."""
+        """Write the body of a request, a block at a time; returns how many bytes it had."""
         loop = asyncio.get_running_loop()
         come = 0
         with await asyncio.to_thread(path.open, "wb") as file:
@@ -246,7 +246,7 @@ class Uploads:
             self._sweeping = asyncio.get_running_loop().call_later(PATIENCE / 4, self._sweep)
 
     def _sweep(self) -> None:
-        """Remove what nobody goes on with."""
+        """Remove uploads that were abandoned."""
         self._sweeping = None
         now = asyncio.get_running_loop().time()
         for key, upload in list(self._uploads.items()):
@@ -261,7 +261,7 @@ def _refused(request: web.Request, message: Phrase) -> web.Response:
 
 
 def _problem(text: str) -> web.Response:
-    """What the user is told. It is no failure of the request: browsers would write one into the console, too."""
+    """The response with an error for the user. Its status is 200, since browsers log others on the console, too."""
     return web.json_response({"problem": text})
 
 

@@ -14,7 +14,7 @@ from linkwright.graph.parameters.files import parameter_file_text, plain_value
 from linkwright.graph.parameters.parameter import ParameterType
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
-from linkwright.viewer.parameter_answers import NoAnswerError, answer, offered
+from linkwright.viewer.parameter_answers import NoAnswerError, answer, services_ready
 from linkwright.viewer.protocol.monitor import (
     DumpParameters,
     NodeParameters,
@@ -194,7 +194,7 @@ class RemoteNode:
 
     async def _set(self, wanted: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
         try:
-            await offered(self._client)
+            await services_ready(self._client)
             response = await self._answer(self._client.set_parameters([parameter_of(wanted)]))
         except (ValueError, NoAnswerError) as error:
             answer(ParameterResult(self.name, wanted.name, False, str(error)))
@@ -214,7 +214,7 @@ class RemoteNode:
         answer(ParameterDump(self.name, file, parameter_file_text(self.name, plain), None))
 
     async def _names(self) -> list[str]:
-        await offered(self._client)
+        await services_ready(self._client)
         return sorted((await self._answer(self._client.list_parameters())).result.names)
 
     async def _answer(self, future: Awaitable[Any]) -> Any:
