@@ -31,7 +31,7 @@ from linkwright.messages import (
     to_dict,
     to_yaml,
 )
-from linkwright.messages.definition import Container, FieldType
+from linkwright.messages.definitions.interfaces import Container, FieldType
 
 ROUNDS = 9
 MICROSECONDS = 1e6

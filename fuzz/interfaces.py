@@ -7,8 +7,8 @@ import contextlib
 from fuzz.choices import Choices
 from linkwright.diagnostics import LinkwrightError, SourceText, render
 from linkwright.messages import MessageDataError, deserialize, get_message, serialize
-from linkwright.messages.idl import parse_idl
-from linkwright.messages.parser import parse_interface
+from linkwright.messages.definitions.idl import parse_idl
+from linkwright.messages.definitions.parser import parse_interface
 
 TYPES = (
     "sensor_msgs/msg/JointState",

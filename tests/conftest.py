@@ -73,7 +73,7 @@ def plain_environment(monkeypatch):
 def own_definitions():
     """Definitions of messages that recordings bring along in a test are not known in the next one."""
     yield
-    module = sys.modules.get("linkwright.messages.library")
+    module = sys.modules.get("linkwright.messages.definitions.library")
     carried = module.LIBRARY._carried if module is not None else {}
     if not carried:
         return

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from linkwright.messages import catalogue
-from linkwright.messages.definition import (
+from linkwright.messages.definitions.interfaces import (
     Action,
     Container,
     Definition,
@@ -25,7 +25,7 @@ from linkwright.messages.definition import (
     get_result_of,
     send_goal_of,
 )
-from linkwright.messages.library import LIBRARY
+from linkwright.messages.definitions.library import LIBRARY
 
 SOURCES = Path(__file__).resolve().parent.parent / "src" / "linkwright"
 WELLKNOWN = SOURCES / "messages" / "wellknown.pyi"

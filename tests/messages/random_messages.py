@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from linkwright.messages import get_message
-from linkwright.messages.definition import Container, FieldType, Primitive
+from linkwright.messages.definitions.interfaces import Container, FieldType, Primitive
 
 TEXTS = ("", "a", "base_link", "é漢", "two words", "x" * 300, "multi\nline\n", "yes", "1.5", "- a: b", "'", "\t")
 

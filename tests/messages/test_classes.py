@@ -28,8 +28,8 @@ from linkwright.messages import (
     shipped_packages,
 )
 from linkwright.messages.catalogue import texts
-from linkwright.messages.library import LIBRARY
-from linkwright.messages.slot_types import (
+from linkwright.messages.definitions.library import LIBRARY
+from linkwright.messages.definitions.slot_types import (
     Array,
     BasicType,
     BoundedSequence,

@@ -67,8 +67,8 @@ def test_classes_have_hashes():
 def test_the_discovery_message_of_iron_and_newer(monkeypatch):
     # Its gid is shorter than Humble's. The package's name counts, so its hash is taken with that one's.
     from linkwright.diagnostics import SourceText
-    from linkwright.messages import hashing
-    from linkwright.messages.parser import parse_interface
+    from linkwright.messages.definitions import hashing
+    from linkwright.messages.definitions.parser import parse_interface
 
     class Known:
         def has_message(self, type_name):

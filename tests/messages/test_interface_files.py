@@ -21,8 +21,8 @@ from linkwright.messages import (
     serialize,
     type_hash,
 )
-from linkwright.messages.idl import parse_idl
-from linkwright.messages.parser import parse_interface
+from linkwright.messages.definitions.idl import parse_idl
+from linkwright.messages.definitions.parser import parse_interface
 from linkwright.packages import PackageFinder, use_finder
 from linkwright.packages.interface_files import interface_file
 

@@ -6,7 +6,7 @@ import pytest
 
 from linkwright.messages import get_interface
 from linkwright.messages.catalogue import texts
-from linkwright.messages.library import Library
+from linkwright.messages.definitions.library import Library
 
 
 def names(package: str) -> list[str]:

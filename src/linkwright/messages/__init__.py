@@ -4,16 +4,16 @@ from typing import TYPE_CHECKING
 
 from linkwright.deferred import deferred
 from linkwright.messages.catalogue import packages as shipped_packages
-from linkwright.messages.cdr import deserialize, serialize
 from linkwright.messages.classes import get_action, get_interface, get_message, get_service
 from linkwright.messages.conversion import to_csv, to_dict
+from linkwright.messages.definitions.embedded import add_definitions
+from linkwright.messages.definitions.hashing import type_hash
 from linkwright.messages.distribution import is_before_iron
-from linkwright.messages.embedded_definitions import add_definitions
 from linkwright.messages.errors import DefinitionError, FieldValueError, InterfaceNotFoundError, MessageDataError
 from linkwright.messages.field_values import set_fields
-from linkwright.messages.hashing import type_hash
 from linkwright.messages.message import ActionType, Message, ServiceType, definition_of
 from linkwright.messages.presentation import definition_text, interface_names, prototype
+from linkwright.messages.serialization import deserialize, serialize
 from linkwright.messages.wellknown import (
     Duration,
     FloatSequence,

@@ -19,7 +19,7 @@ from collections.abc import Iterable, Sequence
 from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING, Any, NoReturn, TypeGuard, cast
 
-from linkwright.messages.definition import Container, FieldType, Primitive
+from linkwright.messages.definitions.interfaces import Container, FieldType, Primitive
 
 if TYPE_CHECKING:
     import numpy as np

@@ -12,7 +12,7 @@ from operator import attrgetter
 from typing import Any
 
 from linkwright.messages import checks
-from linkwright.messages.definition import Container, Field, Structure
+from linkwright.messages.definitions.interfaces import Container, Field, Structure
 
 
 def build_class(structure: Structure, base: type, classes: dict[str, type], module: str) -> type:

@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Any, cast
 
 from linkwright.messages.class_code import build_class
-from linkwright.messages.definition import (
+from linkwright.messages.definitions.interfaces import (
     Action,
     Definition,
     Service,
@@ -17,10 +17,10 @@ from linkwright.messages.definition import (
     get_result_of,
     send_goal_of,
 )
+from linkwright.messages.definitions.library import LIBRARY, not_of_kind
+from linkwright.messages.definitions.names import python_module
 from linkwright.messages.errors import InterfaceNotFoundError
-from linkwright.messages.library import LIBRARY, not_of_kind
 from linkwright.messages.message import ActionImplementation, ActionType, Message, ServiceType
-from linkwright.messages.names import python_module
 from linkwright.messages.time import DurationValue, TimeValue
 
 _classes: dict[str, Any] = {}

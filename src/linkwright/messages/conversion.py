@@ -7,7 +7,7 @@ from collections import OrderedDict
 from typing import Any
 
 from linkwright.messages.checks import is_array, is_scalar
-from linkwright.messages.definition import PRIMITIVES, Container, FieldType
+from linkwright.messages.definitions.interfaces import PRIMITIVES, Container, FieldType
 from linkwright.messages.message import Message, definition_of
 
 _CUT = "..."

@@ -10,7 +10,7 @@ from typing import Any
 from linkwright.diagnostics import Diagnostic, Phrase, did_you_mean, foreign, joined, phrase, quoted
 from linkwright.messages.checks import is_array, is_scalar
 from linkwright.messages.classes import get_message
-from linkwright.messages.definition import Container, FieldType, Primitive
+from linkwright.messages.definitions.interfaces import Container, FieldType, Primitive
 from linkwright.messages.errors import UnknownFieldError, WrongValueError
 from linkwright.messages.message import Message, definition_of
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, ClassVar
 
 from linkwright.messages.checks import ndarray_class
-from linkwright.messages.definition import Structure
+from linkwright.messages.definitions.interfaces import Structure
 
 
 def definition_of(message_class: type[Any]) -> Structure:
@@ -19,7 +19,7 @@ class _SlotTypes:
     """``SLOT_TYPES`` of a class, made on first access."""
 
     def __get__(self, instance: object, owner: type[Message]) -> tuple[Any, ...]:
-        from linkwright.messages.slot_types import slot_types
+        from linkwright.messages.definitions.slot_types import slot_types
 
         types = slot_types(definition_of(owner))
         owner.SLOT_TYPES = types
@@ -50,7 +50,7 @@ class Message:
 
     def _write(self) -> bytes:
         """The message as CDR. The function for the class is compiled when it is first needed, as that of `_read`."""
-        from linkwright.messages.cdr_writer import compile_writer
+        from linkwright.messages.cdr.writer import compile_writer
 
         cls = type(self)
         cls._write = compile_writer(cls._definition)  # type: ignore[method-assign, assignment]  # for this class, from now on
@@ -59,7 +59,7 @@ class Message:
     @classmethod
     def _read(cls, data: bytes) -> Any:
         """The message of bytes with a little-endian header."""
-        from linkwright.messages.cdr_reader import compile_reader
+        from linkwright.messages.cdr.reader import compile_reader
 
         reader = compile_reader(cls._definition, cls._class_of)
         cls._read = staticmethod(reader)  # type: ignore[assignment]  # for this class, from now on

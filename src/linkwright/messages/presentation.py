@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.messages.classes import get_interface
-from linkwright.messages.library import LIBRARY
+from linkwright.messages.definitions.library import LIBRARY
 from linkwright.messages.message import ActionType, ServiceType
 from linkwright.messages.yaml_text import to_yaml
 

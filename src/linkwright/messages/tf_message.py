@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.messages.cdr.transform_layout import ReceivedTransforms, layout_for, matching_layout
 from linkwright.messages.classes import add_class, class_of
-from linkwright.messages.library import LIBRARY
+from linkwright.messages.definitions.library import LIBRARY
 from linkwright.messages.message import Message, definition_of
-from linkwright.messages.transform_layout import ReceivedTransforms, layout_for, matching_layout
 from linkwright.messages.wellknown import Header, Quaternion, Time, Transform, TransformStamped, Vector3
 
 _FEW = 6
@@ -217,7 +217,7 @@ def _poses(transforms: list[Any]) -> NDArray[np.float64]:
 @cache
 def _ordinary_writer() -> Callable[[Message], bytes]:
     """The function that writes the transforms one by one, compiled from the definition on first use."""
-    from linkwright.messages.cdr_writer import compile_writer
+    from linkwright.messages.cdr.writer import compile_writer
 
     return compile_writer(definition_of(TFMessage))
 
@@ -225,6 +225,6 @@ def _ordinary_writer() -> Callable[[Message], bytes]:
 @cache
 def _ordinary_reader() -> Callable[[bytes], TFMessage]:
     """The function that reads the transforms one by one, compiled from the definition on first use."""
-    from linkwright.messages.cdr_reader import compile_reader
+    from linkwright.messages.cdr.reader import compile_reader
 
     return compile_reader(definition_of(TFMessage), class_of)

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from linkwright.messages.checks import is_array
 from linkwright.messages.conversion import abbreviated, abbreviated_text, to_dict
-from linkwright.messages.definition import Container, Field, FieldType
+from linkwright.messages.definitions.interfaces import Container, Field, FieldType
 from linkwright.messages.message import Message, definition_of
 
 _LONGEST_REMEMBERED = 200

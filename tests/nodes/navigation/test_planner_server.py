@@ -13,7 +13,7 @@ from linkwright.graph import ActionClient, LogLevel
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.messages import classes, get_action, get_message, get_service
-from linkwright.messages.library import Library
+from linkwright.messages.definitions.library import Library
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.component_container import ComponentContainer, load_request
 from linkwright.nodes.navigation.paths import path_message, poses_of

@@ -44,8 +44,8 @@ class TypeDescriptions:
         if found is None:
             response.failure_reason = "Type not currently in use by this node"
             return response
-        from linkwright.messages.hashing import type_description
-        from linkwright.messages.library import LIBRARY
+        from linkwright.messages.definitions.hashing import type_description
+        from linkwright.messages.definitions.library import LIBRARY
 
         described = type_description(LIBRARY.definition(found))
         nested = described["referenced_type_descriptions"]

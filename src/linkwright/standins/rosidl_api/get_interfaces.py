@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from linkwright.diagnostics import phrase
-from linkwright.messages.library import LIBRARY
+from linkwright.messages.definitions.library import LIBRARY
 from linkwright.packages import current_finder, interface_files
 
 

@@ -14,7 +14,7 @@ from threading import RLock
 from typing import Any
 
 from linkwright.messages import definition_of, get_message
-from linkwright.messages.definition import Container, FieldType, Structure
+from linkwright.messages.definitions.interfaces import Container, FieldType, Structure
 from linkwright.wire.type_names import dds_type
 
 _OCTETS = ("byte", "char")

@@ -15,7 +15,7 @@ from typing import Any
 
 from linkwright.diagnostics import did_you_mean, phrase
 from linkwright.messages import Message, definition_of, get_message
-from linkwright.messages.definition import Container, Field, FieldType
+from linkwright.messages.definitions.interfaces import Container, Field, FieldType
 from linkwright.viewer.protocol.monitor import PlotField
 
 NAME_LISTS = ("name", "names", "joint_names")

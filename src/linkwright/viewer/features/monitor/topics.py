@@ -11,7 +11,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import EndpointKind, MessageInfo
 from linkwright.graph.introspection.traffic import TrafficWindow
 from linkwright.messages import Message, definition_of
-from linkwright.messages.definition import Container, Field
+from linkwright.messages.definitions.interfaces import Container, Field
 from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature

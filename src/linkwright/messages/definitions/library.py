@@ -27,10 +27,10 @@ from linkwright.diagnostics import (
     term,
 )
 from linkwright.messages import catalogue
-from linkwright.messages.definition import Action, Definition, Service, Structure, parts_of, structures_of
+from linkwright.messages.definitions.interfaces import Action, Definition, Service, Structure, parts_of, structures_of
+from linkwright.messages.definitions.names import KINDS, InterfaceName, split_name
+from linkwright.messages.definitions.parser import KnownMessages, parse_interface
 from linkwright.messages.errors import DefinitionError, InterfaceNotFoundError
-from linkwright.messages.names import KINDS, InterfaceName, split_name
-from linkwright.messages.parser import KnownMessages, parse_interface
 from linkwright.packages import PackageFinder
 from linkwright.packages.active import active_finder
 from linkwright.packages.interface_files import interface_file, interface_files
@@ -274,7 +274,7 @@ class _Trusted:
 def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
     """Parse a file, whichever of the two languages it is written in."""
     if source.name.endswith(".idl"):
-        from linkwright.messages.idl import parse_idl
+        from linkwright.messages.definitions.idl import parse_idl
 
         return parse_idl(source, base, known)
     return parse_interface(source, base, known)

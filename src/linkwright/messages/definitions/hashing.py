@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from linkwright.messages.definition import (
+from linkwright.messages.definitions.interfaces import (
     Action,
     Container,
     Definition,
@@ -23,7 +23,7 @@ from linkwright.messages.definition import (
     get_result_of,
     send_goal_of,
 )
-from linkwright.messages.library import LIBRARY
+from linkwright.messages.definitions.library import LIBRARY
 
 _NESTED = 1
 _BOUNDED_TEXT = 4

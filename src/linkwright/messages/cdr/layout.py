@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from linkwright.messages.definition import PRIMITIVES, Container, Field, Structure
-from linkwright.messages.library import LIBRARY
+from linkwright.messages.definitions.interfaces import PRIMITIVES, Container, Field, Structure
+from linkwright.messages.definitions.library import LIBRARY
 
 MOST_INLINE = 40
 """A nested structure of more leaves than these is written and read by a function of its own."""

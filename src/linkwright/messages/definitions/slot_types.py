@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from linkwright.messages.definition import Container, FieldType, Structure
+from linkwright.messages.definitions.interfaces import Container, FieldType, Structure
 
 
 class AbstractType:

@@ -12,10 +12,10 @@ from contextlib import contextmanager
 from itertools import count
 from typing import Any
 
-from linkwright.messages import cdr_values
-from linkwright.messages.cdr_layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts, field_facts
-from linkwright.messages.definition import EMPTY_MEMBER, Container, Field, FieldType, Primitive, Structure
-from linkwright.messages.library import LIBRARY
+from linkwright.messages.cdr import values as cdr_values
+from linkwright.messages.cdr.layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts, field_facts
+from linkwright.messages.definitions.interfaces import EMPTY_MEMBER, Container, Field, FieldType, Primitive, Structure
+from linkwright.messages.definitions.library import LIBRARY
 
 _HEADER = 0x100
 """The four bytes before a message, 00 01 00 00, as a little-endian number."""

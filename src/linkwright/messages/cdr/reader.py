@@ -14,10 +14,10 @@ from contextlib import contextmanager
 from itertools import count
 from typing import Any, Literal
 
-from linkwright.messages import cdr_values
-from linkwright.messages.cdr_layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts
-from linkwright.messages.definition import Container, Field, FieldType, Primitive, Structure
-from linkwright.messages.library import LIBRARY
+from linkwright.messages.cdr import values as cdr_values
+from linkwright.messages.cdr.layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts
+from linkwright.messages.definitions.interfaces import Container, Field, FieldType, Primitive, Structure
+from linkwright.messages.definitions.library import LIBRARY
 
 READ_FAULTS = (struct.error, IndexError, ValueError)
 """What a reader raises for bad data: UnicodeDecodeError and DataFaultError are ValueErrors."""

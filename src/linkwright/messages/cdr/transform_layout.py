@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.messages.cdr_values import TEXT4
+from linkwright.messages.cdr.values import TEXT4
 
 _HEADER = b"\x00\x01\x00\x00"
 _MOST_KEPT = 64

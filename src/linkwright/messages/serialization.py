@@ -6,8 +6,8 @@ import struct
 from typing import Any, TypeVar
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.messages.cdr_reader import READ_FAULTS, compile_reader
-from linkwright.messages.cdr_values import DataFaultError
+from linkwright.messages.cdr.reader import READ_FAULTS, compile_reader
+from linkwright.messages.cdr.values import DataFaultError
 from linkwright.messages.classes import class_of
 from linkwright.messages.errors import MessageDataError, data_error
 from linkwright.messages.message import Message, definition_of

@@ -6,7 +6,7 @@ import re
 from typing import Protocol
 
 from linkwright.diagnostics import Diagnostic, Phrase, SourceText, counted, did_you_mean, phrase
-from linkwright.messages.definition import (
+from linkwright.messages.definitions.interfaces import (
     PRIMITIVES,
     Constant,
     Container,
@@ -16,9 +16,9 @@ from linkwright.messages.definition import (
     Structure,
     interface_of,
 )
+from linkwright.messages.definitions.literals import LiteralFault, read_constant, read_default
+from linkwright.messages.definitions.names import is_constant_name, is_field_name, is_interface_name, is_package_name
 from linkwright.messages.errors import DefinitionError
-from linkwright.messages.literals import LiteralFault, read_constant, read_default
-from linkwright.messages.names import is_constant_name, is_field_name, is_interface_name, is_package_name
 
 SEPARATOR = "---"
 SECTIONS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import NamedTuple, NoReturn
 
 from linkwright.diagnostics import Diagnostic, Phrase, SourceText, did_you_mean, phrase, quoted, term
-from linkwright.messages.definition import (
+from linkwright.messages.definitions.interfaces import (
     EMPTY_MEMBER,
     Constant,
     Container,
@@ -22,9 +22,9 @@ from linkwright.messages.definition import (
     Structure,
     interface_of,
 )
+from linkwright.messages.definitions.literals import LiteralFault, read_constant, read_default
+from linkwright.messages.definitions.parser import SECTIONS, KnownMessages
 from linkwright.messages.errors import DefinitionError
-from linkwright.messages.literals import LiteralFault, read_constant, read_default
-from linkwright.messages.parser import SECTIONS, KnownMessages
 
 _TOKEN = re.compile(
     r"""(?P<skip>\s+ | //[^\n]* | /\*.*?\*/ | \#[^\n]*)

@@ -7,7 +7,7 @@ import re
 from typing import cast
 
 from linkwright.diagnostics import phrase
-from linkwright.messages.definition import PRIMITIVES, Container, FieldType, Primitive
+from linkwright.messages.definitions.interfaces import PRIMITIVES, Container, FieldType, Primitive
 
 Value = bool | int | float | str | bytes
 
