@@ -386,6 +386,15 @@ async def test_the_page_and_its_hashed_files_are_served(tmp_path, monkeypatch):
         async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": "identity"}) as answer:
             assert "Content-Encoding" not in answer.headers
             assert await answer.text() == "export {}"
+        (tmp_path / "assets" / "index-abc.js").unlink()  # as the build leaves them
+        for taken, encoding in (("gzip", "gzip"), ("identity", None)):
+            async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": taken}) as answer:
+                assert answer.headers.get("Content-Encoding") == encoding
+                assert answer.headers["Vary"] == "Accept-Encoding"
+                assert await answer.text() == "export {}"
+                known = {"Accept-Encoding": taken, "If-None-Match": answer.headers["ETag"]}
+            async with session.get(f"{base}assets/index-abc.js", headers=known) as answer:
+                assert (answer.status, await answer.read()) == (304, b"")
         async with session.get(f"{base}assets/gone.js") as answer:
             assert answer.status == 404
         async with session.get(base) as answer:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import errno
+import gzip
 import ipaddress
 import logging
 import os
@@ -123,7 +124,7 @@ class WebServer:
         self._runner: web.AppRunner | None = None
         self._listening: asyncio.Server | None = None
         self._admission: Admission | None = None
-        self._page_contents: dict[Path, _FileRead] = {}
+        self._page_contents: dict[tuple[Path, bool], _FileRead] = {}
         self._reading = asyncio.Lock()
 
     async def start(self, listener: socket.socket) -> str:
@@ -216,8 +217,11 @@ class WebServer:
         cache = "private, max-age=31536000, immutable" if hashed else "no-cache"
         file = self._page_folder / path
         packed = file.with_name(f"{file.name}.gz")
-        if not (hashed and _takes_gzip(request) and packed.is_file()):
+        if not (hashed and packed.is_file()):
             return await self._page_response(request, file, content_type, cache)
+        if not _takes_gzip(request):
+            vary = {"Vary": "Accept-Encoding"}
+            return await self._page_response(request, packed, content_type, cache, vary, unpack=True)
         # A quarter of the bytes: over a slow line the page is there in seconds instead of tens of them.
         packing = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
         return await self._page_response(request, packed, content_type, cache, packing)
@@ -229,16 +233,18 @@ class WebServer:
         content_type: str,
         cache: str,
         packing: Mapping[str, str] | None = None,
+        *,
+        unpack: bool = False,
     ) -> web.StreamResponse:
         """A file of the page. It is in memory once for all requests, however slow their readers are."""
         async with self._reading:
-            kept = self._page_contents.get(path)
+            kept = self._page_contents.get((path, unpack))
             try:
-                read = await asyncio.to_thread(_read, path, kept.tag if kept else "")
+                read = await asyncio.to_thread(_read, path, kept.tag if kept else "", unpack=unpack)
             except OSError:
                 raise _no_file() from None
             if kept is None or read.body is not None:
-                kept = self._page_contents[path] = read
+                kept = self._page_contents[path, unpack] = read
         headers = {"Cache-Control": cache, "ETag": kept.tag, **(packing or {})}
         if kept.body is None or kept.is_known_to(request):
             return web.Response(status=304, headers=headers)
@@ -411,15 +417,17 @@ class _FileRead:
         return _is_among(self.tag, request.headers.get("If-None-Match", ""))
 
 
-def _read(path: Path, known: str) -> _FileRead:
-    """A regular file; not its content when its ETag is among those known, of an If-None-Match header."""
+def _read(path: Path, known: str, *, unpack: bool = False) -> _FileRead:
+    """A regular file, or what is packed in it; no content when its ETag is among those known, of an If-None-Match."""
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as file:  # noqa: PTH123 - a descriptor, not a path
         facts = os.fstat(descriptor)
         if not stat.S_ISREG(facts.st_mode):
             raise OSError("not a regular file")
-        tag = f'"{facts.st_mtime_ns:x}-{facts.st_size:x}"'
-        return _FileRead(tag, facts.st_mtime, None if _is_among(tag, known) else file.read())
+        tag = f'"{facts.st_mtime_ns:x}-{facts.st_size:x}{"-unpacked" if unpack else ""}"'
+        if _is_among(tag, known):
+            return _FileRead(tag, facts.st_mtime, None)
+        return _FileRead(tag, facts.st_mtime, gzip.decompress(file.read()) if unpack else file.read())
 
 
 def _is_among(tag: str, known: str) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import hashlib
 import json
 import re
@@ -68,6 +69,13 @@ def test_only_the_one_script_may_run_and_nothing_may_be_fetched():
     assert "http" not in policy
     assert text.count("</script>") == 2
     assert not re.search(r'(?:src|href)="', text)
+
+
+def test_the_script_may_be_packed_as_the_build_leaves_it(tmp_path):
+    script = tmp_path / "page" / "export" / "export.js"
+    script.with_name("export.js.gz").write_bytes(gzip.compress(b'console.log("packed")'))
+    script.unlink()
+    assert '<script>console.log("packed")</script>' in page(GRIPPER)
 
 
 def test_names_cannot_break_out_of_the_page():

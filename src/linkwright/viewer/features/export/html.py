@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import hashlib
 import html
 import json
+from pathlib import Path
 
 from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
@@ -45,7 +47,7 @@ def html_of(snapshot: Snapshot) -> bytes:
     """
     folder = PAGE_FOLDER / "export"
     try:
-        script = (folder / "export.js").read_text(encoding="utf-8")
+        script = _script(folder)
         style = (folder / "export.css").read_text(encoding="utf-8")
     except OSError:
         hint = phrase("in a checkout of Linkwright run `make page`")
@@ -61,6 +63,13 @@ def html_of(snapshot: Snapshot) -> bytes:
         script=script,
     )
     return text.encode()
+
+
+def _script(folder: Path) -> str:
+    packed = folder / "export.js.gz"  # `npm run build` alone leaves it unpacked
+    if packed.is_file():
+        return gzip.decompress(packed.read_bytes()).decode()
+    return (folder / "export.js").read_text(encoding="utf-8")
 
 
 def _policy(script: str) -> str:
