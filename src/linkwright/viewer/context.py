@@ -83,16 +83,16 @@ class HeldTime:
             return False
         clock.override(now_ns)
         self._held = True
-        self._switch(clock, True)
+        self._switch(clock, held=True)
         return True
 
     def release(self, clock: ROSClock) -> None:
         """Make the clock show the present."""
         if self._held:
             self._held = False
-            self._switch(clock, False)
+            self._switch(clock, held=False)
 
-    def _switch(self, clock: ROSClock, held: bool) -> None:
+    def _switch(self, clock: ROSClock, *, held: bool) -> None:
         self.switching = True
         try:
             clock.set_ros_time_is_active(held)

@@ -100,14 +100,14 @@ class PanelsConfig:
             return
         section = listed[0] if listed else self._add(panel)
         if section is not None:
-            self._set_shown(section, True)
+            self._set_shown(section, shown=True)
 
     def _close(self, panel: PanelName) -> None:
         for section in list(self._listed()):
             if _panel(section) != panel or not self._is_shown(section):
                 continue
             if section not in self._added:
-                self._set_shown(section, False)
+                self._set_shown(section, shown=False)
             if self._is_shown(section):
                 remove_section(self._document, _PANELS, section)
 
@@ -121,12 +121,12 @@ class PanelsConfig:
             return not any(self._is_on(*path) for path in _HIDDEN_SIDES)
         return is_shown(self._document.text(*_STATE) or "", name) is not False
 
-    def _set_shown(self, section: Section, shown: bool) -> None:
+    def _set_shown(self, section: Section, *, shown: bool) -> None:
         """Write whether a panel is shown into the window's state, where the file has one."""
         name = section.text("Name") or ""
         state = self._document.text(*_STATE) or ""
         if is_shown(state, name) not in (None, shown):
-            self._document.put(_STATE, with_shown(state, name, shown))
+            self._document.put(_STATE, with_shown(state, name, shown=shown))
         if self._is_on(_GEOMETRY, name, "collapsed"):
             self._document.put((_GEOMETRY, name, "collapsed"), "false")
 
@@ -168,7 +168,7 @@ def is_shown(state: str, name: str) -> bool | None:
     return None if at is None else bool(content[at] & _SHOWN)
 
 
-def with_shown(state: str, name: str, shown: bool) -> str:
+def with_shown(state: str, name: str, *, shown: bool) -> str:
     """The state with a dock shown or hidden; the same one where that is so already or the dock is not known."""
     content = _bytes(state)
     at = _flags(content, name)

@@ -278,10 +278,10 @@ class RobotModelDisplay(ViewerDisplay):
         is_other, self._text = text != self._text, text
         self._description = [StatusRow("URDF", "ok", phrase("URDF parsed OK"))]
         if self.properties.text("Description Source") == "Topic":
-            self._description.insert(0, self._topic_row(is_other))
+            self._description.insert(0, self._topic_row(is_other=is_other))
         self._show_robot(reading.robot)
 
-    def _topic_row(self, is_other: bool) -> StatusRow:
+    def _topic_row(self, *, is_other: bool) -> StatusRow:
         """The row that names the publisher, where several publish a description; a warning once these differed."""
         before = None if self._publisher is None else self._source.current(self._publisher)
         self._publisher = self._source.publisher

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,9 +66,7 @@ class FrameHistory:
         if not self._subscriptions:
             for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
                 self._subscriptions.append(
-                    self._node.create_subscription(
-                        TFMessage, topic, lambda message, static=static: self._take(message, static), qos
-                    )
+                    self._node.create_subscription(TFMessage, topic, partial(self._take, static=static), qos)
                 )
 
         def release() -> None:
@@ -138,7 +136,7 @@ class FrameHistory:
         """Forget all moving transforms: time begins anew."""
         self._buffer.clear()
 
-    def _take(self, message: TFMessage, static: bool) -> None:
+    def _take(self, message: TFMessage, *, static: bool) -> None:
         self._buffer.update(message, static=static)
         for listener in list(self._listeners):
             run_logged(self._node.get_logger(), "placing messages", listener)

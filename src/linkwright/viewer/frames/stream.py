@@ -348,7 +348,7 @@ class FrameStream:
         rows = poses.astype(np.float32)
         if changed or self._is_news(rows, ages):
             self._send(rows, ages)
-        self._tell_displays(snapshot, rows, fixed_frame, changed)
+        self._tell_displays(snapshot, rows, fixed_frame, changed=changed)
 
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
         """The poses of all frames in the Fixed Frame, which may be one that a display places."""
@@ -367,7 +367,7 @@ class FrameStream:
     def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
         """The poses of frames at the time to be shown; where nothing is known of that time, the present ones."""
         stamp_ns = self._time.lookup_ns()
-        self._follow(stamp_ns is not None)
+        self._follow(needed=stamp_ns is not None)
         if stamp_ns is None:
             return snapshot.poses
         poses: NDArray[np.float64] = snapshot.poses.copy()
@@ -376,7 +376,7 @@ class FrameStream:
                 poses[row] = self._history.pose(fixed_frame, name, stamp_ns)
         return poses
 
-    def _follow(self, needed: bool) -> None:
+    def _follow(self, *, needed: bool) -> None:
         """Keep the history while another time than the latest is shown."""
         if needed and self._release is None:
             self._release = self._history.use(lambda: None)
@@ -425,7 +425,7 @@ class FrameStream:
         return (self._due if in_time else self._looked_at) + period
 
     def _tell_displays(
-        self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, changed: bool
+        self, snapshot: FrameSnapshot, poses: NDArray[np.float32], fixed_frame: str, *, changed: bool
     ) -> None:
         has_pose = ~np.isnan(poses[:, 0])
         placed = has_pose.tobytes() + fixed_frame.encode()

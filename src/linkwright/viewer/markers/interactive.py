@@ -204,7 +204,7 @@ def read_interactive_marker(
         pose=pose,
         scale=scale,
         controls=[
-            _control(each, message, scale, _unique(each.name, names), index, frames, transparent)
+            _control(each, message, scale, _unique(each.name, names), index, frames, transparent=transparent)
             for each in message.controls
         ],
         menu=[MarkerMenuEntry(each.id, each.parent_id, each.title) for each in message.menu_entries],
@@ -226,6 +226,7 @@ def _control(
     name: str,
     index: MeshIndex,
     frames: FramePlacer,
+    *,
     transparent: bool,
 ) -> InteractiveControl:
     if control.interaction_mode >= len(_MODES) or control.orientation_mode >= len(_ORIENTATIONS):

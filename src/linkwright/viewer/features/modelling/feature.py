@@ -137,7 +137,7 @@ class ModellingFeature(PageFeature):
 
             page.send(await asyncio.to_thread(choices, self.context.finder))
         elif isinstance(message, SetModelling):
-            await self._set_active(page, message.active)
+            await self._set_active(page, active=message.active)
         elif isinstance(message, SaveWorld):
             edited = await self._world()
             await asyncio.to_thread(edited.save, message.path)
@@ -149,7 +149,7 @@ class ModellingFeature(PageFeature):
             if self._waiting.empty():
                 await self._load(page, edited)
 
-    async def _set_active(self, page: Page, active: bool) -> None:
+    async def _set_active(self, page: Page, *, active: bool) -> None:
         if active == self._active:
             return
         if active:

@@ -70,7 +70,7 @@ class VoiceFeature(PageFeature):
             self._cut.discard(page)
             self._talk(page, message)
         elif isinstance(message, WatchVoice):
-            self._watch(page, message.watched)
+            self._watch(page, watched=message.watched)
         elif not isinstance(message, SayCommand):
             self._words.receive(page, message)
         elif self._text_input is not None:
@@ -81,7 +81,7 @@ class VoiceFeature(PageFeature):
         self._cut.discard(page)
         self._words.page_gone(page)
         self._talk(page, Talk("off"))
-        self._watch(page, False)
+        self._watch(page, watched=False)
 
     def close(self) -> None:
         """Leave the topics."""
@@ -121,12 +121,12 @@ class VoiceFeature(PageFeature):
         if holder is self._holder or self._listen is None:
             return
         if self._holder is not None:
-            self._publish_held(self._listen, False)
+            self._publish_held(self._listen, held=False)
         if holder is not None:
-            self._publish_held(self._listen, True)
+            self._publish_held(self._listen, held=True)
         self._holder = holder
 
-    def _publish_held(self, publisher: Publisher[Any], held: bool) -> None:
+    def _publish_held(self, publisher: Publisher[Any], *, held: bool) -> None:
         self._told = publisher.get_subscription_count()
         publisher.publish(publisher.msg_type(data=held))
 
@@ -136,7 +136,7 @@ class VoiceFeature(PageFeature):
         The topic is not latched, as who publishes on it by hand does not latch it either.
         """
         if event.current_count > self._told and self._holder is not None and self._listen is not None:
-            self._publish_held(self._listen, True)
+            self._publish_held(self._listen, held=True)
         self._told = min(self._told, event.current_count)
 
     def _hear(self, page: Page, block: SoundBlock) -> None:
@@ -154,7 +154,7 @@ class VoiceFeature(PageFeature):
 
     # --- what pages are told -----------------------------------------------------------------------------------
 
-    def _watch(self, page: Page, watched: bool) -> None:
+    def _watch(self, page: Page, *, watched: bool) -> None:
         if not watched:
             self._watchers.pop(page, None)
         elif page not in self._watchers:

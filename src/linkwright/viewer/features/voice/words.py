@@ -74,7 +74,7 @@ class WordBook:
             case BeginTake(name=name):
                 self._recordings[page] = Recording(name.strip())
             case EndTake(has_gaps=has_gaps):
-                self._judge(page, has_gaps)
+                self._judge(page, has_gaps=has_gaps)
             case RemoveWord(name=name):
                 self._change(page, lambda words: words.remove(name))
             case RenameWord(name=name, new_name=new_name):
@@ -96,7 +96,7 @@ class WordBook:
         self._watchers.discard(page)
         self._recordings.pop(page, None)
 
-    def _judge(self, page: Page, has_gaps: bool) -> None:
+    def _judge(self, page: Page, *, has_gaps: bool) -> None:
         recording = self._recordings.pop(page, None)
         if recording is None:
             return
