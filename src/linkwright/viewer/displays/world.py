@@ -28,8 +28,8 @@ from linkwright.viewer.frames.history import OwnFrame
 from linkwright.viewer.lights import lights_of
 from linkwright.viewer.protocol.displays import StatusLevel
 from linkwright.viewer.protocol.robot import MeshStatus
-from linkwright.viewer.protocol.worlds import WorldPoses, WorldRays, WorldScene
-from linkwright.viewer.sensors import sensors_of
+from linkwright.viewer.protocol.worlds import CameraScene, WorldPoses, WorldRays, WorldScene
+from linkwright.viewer.sensors import ShownLidar, sensors_of
 from linkwright.viewer.skies import daylight, fog_of
 from linkwright.viewer.viewpoints import camera_of, robots_of
 from linkwright.viewer.web.files import MeshIndex
@@ -246,23 +246,7 @@ class WorldDisplay(TopicDisplay):
         self._anchors = _anchors(content)
         self._page_problems.clear()
         lidars, cameras = sensors_of(world)
-        camera = camera_of(world)
-        scene = WorldScene(
-            self._revision,
-            world.name,
-            content.links,
-            lights_of(world),
-            list(world.scene.ambient[:3]),
-            list(world.scene.background[:3]),
-            world.scene.shadows,
-            [each.scene for each in lidars],
-            cameras,
-            robots_of(world),
-            None if camera is None else list(camera),
-            daylight(world.scene.sky),
-            fog_of(world.scene.fog),
-        )
-        self.send(scene, key=_SCENE_KEY)
+        self.send(_scene(self._revision, world, content, lidars, cameras), key=_SCENE_KEY)
         self._rays.describe(lidars)
         self._follow_rays()
         self.say(
@@ -392,6 +376,27 @@ class WorldDisplay(TopicDisplay):
                 break
             row = parents[row]
         return names[row]
+
+
+def _scene(
+    revision: int, world: World, content: WorldContent, lidars: list[ShownLidar], cameras: list[CameraScene]
+) -> WorldScene:
+    camera = camera_of(world)
+    return WorldScene(
+        revision,
+        world.name,
+        content.links,
+        lights_of(world),
+        list(world.scene.ambient[:3]),
+        list(world.scene.background[:3]),
+        world.scene.shadows,
+        [each.scene for each in lidars],
+        cameras,
+        robots_of(world),
+        None if camera is None else list(camera),
+        daylight(world.scene.sky),
+        fog_of(world.scene.fog),
+    )
 
 
 def _content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:

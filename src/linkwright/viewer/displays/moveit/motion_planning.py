@@ -70,8 +70,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
             self._player.forget()
             self._follow_motions()
         super().changed(path)
-        if path == (PATH, "Loop Animation") and self.properties.flag(*path) and not self._player.is_playing:
-            self._player.begin_again()
+        self._player.property_changed(path)
 
     def time_changed(self) -> None:
         """Show what came while time stood still."""

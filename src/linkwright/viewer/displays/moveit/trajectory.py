@@ -6,7 +6,7 @@ import asyncio
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from typing import Any
 
 from linkwright.diagnostics import foreign, phrase
@@ -19,6 +19,7 @@ from linkwright.viewer.displays.moveit.robot import JointPositions, PosableRobot
 
 _SECONDS = re.compile(r"([0-9]*\.?[0-9]+)\s*s?")
 _FACTOR = re.compile(r"([0-9]*\.?[0-9]+)\s*x")
+_LOOP = "Loop Animation"
 _LEAST_WAIT = 0.005
 _MOST_WAYPOINTS = 100_000
 _MOST_IN_TRAIL = 200
@@ -57,29 +58,29 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
     joints: set[str] = set()
     for part in message.trajectory:
         one, many = part.joint_trajectory, part.multi_dof_joint_trajectory
-        count = max(len(one.points), len(many.points))
-        if len(states) + count > _MOST_WAYPOINTS:
+        if len(states) + max(len(one.points), len(many.points)) > _MOST_WAYPOINTS:
             raise UnusableStateError(phrase("The motion has more than {most} states", most=_MOST_WAYPOINTS))
         joints.update(one.joint_names)
-        times = []
-        for place in range(count):
-            if place < len(one.points):
-                point = one.points[place]
+        times = [0.0]
+        for point, root_point in zip_longest(one.points, many.points):
+            if point is not None:
                 missing = robot.set_joints(state, one.joint_names, point.positions)
                 unknown += [name for name in missing if name not in unknown]
-                times.append(_seconds(point.time_from_start))
-            if place < len(many.points):
-                point = many.points[place]
-                for name, transform in zip(many.joint_names, point.transforms, strict=False):
-                    if not robot.has_joint(name):
-                        robot.set_root(state, many.header.frame_id, transform)
-                if place >= len(one.points):
-                    times.append(_seconds(point.time_from_start))
+            if root_point is not None:
+                _set_root(robot, state, many, root_point)
+            times.append(_seconds((root_point if point is None else point).time_from_start))
             states.append(state.copy())
-        durations += [max(0.0, after - before) for before, after in pairwise([0.0, *times])]
+        durations += [max(0.0, after - before) for before, after in pairwise(times)]
     if len(states) < 2:
         raise UnusableStateError(phrase("The motion has no states"))
     return Motion(states, durations, frozenset(joints), unknown)
+
+
+def _set_root(robot: PosableRobot, state: JointPositions, trajectory: Any, point: Any) -> None:
+    """Set the root by a point of a trajectory_msgs/msg/MultiDOFJointTrajectory: joints unknown to the robot move it."""
+    for name, transform in zip(trajectory.joint_names, point.transforms, strict=False):
+        if not robot.has_joint(name):
+            robot.set_root(state, trajectory.header.frame_id, transform)
 
 
 def _seconds(duration: Any) -> float:
@@ -134,14 +135,19 @@ class MotionPlayer:
 
     def play(self, message: Any) -> None:
         """Play a moveit_msgs/msg/DisplayTrajectory, after what is being played unless that is to be interrupted."""
-        if self.is_playing and not self._flag("Interrupt Display") and not self._flag("Loop Animation"):
+        if self.is_playing and not self._flag("Interrupt Display") and not self._flag(_LOOP):
             self._next = message
             return
         self._message = message
         self._begin()
 
+    def property_changed(self, path: Path) -> None:
+        """Play the last motion again when it is to be repeated from now on."""
+        if path == (*self._above, _LOOP) and self._flag(_LOOP) and not self.is_playing:
+            self.begin_again()
+
     def begin_again(self) -> None:
-        """Play the last motion from its start: the robot was replaced, or it is to be repeated."""
+        """Play the last motion from its start, as the robot was replaced."""
         if self._message is not None:
             self._begin()
 
@@ -207,7 +213,7 @@ class MotionPlayer:
             self._message, self._next = self._next, None
             self._begin()
             return
-        elif self._flag("Loop Animation"):
+        elif self._flag(_LOOP):
             self._place = 0
             self._wait()
         self._show()
@@ -243,8 +249,7 @@ class TrajectoryDisplay(MoveItDisplay):
     def changed(self, path: Path) -> None:
         """Draw anew; begin again when the motion is to be repeated from now on."""
         super().changed(path)
-        if path == ("Loop Animation",) and self.properties.flag(*path) and not self._player.is_playing:
-            self._player.begin_again()
+        self._player.property_changed(path)
 
     def robot_changed(self) -> None:
         """Play the motion of this robot."""

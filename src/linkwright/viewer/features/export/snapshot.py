@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import chain
 from math import atan2, isfinite, pi
 from os.path import normpath
 from pathlib import Path
@@ -101,14 +102,10 @@ _MATERIAL_MAP = re.compile(r"^[ \t]*(?:map_\w+|bump|norm|disp)[ \t]+(.+?)[ \t]*\
 
 def addresses(scenes: Iterable[RobotScene]) -> list[str]:
     """The addresses of the meshes and textures that robots name, each once."""
-    found: dict[str, None] = {}
-    for scene in scenes:
-        for link in scene.links:
-            for shape in (*link.visuals, *link.collisions):
-                for address in (shape.url, shape.texture):
-                    if address is not None:
-                        found[address] = None
-    return list(found)
+    links = chain.from_iterable(scene.links for scene in scenes)
+    shapes = chain.from_iterable((*link.visuals, *link.collisions) for link in links)
+    named = chain.from_iterable((shape.url, shape.texture) for shape in shapes)
+    return list(dict.fromkeys(address for address in named if address is not None))
 
 
 class FileSet:
