@@ -101,7 +101,6 @@ class BehaviorNode(ManagedNode):
         self._poses = FramePoses(self, "the pose of the robot is not known:")
         self._servers: dict[str, GoalServer] = {}
         self._running: tuple[GoalServer, Behavior, str] | None = None
-        self._timer: Any = None
         self._costmap: Costmap | None = None
         self._heard_ns = 0
         self._costmap_frame = ""
@@ -140,7 +139,7 @@ class BehaviorNode(ManagedNode):
 
     def cleanup(self) -> None:
         """Remove the topics."""
-        self._end_timer()
+        self.end_cycles()
         self._servers.clear()
         self._costmap = self._footprint = None
         if hasattr(self, "_output"):
@@ -169,10 +168,10 @@ class BehaviorNode(ManagedNode):
             server.abort("INVALID_INPUT", behavior)
             return
         self._running = (server, behavior, name)
-        self._since_ns = self._now_ns()
+        self._since_ns = self.now_ns()
         self._asked = STILL
         self._output.review()
-        self._timer = self.create_timer(self._period, self._cycle)
+        self.begin_cycles(self._period, self._cycle)
 
     def _behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
         """Make the behaviour of a goal, or the reason for refusing it."""
@@ -202,10 +201,10 @@ class BehaviorNode(ManagedNode):
 
     def _cycle(self) -> None:
         if self._running is None:
-            self._end_timer()
+            self.end_cycles()
             return
         server, behavior, name = self._running
-        elapsed = (self._now_ns() - self._since_ns) / 1e9
+        elapsed = (self.now_ns() - self._since_ns) / 1e9
         if server.is_canceled:
             self.get_logger().info(f"Canceling {name}")
             self._halt()
@@ -237,15 +236,10 @@ class BehaviorNode(ManagedNode):
 
     def _halt(self) -> None:
         """Stop the robot, if it was moved."""
-        self._end_timer()
+        self.end_cycles()
         if self._running is not None and self._running[2] != "wait":
             self._output.stop()
         self._running = None
-
-    def _end_timer(self) -> None:
-        if self._timer is not None:
-            self._timer.destroy()
-            self._timer = None
 
     # --- what is known of the surroundings ----------------------------------------------------------------------------
 
@@ -253,7 +247,7 @@ class BehaviorNode(ManagedNode):
         """The reason why obstacles are unknown; empty if they are known."""
         if self._costmap is None or self._footprint is None:
             return "no costmap has come yet"
-        if self._now_ns() - self._heard_ns > _SILENT_COSTMAP * 1e9:
+        if self.now_ns() - self._heard_ns > _SILENT_COSTMAP * 1e9:
             return "the costmap has fallen silent"
         return ""
 
@@ -271,7 +265,7 @@ class BehaviorNode(ManagedNode):
     def _on_costmap(self, message: Any) -> None:
         self._costmap = costmap_of(message)
         self._costmap_frame = message.header.frame_id
-        self._heard_ns = self._now_ns()
+        self._heard_ns = self.now_ns()
 
     def _on_footprint(self, message: Any) -> None:
         """Set the footprint from a message, in which it lies at the robot's pose; converted to the robot's frame."""
@@ -300,9 +294,6 @@ class BehaviorNode(ManagedNode):
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
-
-    def _now_ns(self) -> int:
-        return self.get_clock().now().nanoseconds
 
 
 class BehaviorServer(ManagedServer):

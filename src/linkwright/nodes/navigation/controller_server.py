@@ -80,7 +80,6 @@ class ControllerNode(ManagedNode):
         self._old_progress: str = declare("progress_checker_plugin", "").value  # Humble's
         self._followers: dict[str, Follower] = {}
         self._goals: GoalServer | None = None
-        self._timer: Any = None
         self._measured = STILL
         self._command: Velocity | None = None
 
@@ -121,7 +120,7 @@ class ControllerNode(ManagedNode):
 
     def cleanup(self) -> None:
         """Drop the plugins."""
-        self._end_timer()
+        self.end_cycles()
         self._followers.clear()
         self._goals = None
         if hasattr(self, "_output"):
@@ -135,7 +134,7 @@ class ControllerNode(ManagedNode):
         """Start with a goal; a moving robot goes on moving."""
         request = goal.request
         assert self._goals is not None, "it is configured"
-        drives = self._timer is not None
+        drives = self.is_cycling
         self.get_logger().info(
             "Passing new path to controller." if drives else "Received a goal, begin computing control effort."
         )
@@ -151,16 +150,16 @@ class ControllerNode(ManagedNode):
         if not drives:
             self._progress_checker = checker
             self._progress_checker.begin()
-            self._good_ns = self._now_ns()
+            self._good_ns = self.now_ns()
             self._output.review()
-            self._timer = self.create_timer(1.0 / self._frequency, self._cycle)
+            self.begin_cycles(1.0 / self._frequency, self._cycle)
 
     def _take_path(self, message: Any) -> None:
         poses = poses_of(message.poses)
         if not len(poses):
             raise _GoalError("INVALID_PATH", "Path is empty.")
         goal = tuple(poses[-1])
-        if self._timer is None or getattr(self, "_goal_in_path", None) != goal:
+        if not self.is_cycling or getattr(self, "_goal_in_path", None) != goal:
             self._checker.begin()
         self._goal_in_path: Pose = goal
         self._path_frame = message.header.frame_id or message.poses[0].header.frame_id
@@ -190,7 +189,7 @@ class ControllerNode(ManagedNode):
     def _wait(self, problem: _NotNowError) -> None:
         """Stand still until what is missing is known again, or abort."""
         self._publish(STILL)
-        waited = (self._now_ns() - self._good_ns) / 1e9
+        waited = (self.now_ns() - self._good_ns) / 1e9
         if waited > max(self._value("costmap_update_timeout"), _LONGEST_WAIT):
             self._fail(_GoalError(problem.code, f"{problem}: given up"))
         else:
@@ -199,7 +198,7 @@ class ControllerNode(ManagedNode):
 
     def _drive(self, goals: GoalServer) -> None:
         """Run a cycle of following."""
-        now_ns = self._now_ns()
+        now_ns = self.now_ns()
         frame = self._pose(self._path_frame, _STALE_PATH_FRAME)
         pose = self._pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
         if not self.costmap.is_current:
@@ -259,7 +258,7 @@ class ControllerNode(ManagedNode):
             found, stamp_ns = self.costmap.transforms.lookup(target, frame, 0)
         except TransformException as error:
             raise _NotNowError("TF_ERROR", f"Failed to obtain the pose of {frame} in {target}: {error}") from None
-        age = (self._now_ns() - stamp_ns) / 1e9
+        age = (self.now_ns() - stamp_ns) / 1e9
         if stamp_ns and age > most_seconds:
             raise _NotNowError("TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old")
         return found[0], found[1], rpy_from_quaternion(found[3:])[2]
@@ -272,14 +271,9 @@ class ControllerNode(ManagedNode):
 
     def _halt(self) -> None:
         """Stop the robot."""
-        self._end_timer()
+        self.end_cycles()
         self._output.stop()
         self._command = None
-
-    def _end_timer(self) -> None:
-        if self._timer is not None:
-            self._timer.destroy()
-            self._timer = None
 
     def _publish(self, velocity: Velocity) -> None:
         self._command = velocity
@@ -299,9 +293,6 @@ class ControllerNode(ManagedNode):
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
-
-    def _now_ns(self) -> int:
-        return self.get_clock().now().nanoseconds
 
 
 class ControllerServer(ManagedServer):

@@ -92,7 +92,6 @@ class CostmapNode(ManagedNode):
         self._shared: Surroundings | None = None
         self._layered: LayeredCostmap | None = None
         self._publisher: CostmapPublisher | None = None
-        self._timer: Any = None
         self._published_ns: int | None = None
         self.add_post_set_parameters_callback(self._follow)
 
@@ -137,7 +136,7 @@ class CostmapNode(ManagedNode):
     @property
     def is_current(self) -> bool:
         """Whether it was updated, has its map, and sensors publish as often as expected."""
-        return self._layered is not None and self._layered.is_current(self._now_ns())
+        return self._layered is not None and self._layered.is_current(self.now_ns())
 
     def robot_pose(self) -> Pose | None:
         """x, y (metres) and yaw (radians) of the robot in the frame of the costmap; None if they are unknown."""
@@ -199,15 +198,15 @@ class CostmapNode(ManagedNode):
     def activate(self) -> None:
         """Start to update it."""
         self.layered.touch()
-        self._start_timer()
+        self._begin_updates()
 
     def deactivate(self) -> None:
         """Stop to update it."""
-        self._end_timer()
+        self.end_cycles()
 
     def cleanup(self) -> None:
         """Remove the subscriptions of the layers."""
-        self._end_timer()
+        self.end_cycles()
         for topic in self._shared.topics if self._shared is not None else []:
             topic.destroy()
         self._shared = self._layered = self._publisher = None
@@ -221,7 +220,7 @@ class CostmapNode(ManagedNode):
         for sensor in self._shared.sensors:
             sensor.take_in()
         layered = self.layered
-        if layered.update(pose, self._now_ns()) and self._publisher is not None:
+        if layered.update(pose, self.now_ns()) and self._publisher is not None:
             self._publisher.note(layered.changed)
         self._publish_footprint(pose)
         return True
@@ -230,9 +229,6 @@ class CostmapNode(ManagedNode):
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
-
-    def _now_ns(self) -> int:
-        return self.get_clock().now().nanoseconds
 
     def _positive(self, name: str) -> float:
         value = self._value(name)
@@ -257,21 +253,16 @@ class CostmapNode(ManagedNode):
             named = ", ".join(self._filters)
             self.get_logger().warning(f"there are no filters of costs here: the costmap does without {named}")
 
-    def _start_timer(self) -> None:
-        self._end_timer()
+    def _begin_updates(self) -> None:
+        self.end_cycles()
         frequency = self._value("update_frequency")
         if frequency > 0.0:
-            self._timer = self.create_timer(1.0 / frequency, self._on_timer)
+            self.begin_cycles(1.0 / frequency, self._cycle)
 
-    def _end_timer(self) -> None:
-        if self._timer is not None:
-            self._timer.destroy()
-            self._timer = None
-
-    def _on_timer(self) -> None:
+    def _cycle(self) -> None:
         if not self.update() or self._publisher is None:
             return
-        frequency, now_ns = self._value("publish_frequency"), self._now_ns()
+        frequency, now_ns = self._value("publish_frequency"), self.now_ns()
         if frequency <= 0.0:
             return
         if self._published_ns is None or not 0 <= now_ns - self._published_ns < 1e9 / frequency:
@@ -326,8 +317,8 @@ class CostmapNode(ManagedNode):
                 self.tell(error)
         if follow(self._shared, changed):
             layered.touch()
-        if "update_frequency" in names and self._timer is not None:
-            self._start_timer()
+        if "update_frequency" in names and self.is_cycling:
+            self._begin_updates()
 
     # --- services -----------------------------------------------------------------------------------------------------
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, ClassVar, Protocol, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, render
-from linkwright.graph import Graph, Node
+from linkwright.graph import Graph, Node, Timer
 from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
 from linkwright.graph.lifecycle.states import ACTIVE, LifecycleState, TransitionCallbackReturn
 from linkwright.nodes.navigation.bond import PERIOD, Bond
@@ -35,6 +36,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         LifecycleNodeMixin.__init__(self)
         self._kept: list[_Destroyable] = []
         self._bond: Bond | None = None
+        self._timer: Timer | None = None
         self._told = False
         self.get_logger().info("Creating")
         self._beats: float = self.declare_parameter("bond_heartbeat_period", PERIOD).value
@@ -65,6 +67,26 @@ class ManagedNode(LifecycleNodeMixin, Node):
     def is_active(self) -> bool:
         """Whether it is active."""
         return self.lifecycle_state == ACTIVE
+
+    def now_ns(self) -> int:
+        """The time of the node's clock, nanoseconds."""
+        return self.get_clock().now().nanoseconds
+
+    @property
+    def is_cycling(self) -> bool:
+        """Whether `begin_cycles` was called, and not `end_cycles`."""
+        return self._timer is not None
+
+    def begin_cycles(self, period: float, cycle: Callable[[], object]) -> None:
+        """Call a function each `period` seconds of the node's clock, in place of one that was called so."""
+        self.end_cycles()
+        self._timer = self.create_timer(period, cycle)
+
+    def end_cycles(self) -> None:
+        """End the calls of `begin_cycles`; without any nothing happens."""
+        if self._timer is not None:
+            self._timer.destroy()
+            self._timer = None
 
     def start_itself(self) -> None:
         """Configure and activate it if ``autostart_node`` is set."""

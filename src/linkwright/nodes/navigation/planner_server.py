@@ -142,7 +142,7 @@ class PlannerNode(ManagedNode):
 
         def begin(goal: ServerGoalHandle) -> None:
             self._stop(name)
-            began_ns = self._now_ns()
+            began_ns = self.now_ns()
 
             def done(poses: Any, error: Exception | None) -> None:
                 del self._work[name]
@@ -164,7 +164,7 @@ class PlannerNode(ManagedNode):
         else:
             path = path_message(poses, self.costmap.global_frame, self.get_clock().now().to_msg())
             self._plans.publish(path)
-            took_ns = self._now_ns() - began_ns
+            took_ns = self.now_ns() - began_ns
             self._complain_of_slowness(took_ns / _NANOSECONDS)
             server.succeed(path=path, planning_time=Duration(nanoseconds=took_ns).to_msg())
 
@@ -205,9 +205,9 @@ class PlannerNode(ManagedNode):
 
     def _until_current(self) -> Work:
         timeout_ns = self.get_parameter("costmap_update_timeout").value * _NANOSECONDS
-        began_ns = self._now_ns()
+        began_ns = self.now_ns()
         while not self.costmap.is_current:
-            if self._now_ns() - began_ns > timeout_ns:
+            if self.now_ns() - began_ns > timeout_ns:
                 raise _RefusedError("TIMEOUT", "Costmap timed out waiting for update")
             yield WAIT
 
@@ -255,9 +255,6 @@ class PlannerNode(ManagedNode):
         response.invalid_pose_indices = [first + int(index) for index in np.flatnonzero(bad)]
         response.is_valid = not bad.any()
         return response
-
-    def _now_ns(self) -> int:
-        return self.get_clock().now().nanoseconds
 
 
 class PlannerServer(ManagedServer):

@@ -40,7 +40,6 @@ class StepNode(ManagedNode):
     """A node that works on one goal at a time, in steps."""
 
     _work: Step | None = None
-    _timer: Any = None
     _server: GoalServer | None = None
 
     def work_on(self, server: GoalServer, work: Step) -> None:
@@ -49,7 +48,7 @@ class StepNode(ManagedNode):
         if self._server is not None and self._server is not server:
             self._server.abort("UNKNOWN", "another goal took its place")
         self._server, self._work = server, work
-        self._timer = self.create_timer(_PERIOD, self._cycle)
+        self.begin_cycles(_PERIOD, self._cycle)
 
     def tell_progress(self, server: GoalServer) -> None:
         """Publish the feedback of the goal; called each cycle."""
@@ -99,10 +98,6 @@ class StepNode(ManagedNode):
                 raise StepError("UNKNOWN", f"{what} does not answer")
             yield
 
-    def now_ns(self) -> int:
-        """The time of the node's clock."""
-        return self.get_clock().now().nanoseconds
-
     def _cycle(self) -> None:
         """Run the next step."""
         server, work = self._server, self._work
@@ -132,9 +127,7 @@ class StepNode(ManagedNode):
         work, self._work = self._work, None
         if work is not None:
             work.close()
-        if self._timer is not None:
-            self._timer.destroy()
-            self._timer = None
+        self.end_cycles()
 
 
 class Sent:

@@ -43,7 +43,6 @@ class _ManagedSmoother(ManagedNode):
     def declare(self) -> None:
         """Declare the parameters of nav2."""
         self._output: VelocityTopic | None = None
-        self._timer: Any = None
         self._command: list[float] | None = None
         self._commanded_ns = 0
         self._last = [0.0] * len(_AXES)
@@ -85,30 +84,21 @@ class _ManagedSmoother(ManagedNode):
 
     def activate(self) -> None:
         """Start to publish."""
-        self._start_timer()
+        self.begin_cycles(1.0 / self._frequency, self._smooth)
 
     def deactivate(self) -> None:
         """Stop, and publish nothing more."""
-        self._end_timer()
+        self.end_cycles()
         if self._output is not None and any(self._last):
             self._output.stop()
         self._last, self._command = [0.0] * len(_AXES), None
 
     def cleanup(self) -> None:
         """Remove the topics."""
-        self._end_timer()
+        self.end_cycles()
         if self._output is not None:
             self._output.close()
             self._output = None
-
-    def _start_timer(self) -> None:
-        self._end_timer()
-        self._timer = self.create_timer(1.0 / self._frequency, self._smooth)
-
-    def _end_timer(self) -> None:
-        if self._timer is not None:
-            self.destroy_timer(self._timer)
-            self._timer = None
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
@@ -133,8 +123,8 @@ class _ManagedSmoother(ManagedNode):
         if self._output is not None:
             before = self._frequency
             self._read()
-            if self._timer is not None and before != self._frequency:
-                self._start_timer()
+            if self.is_cycling and before != self._frequency:
+                self.begin_cycles(1.0 / self._frequency, self._smooth)
 
     def _problem(self, changed: Mapping[str, Any]) -> Phrase | None:
         """The problem of the parameters after a change."""
