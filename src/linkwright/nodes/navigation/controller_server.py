@@ -21,7 +21,7 @@ from linkwright.navigation.following.follower import STILL, Follower, FollowingE
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.nodes.navigation.costmap import CostmapNode, make_costmap
 from linkwright.nodes.navigation.followers import make_follower, make_goal_checker, make_progress_checker
-from linkwright.nodes.navigation.goals import GoalServer
+from linkwright.nodes.navigation.goals import GoalError, GoalServer
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.paths import poses_of
 from linkwright.nodes.navigation.plugins import texts_of
@@ -37,20 +37,8 @@ _STALE_PATH_FRAME = 5.0
 """Seconds after which where the path's frame is, is not known any more."""
 
 
-class _NotNowError(Exception):
-    """Something is unknown for the moment; nav2's name of the error code if that lasts, and what it is."""
-
-    def __init__(self, code: str, reason: str) -> None:
-        super().__init__(reason)
-        self.code = code
-
-
-class _GoalError(Exception):
-    """A goal is aborted; nav2's name of the error code, and the reason."""
-
-    def __init__(self, code: str, reason: str) -> None:
-        super().__init__(reason)
-        self.code = code
+class _NotNowError(GoalError):
+    """Something is unknown for the moment, and the goal fails if that lasts."""
 
 
 class ControllerNode(ManagedNode):
@@ -144,7 +132,7 @@ class ControllerNode(ManagedNode):
             asked = getattr(request, "progress_checker_id", "")
             checker = _chosen(self._progress, asked, "progress checker", "INVALID_CONTROLLER")
             self._take_path(request.path)
-        except _GoalError as failure:
+        except GoalError as failure:
             self._fail(failure)
             return
         if not drives:
@@ -157,7 +145,7 @@ class ControllerNode(ManagedNode):
     def _take_path(self, message: Any) -> None:
         poses = poses_of(message.poses)
         if not len(poses):
-            raise _GoalError("INVALID_PATH", "Path is empty.")
+            raise GoalError("INVALID_PATH", "Path is empty.")
         goal = tuple(poses[-1])
         if not self.is_cycling or getattr(self, "_goal_in_path", None) != goal:
             self._checker.begin()
@@ -183,7 +171,7 @@ class ControllerNode(ManagedNode):
             self._drive(goals)
         except _NotNowError as problem:
             self._wait(problem)
-        except _GoalError as failure:
+        except GoalError as failure:
             self._fail(failure)
 
     def _wait(self, problem: _NotNowError) -> None:
@@ -191,7 +179,7 @@ class ControllerNode(ManagedNode):
         self._publish(STILL)
         waited = (self.now_ns() - self._good_ns) / 1e9
         if waited > max(self._value("costmap_update_timeout"), _LONGEST_WAIT):
-            self._fail(_GoalError(problem.code, f"{problem}: given up"))
+            self._fail(GoalError(problem.code, f"{problem}: given up"))
         else:
             message = f"{problem}: the robot waits"
             self.get_logger().warning(message, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
@@ -212,7 +200,7 @@ class ControllerNode(ManagedNode):
             goals.succeed()
             return
         if not self._progress_checker.gets_on((x, y, yaw), now_ns):
-            raise _GoalError("FAILED_TO_MAKE_PROGRESS", "Failed to make progress")
+            raise GoalError("FAILED_TO_MAKE_PROGRESS", "Failed to make progress")
         situation = Situation(
             pose=pose,
             velocity=velocity,
@@ -235,11 +223,11 @@ class ControllerNode(ManagedNode):
         """Stand still without a valid velocity, for as long as ``failure_tolerance`` allows."""
         tolerance = self._value("failure_tolerance")
         if not tolerance:
-            raise _GoalError("NO_VALID_CONTROL", reason)
+            raise GoalError("NO_VALID_CONTROL", reason)
         self.get_logger().warning(reason, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
         self._publish(STILL)
         if 0.0 < tolerance < (now_ns - self._good_ns) / 1e9:
-            raise _GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
+            raise GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
 
     def _velocity(self) -> Velocity:
         """The robot's velocity: the commanded one, before that the measured one."""
@@ -263,7 +251,7 @@ class ControllerNode(ManagedNode):
             raise _NotNowError("TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old")
         return found[0], found[1], rpy_from_quaternion(found[3:])[2]
 
-    def _fail(self, failure: _GoalError) -> None:
+    def _fail(self, failure: GoalError) -> None:
         self.get_logger().error(str(failure))
         self._halt()
         assert self._goals is not None, "it is configured"
@@ -318,7 +306,7 @@ def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
         return plugins[name]
     if not name and len(plugins) == 1:
         return next(iter(plugins.values()))
-    raise _GoalError(code, f"there is no {what} '{name}'; there are: {', '.join(plugins)}")
+    raise GoalError(code, f"there is no {what} '{name}'; there are: {', '.join(plugins)}")
 
 
 def _placed(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -11,6 +11,18 @@ from linkwright.messages import get_action
 from linkwright.nodes.navigation.managed import ManagedNode
 
 
+class GoalError(Exception):
+    """A goal cannot be reached; the text says why.
+
+    Attributes:
+        code: name of nav2's error code.
+    """
+
+    def __init__(self, code: str, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
+
+
 class GoalServer:
     """The action server of a managed node, which refuses goals while the node is not active.
 

@@ -23,7 +23,7 @@ from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL
 from linkwright.navigation.costmaps.layered import Pose
 from linkwright.navigation.planning.planner import PlanError, Settings, plan
 from linkwright.nodes.navigation.costmap import CostmapNode, make_costmap
-from linkwright.nodes.navigation.goals import GoalServer
+from linkwright.nodes.navigation.goals import GoalError, GoalServer
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.paths import path_message, pose_of, poses_of
 from linkwright.nodes.navigation.plugins import declared, take_unread, texts_of, type_of
@@ -43,18 +43,6 @@ _OTHERS: Final = {
 
 Poses = NDArray[np.float64]
 Work = Generator[str | None, None, Any]
-
-
-class _RefusedError(Exception):
-    """A goal is aborted: there is no plan.
-
-    Attributes:
-        code: name of nav2's error code.
-    """
-
-    def __init__(self, code: str, reason: str) -> None:
-        super().__init__(reason)
-        self.code = code
 
 
 class PlannerNode(ManagedNode):
@@ -130,7 +118,7 @@ class PlannerNode(ManagedNode):
         if name not in self._planners:
             known = " ".join(self._planners)
             self.get_logger().error(f"planner {name} is not a valid planner. Planner names are: {known}")
-            raise _RefusedError("INVALID_PLANNER", f"Planner id {name} is invalid")
+            raise GoalError("INVALID_PLANNER", f"Planner id {name} is invalid")
         names = [each.name for each in fields(Settings)]
         now = {each: self.get_parameter(f"{name}.{each}").value for each in names}
         return name, replace(self._planners[name], **now)
@@ -153,7 +141,7 @@ class PlannerNode(ManagedNode):
         server = self.keep(GoalServer(self, f"nav2_msgs/action/{kind}", name, begin))
 
     def _finish(self, server: GoalServer, poses: Any, error: Exception | None, began_ns: int) -> None:
-        if isinstance(error, _RefusedError):
+        if isinstance(error, GoalError):
             server.abort(error.code, str(error))
         elif error is not None:
             self.get_logger().error(f"planning failed: {error!r}")
@@ -194,7 +182,7 @@ class PlannerNode(ManagedNode):
         yield from self._until_current()
         goals = getattr(request.goals, "poses", request.goals)
         if not len(goals):
-            raise _RefusedError("NO_VIAPOINTS_GIVEN", "No viapoints given")
+            raise GoalError("NO_VIAPOINTS_GIVEN", "No viapoints given")
         start = self._start_of(request)
         parts = []
         for each in goals:
@@ -208,7 +196,7 @@ class PlannerNode(ManagedNode):
         began_ns = self.now_ns()
         while not self.costmap.is_current:
             if self.now_ns() - began_ns > timeout_ns:
-                raise _RefusedError("TIMEOUT", "Costmap timed out waiting for update")
+                raise GoalError("TIMEOUT", "Costmap timed out waiting for update")
             yield WAIT
 
     def _planned(self, start: Pose, goal: Pose, planner: str) -> Work:
@@ -220,20 +208,20 @@ class PlannerNode(ManagedNode):
                 f"{name} plugin failed to plan from ({start[0]:.2f}, {start[1]:.2f}) "
                 f'to ({goal[0]:.2f}, {goal[1]:.2f}): "{error}"'
             )
-            raise _RefusedError(error.problem.value, str(error)) from None
+            raise GoalError(error.problem.value, str(error)) from None
 
     def _start_of(self, request: Any) -> Pose:
         if request.use_start:
             return self._placed(request.start)
         pose = self.costmap.robot_pose()
         if pose is None:
-            raise _RefusedError("TF_ERROR", "Unable to get start pose")
+            raise GoalError("TF_ERROR", "Unable to get start pose")
         return pose
 
     def _placed(self, stamped: Any) -> Pose:
         pose = self.costmap.pose_of(pose_of(stamped), stamped.header.frame_id)
         if pose is None:
-            raise _RefusedError("TF_ERROR", "Unable to transform poses to global frame")
+            raise GoalError("TF_ERROR", "Unable to transform poses to global frame")
         return pose
 
     # --- the service --------------------------------------------------------------------------------------------------

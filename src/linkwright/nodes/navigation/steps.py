@@ -11,7 +11,7 @@ from typing import Any
 
 from linkwright.graph import ActionClient
 from linkwright.graph.actions.goal import GoalStatus
-from linkwright.nodes.navigation.goals import GoalServer
+from linkwright.nodes.navigation.goals import GoalError, GoalServer
 from linkwright.nodes.navigation.managed import ManagedNode
 
 Step = Generator[None, None, Any]
@@ -22,17 +22,15 @@ _SERVER_SECONDS = 5.0
 """For so long an answer of another server is waited for."""
 
 
-class StepError(Exception):
+class StepError(GoalError):
     """A step failed.
 
     Attributes:
-        code: name of nav2's error code.
         is_final: whether it would fail again however often it is tried.
     """
 
     def __init__(self, code: str, reason: str, *, is_final: bool = False) -> None:
-        super().__init__(reason)
-        self.code = code
+        super().__init__(code, reason)
         self.is_final = is_final
 
 
