@@ -29,11 +29,8 @@ def dot(first: Vector3, second: Vector3) -> float:
 
 def cross(first: Vector3, second: Vector3) -> Vector3:
     """The vector product."""
-    return (
-        first[1] * second[2] - first[2] * second[1],
-        first[2] * second[0] - first[0] * second[2],
-        first[0] * second[1] - first[1] * second[0],
-    )
+    (a, b, c), (x, y, z) = first, second
+    return b * z - c * y, c * x - a * z, a * y - b * x
 
 
 def length(vector: Vector3) -> float:

@@ -23,7 +23,7 @@ from linkwright.geometry.single import (
     rotate,
     rotation_from_z,
 )
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.vectors import Vector3, cross, scaled
 
 GRAVITY = 9.80665
 _FREE_FALL = 1e-3
@@ -61,15 +61,15 @@ def attitude(acceleration: Vector3, magnetic: Vector3 | None, world: World) -> Q
     if magnetic is None:
         return quaternion_from_rpy((atan2(y, z), atan2(-x, hypot(y, z)), 0.0))
     up = _unit(acceleration)
-    east = _cross(magnetic, up)
+    east = cross(magnetic, up)
     if hypot(*east) < _FREE_FALL * hypot(*magnetic) or not hypot(*magnetic):
         return None
     east = _unit(east)
-    north = _cross(up, east)
+    north = cross(up, east)
     axes = {
         World.ENU: (east, north, up),
-        World.NWU: (north, _scaled(east, -1.0), up),
-        World.NED: (north, east, _scaled(up, -1.0)),
+        World.NWU: (north, scaled(east, -1.0), up),
+        World.NED: (north, east, scaled(up, -1.0)),
     }[world]
     qx, qy, qz, qw = quaternion_from_matrix(np.array(axes)).tolist()
     return qx, qy, qz, qw
@@ -165,7 +165,7 @@ class ComplementaryFilter:
         if self.do_bias_estimation and self._rests(rates, acceleration):
             self.bias = _sum(self.bias, _sum(rates, self.bias, -1.0), self.bias_alpha)
         self._last_rates = rates
-        turn = _scaled(_sum(rates, self.bias, -1.0), seconds)
+        turn = scaled(_sum(rates, self.bias, -1.0), seconds)
         self.orientation = quaternion_multiply(self.orientation, _rotation(turn))
         length = hypot(*acceleration)
         if length >= _FREE_FALL:
@@ -214,11 +214,7 @@ def _part(rotation: Quaternion, share: float) -> Quaternion:
 
 
 def _unit(vector: Vector3) -> Vector3:
-    return _scaled(vector, 1.0 / hypot(*vector))
-
-
-def _scaled(vector: Vector3, factor: float) -> Vector3:
-    return vector[0] * factor, vector[1] * factor, vector[2] * factor
+    return scaled(vector, 1.0 / hypot(*vector))
 
 
 def _sum(first: Vector3, second: Vector3, factor: float) -> Vector3:
@@ -237,9 +233,3 @@ def _sum4(first: Quaternion, second: Quaternion, factor: float) -> Quaternion:
         first[2] + second[2] * factor,
         first[3] + second[3] * factor,
     )
-
-
-def _cross(first: Vector3, second: Vector3) -> Vector3:
-    ax, ay, az = first
-    bx, by, bz = second
-    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import asinh, atan, atan2, atanh, cos, cosh, degrees, floor, hypot, radians, sin, sinh, sqrt, tan
 from typing import NamedTuple
 
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.vectors import Vector3, dot
 
 _RADIUS = 6378137.0
 _FLATTENING = 1.0 / 298.257223563
@@ -119,7 +119,7 @@ class TangentPlane:
         ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
         east, north, up = self._axes()
         apart = (x - ox, y - oy, z - oz)
-        return _dot(east, apart), _dot(north, apart), _dot(up, apart)
+        return dot(east, apart), dot(north, apart), dot(up, apart)
 
     def place_of(self, point: Vector3) -> Vector3:
         """A point in metres as latitude and longitude in degrees and altitude in metres."""
@@ -152,7 +152,3 @@ def _geodetic(x: float, y: float, z: float) -> Vector3:
         altitude = level * cos(phi) + z * sin(phi) - _RADIUS * sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
         phi = atan2(z, level * (1.0 - _ECCENTRICITY_SQUARED * radius / (radius + altitude)))
     return degrees(phi), degrees(atan2(y, x)), altitude
-
-
-def _dot(first: Vector3, second: Vector3) -> float:
-    return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]

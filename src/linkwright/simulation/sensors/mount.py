@@ -10,7 +10,7 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import IDENTITY, Transform, compose, rotate
-from linkwright.geometry.vectors import Vector3
+from linkwright.geometry.vectors import Vector3, added, cross
 from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.library import load_mujoco
@@ -59,7 +59,7 @@ class Mount:
         turning = _three(angular)
         if self._is_at_origin:
             return _three(linear), turning
-        return _sum(_three(linear), _cross(turning, self._arm())), turning
+        return added(_three(linear), cross(turning, self._arm())), turning
 
     @property
     def _is_at_origin(self) -> bool:
@@ -84,22 +84,12 @@ class Mount:
         if self._is_at_origin:
             return turning, (x, y, z)
         arm = self._arm()
-        return turning, _sum(_sum((x, y, z), _cross((p, q, r), arm)), _cross(turning, _cross(turning, arm)))
+        return turning, added(added((x, y, z), cross((p, q, r), arm)), cross(turning, cross(turning, arm)))
 
 
 def _three(values: Array) -> Vector3:
     x, y, z = values.tolist()
     return x, y, z
-
-
-def _sum(one: Vector3, other: Vector3) -> Vector3:
-    return one[0] + other[0], one[1] + other[1], one[2] + other[2]
-
-
-def _cross(one: Vector3, other: Vector3) -> Vector3:
-    """The vector product; numpy's takes a hundred times as long for one."""
-    (a, b, c), (x, y, z) = one, other
-    return b * z - c * y, c * x - a * z, a * y - b * x
 
 
 def accelerations(simulation: Simulation) -> None:
