@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.messages.message import Message
 
@@ -17,6 +17,10 @@ class _Nanoseconds(Message):
     sec: Any
     nanosec: Any
 
+    if TYPE_CHECKING:  # it is generated
+
+        def __init__(self, sec: int = 0, nanosec: int = 0) -> None: ...
+
     @classmethod
     def from_nanoseconds(cls: type[_Self], nanoseconds: int) -> _Self:  # noqa: PYI019 - Python 3.10 has no Self
         """The message for a count of nanoseconds.
@@ -24,9 +28,7 @@ class _Nanoseconds(Message):
         Raises:
             AssertionError: the seconds are more than 32 bits can hold.
         """
-        message = cls()
-        message.sec, message.nanosec = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
-        return message
+        return cls(*divmod(nanoseconds, NANOSECONDS_PER_SECOND))
 
     @property
     def nanoseconds(self) -> int:

@@ -6,12 +6,13 @@ Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_state``) and its messages.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
+from functools import partial
 from math import isfinite
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.geometry.single import IDENTITY, Transform, compose, invert, normalized, rotate
-from linkwright.messages import Quaternion, Vector3, get_message
+from linkwright.messages import Header, Quaternion, Time, Vector3, get_message
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.simulation.simulation import Simulation
 
@@ -100,6 +101,19 @@ class Entities:
         linear, angular = (rotate(frame[3:], numbers(each)) for each in (state.twist.linear, state.twist.angular))
         self._simulation.set_model_velocity(name, linear, angular)
 
+    def answer_get(self, service: str, request: Any, response: Any, tell: Callable[[Phrase], object]) -> Any:
+        """Answer ``gazebo_msgs/srv/GetEntityState``; why it did not work goes to `tell`, such as a logger."""
+        response.header = Header(Time.from_nanoseconds(self._simulation.time), request.reference_frame or WORLD)
+
+        def get() -> None:
+            response.state = self.state(request.name, request.reference_frame)
+
+        return _answered_without_text(response, get, service, tell)
+
+    def answer_set(self, service: str, request: Any, response: Any, tell: Callable[[Phrase], object]) -> Any:
+        """Answer ``gazebo_msgs/srv/SetEntityState``; why it did not work goes to `tell`, such as a logger."""
+        return _answered_without_text(response, partial(self.put, request.state), service, tell)
+
     def _one(self, name: str, known: Collection[str]) -> str:
         if name in known:
             return name
@@ -123,7 +137,7 @@ def answered(response: Any, work: Callable[[], str]) -> Any:
     return response
 
 
-def answered_without_text(
+def _answered_without_text(
     response: Any, work: Callable[[], object], service: str, tell: Callable[[Phrase], object]
 ) -> Any:
     """A response with `success` alone; why it did not work goes to `tell`, such as a logger."""

@@ -201,7 +201,7 @@ class SimulatedPlugin(Generic[P]):
 
     def stamp(self) -> Time:
         """The simulated time, for headers."""
-        return Time(*divmod(self.simulation.time, NANOSECONDS))
+        return Time.from_nanoseconds(self.simulation.time)
 
     def link(self, name: str) -> str:
         """The name in the simulation of a link of its model.

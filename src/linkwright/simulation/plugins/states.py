@@ -7,12 +7,11 @@ Source: gazebo_ros_pkgs for ROS 2 (topics, services, the rate). The simulator it
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
-from linkwright.messages import Header, get_message
-from linkwright.sdf.poses import SEPARATOR, WORLD
-from linkwright.simulation.plugins.entities import Entities, answered, answered_without_text
+from linkwright.messages import get_message
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.plugins.entities import Entities, answered
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -54,16 +53,10 @@ class ClassicState(SimulatedPlugin[StateParameters]):
         return get_message(kind)(names, [each.pose for each in states], [each.twist for each in states])
 
     def _get(self, request: Any, response: Any) -> Any:
-        response.header = Header(self.stamp(), request.reference_frame or WORLD)
-
-        def get() -> None:
-            response.state = self._entities.state(request.name, request.reference_frame)
-
-        return answered_without_text(response, get, "get_entity_state", self.node.logger.error)
+        return self._entities.answer_get("get_entity_state", request, response, self.node.logger.error)
 
     def _set(self, request: Any, response: Any) -> Any:
-        put = partial(self._entities.put, request.state)
-        return answered_without_text(response, put, "set_entity_state", self.node.logger.error)
+        return self._entities.answer_set("set_entity_state", request, response, self.node.logger.error)
 
     def _set_joints(self, request: Any, response: Any) -> Any:
         if len(request.joint_names) != len(request.joint_positions):

@@ -83,7 +83,9 @@ class Reports:
             self.publish_poses()
         if now - self._measured >= _METRICS_PERIOD and self._metrics.is_wanted:
             self._measured = now
-            message = get_message(_METRICS)(header=Header(stamp=self._time()), real_time_factor=factor())
+            message = get_message(_METRICS)(
+                header=Header(stamp=Time.from_nanoseconds(self._server.simulation.time)), real_time_factor=factor()
+            )
             self._metrics.publish(message)
 
     def publish_poses(self) -> None:
@@ -103,11 +105,8 @@ class Reports:
     def _output(self, node: Node, kind: str, topic: str, qos: QoSProfile | int) -> Output:
         return Output(self._server.exchange, [node.create_publisher(get_message(kind), topic, qos)])
 
-    def _time(self) -> Time:
-        return Time(*divmod(self._server.simulation.time, NANOSECONDS))
-
     def _tell_time(self) -> None:
-        self._clock.publish(get_message(_CLOCK)(clock=self._time()))
+        self._clock.publish(get_message(_CLOCK)(clock=Time.from_nanoseconds(self._server.simulation.time)))
 
     def _address(self, written: str, beside: Path) -> str:
         found = self._server.simulation.finder.file(written, beside) if written else Missing

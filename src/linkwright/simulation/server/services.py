@@ -7,7 +7,6 @@ Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_init``, ``gazebo_ros_factory``, 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any, Protocol
 
 from linkwright.descriptions import DescriptionLibrary
@@ -19,7 +18,6 @@ from linkwright.sdf.poses import WORLD
 from linkwright.simulation.plugins.entities import (
     Entities,
     answered,
-    answered_without_text,
     numbers,
     refused,
     told,
@@ -170,7 +168,7 @@ class Services:
         return answered(response, delete)
 
     def _list(self, _: Any, response: Any) -> Any:
-        response.header = Header(self._stamp(), WORLD)
+        response.header = Header(Time.from_nanoseconds(self._server.simulation.time), WORLD)
         response.model_names = list(self._server.simulation.scene.models)
         response.success = True
         return response
@@ -178,16 +176,10 @@ class Services:
     # --- where things are ---------------------------------------------------------------------------------------------
 
     def _get_state(self, request: Any, response: Any) -> Any:
-        response.header = Header(self._stamp(), request.reference_frame or WORLD)
-
-        def get() -> None:
-            response.state = self._entities.state(request.name, request.reference_frame)
-
-        return answered_without_text(response, get, "/get_entity_state", self._server.node.get_logger().error)
+        return self._entities.answer_get("/get_entity_state", request, response, self._server.node.get_logger().error)
 
     def _set_state(self, request: Any, response: Any) -> Any:
-        put = partial(self._entities.put, request.state)
-        return answered_without_text(response, put, "/set_entity_state", self._server.node.get_logger().error)
+        return self._entities.answer_set("/set_entity_state", request, response, self._server.node.get_logger().error)
 
     def _push(self, request: Any, response: Any) -> Any:
         def push() -> str:
@@ -235,6 +227,3 @@ class Services:
         except LinkwrightError as error:
             response.result.result, response.result.error_message = _FAILED, str(error.diagnostics[0].message)
         return response
-
-    def _stamp(self) -> Time:
-        return Time(*divmod(self._server.simulation.time, NANOSECONDS))

@@ -6,6 +6,7 @@ Source: gazebo_ros_pkgs for ROS 2 (parameters, topic, the frame of the child lin
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 from linkwright.geometry.single import compose, invert
 from linkwright.sdf.sensors import ForceTorque
@@ -13,6 +14,8 @@ from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic
 from linkwright.simulation.plugins.sensors.contact import wrench
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
+
+P = TypeVar("P")
 
 _TYPE = "geometry_msgs/msg/WrenchStamped"
 
@@ -26,7 +29,20 @@ class ForceTorqueParameters(FrameName):
     update_rate: float = parameter(0.0, aliases=("updateRate",))
 
 
-class ClassicForceTorque(OneTopic[ForceTorqueParameters]):
+class _ForceTorque(OneTopic[P], Generic[P]):
+    """A force-torque sensor and its messages."""
+
+    _sensor: ForceTorqueSensor
+    _frame: str
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        message = self.message(_TYPE, self._frame)
+        message.wrench = wrench(*self._sensor.measure())
+        self.output.publish(message)
+
+
+class ClassicForceTorque(_ForceTorque[ForceTorqueParameters]):
     """``libgazebo_ros_ft_sensor.so``: the wrench of the child link on its parent, in the frame of the child."""
 
     PARAMETERS = ForceTorqueParameters
@@ -48,14 +64,8 @@ class ClassicForceTorque(OneTopic[ForceTorqueParameters]):
         self._frame = self.parameters.frame_name.lstrip("/") or self._child.rpartition("::")[2]
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
-    def measure(self) -> None:
-        """Measure and publish."""
-        message = self.message(_TYPE, self._frame)
-        message.wrench = wrench(*self._sensor.measure())
-        self.output.publish(message)
 
-
-class GzForceTorque(OneTopic[NoParameters]):
+class GzForceTorque(_ForceTorque[NoParameters]):
     """``force_torque`` of gz, on a joint."""
 
     def make_sensor(self) -> None:
@@ -70,9 +80,3 @@ class GzForceTorque(OneTopic[NoParameters]):
         """Make the topic."""
         self._frame = self.gz_frame()
         self.output = self.gz_output(_TYPE, "forcetorque", "/force_torque")
-
-    def measure(self) -> None:
-        """Measure and publish."""
-        message = self.message(_TYPE, self._frame)
-        message.wrench = wrench(*self._sensor.measure())
-        self.output.publish(message)
