@@ -20,7 +20,7 @@ _LATER = " jazzy"
 @cache
 def packages() -> tuple[str, ...]:
     """The names of the packages, sorted."""
-    return tuple(sorted(name[:-4] for name in os.listdir(_FOLDER) if name.endswith(".txt")))  # noqa: PTH208
+    return tuple(sorted(name[:-4] for name in os.listdir(_FOLDER) if name.endswith(".txt")))  # noqa: PTH208 - as above
 
 
 def texts(package: str) -> dict[str, str]:
@@ -32,7 +32,7 @@ def texts(package: str) -> dict[str, str]:
 def _texts(package: str, later: bool) -> dict[str, str]:
     if package not in packages():
         return {}
-    with open(os.path.join(_FOLDER, package + ".txt"), encoding="utf-8") as file:  # noqa: PTH118, PTH123
+    with open(os.path.join(_FOLDER, package + ".txt"), encoding="utf-8") as file:  # noqa: PTH118, PTH123 - as above
         text = file.read()
     found: dict[str, str] = {}
     for part in text.removeprefix(_HEAD).split("\n" + _HEAD):

@@ -92,8 +92,8 @@ class ComponentContainer(SingleNode):
         try:
             number, running = self.load(request.package_name, request.plugin_name, options)
         except LinkwrightError as error:
-            problem = error.diagnostics[0].message  # the user's mistake, so without a traceback
-            logger.error(f"Component constructor threw an exception: {problem}")  # noqa: TRY400
+            problem = error.diagnostics[0].message
+            logger.error(f"Component constructor threw an exception: {problem}")  # noqa: TRY400 - a user's mistake
             response.success = False
             response.error_message = "; ".join(_told(each) for each in error.diagnostics)
             return response

@@ -16,6 +16,7 @@ from linkwright.interruption import raise_interrupts
 from linkwright.standard_streams import take_any_text
 
 if TYPE_CHECKING:
+    from linkwright.graph import Graph
     from linkwright.graph.command_line.log_setup import Logging
     from linkwright.nodes.options import Factory
 
@@ -95,10 +96,10 @@ def _terminal() -> int | None:
     return descriptor if os.isatty(descriptor) else None
 
 
-def _join_network(graph: object) -> None:
+def _join_network(graph: Graph) -> None:
     from linkwright.wire.joining import join
 
-    join(graph)  # type: ignore[arg-type]
+    join(graph)
 
 
 def _factory(package: str, executable: str) -> Factory:

@@ -165,7 +165,7 @@ class ResourceFinder:
         yield _SHIPPED
 
     def _plain(self, path: str, beside: Path) -> Path | Missing:
-        places = [Path(path)] if os.path.isabs(path) else [beside / path, *(each / path for each in self._folders)]  # noqa: PTH117
+        places = [Path(path)] if Path(path).is_absolute() else [beside / path, *(each / path for each in self._folders)]
         return next((place for place in places if place.exists()), None) or _no_file(places[0])
 
     def _below(self, address: str, path: str, beside: Path) -> Path | Missing:

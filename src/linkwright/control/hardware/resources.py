@@ -63,7 +63,7 @@ class Resources:
             try:
                 hardware = make(each, self._logger)
             except LinkwrightError as error:
-                self._logger.error(error.diagnostics[0].message)  # noqa: TRY400
+                self._logger.error(error.diagnostics[0].message)  # noqa: TRY400 - the message is for users
                 continue
             if hardware is None:
                 self._logger.warning(
@@ -187,10 +187,9 @@ class Resources:
     def _pass(self, hardware: Hardware, transition: str, goal: LifecycleState) -> bool:
         name = hardware.description.name
         self._logger.info(f"'{transition}' hardware '{name}' ")
-        try:
-            getattr(hardware, f"on_{transition}")()
-        except Exception as error:  # noqa: BLE001  # a fault of hardware must not end the others
-            self._logger.error(f"Failed to '{transition}' hardware '{name}': {_told(error)}")  # noqa: TRY400
+        failure = _failure_of(getattr(hardware, f"on_{transition}"))
+        if failure:
+            self._logger.error(f"Failed to '{transition}' hardware '{name}': {failure}")
             return False
         hardware.state = goal
         self._logger.info(f"Successful '{transition}' of hardware '{name}'")
@@ -201,21 +200,18 @@ class Resources:
     def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> str:
         """Ask the hardware whether command interfaces may be switched; the reason against it, or nothing."""
         for hardware in self.components.values():
-            try:
-                hardware.prepare_switch(start, stop)
-            except Exception as error:  # noqa: BLE001, PERF203
-                return f"Component '{hardware.description.name}' did not accept command interfaces combination: " + (
-                    _told(error)
-                )
+            refusal = _failure_of(hardware.prepare_switch, start, stop)
+            if refusal:
+                name = hardware.description.name
+                return f"Component '{name}' did not accept command interfaces combination: {refusal}"
         return ""
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
         """Switch the command interfaces."""
         for hardware in self.components.values():
-            try:
-                hardware.perform_switch(start, stop)
-            except Exception as error:  # noqa: BLE001, PERF203
-                self._logger.error(f"Component '{hardware.description.name}' could not perform switch: {_told(error)}")  # noqa: TRY400
+            failure = _failure_of(hardware.perform_switch, start, stop)
+            if failure:
+                self._logger.error(f"Component '{hardware.description.name}' could not perform switch: {failure}")
 
     def read(self, time_ns: int, period_s: float) -> list[Hardware]:
         """Read all configured hardware; returns the names of what failed, which was logged and unconfigured."""
@@ -227,7 +223,7 @@ class Resources:
                         hardware.read(time_ns, period_s)
                     else:
                         hardware.timings[0].measure(hardware.read, time_ns, period_s)
-                except Exception as error:  # noqa: BLE001
+                except Exception as error:  # noqa: BLE001 - a fault of hardware must not end the others
                     failed.append(self._fail(hardware, "reading", error))
         return failed
 
@@ -241,24 +237,30 @@ class Resources:
                         hardware.write(time_ns, period_s)
                     else:
                         hardware.timings[1].measure(hardware.write, time_ns, period_s)
-                except Exception as error:  # noqa: BLE001
+                except Exception as error:  # noqa: BLE001 - a fault of hardware must not end the others
                     failed.append(self._fail(hardware, "writing", error))
         return failed
 
     def _fail(self, hardware: Hardware, work: str, error: Exception) -> Hardware:
         self._logger.error(f"Error while {work} hardware '{hardware.description.name}': {_told(error)}")
-        try:
-            hardware.on_error()
-        except Exception as second:  # noqa: BLE001
-            self._logger.error(f"'on_error' of hardware '{hardware.description.name}' failed: {_told(second)}")  # noqa: TRY400
-            hardware.state = FINALIZED
-        else:
-            hardware.state = UNCONFIGURED
+        failure = _failure_of(hardware.on_error)
+        if failure:
+            self._logger.error(f"'on_error' of hardware '{hardware.description.name}' failed: {failure}")
+        hardware.state = FINALIZED if failure else UNCONFIGURED
         return hardware
 
     def names_of(self, hardware: Hardware) -> set[str]:
         """The names of a hardware's interfaces."""
         return {each.name for each in (*hardware.states, *hardware.commands)}
+
+
+def _failure_of(callback: Callable[..., object], *arguments: object) -> str:
+    """Call a function of hardware; the error that it raises, in words, or nothing."""
+    try:
+        callback(*arguments)
+    except Exception as error:  # noqa: BLE001 - a fault of hardware must not end the others
+        return _told(error)
+    return ""
 
 
 def _told(error: Exception) -> str:

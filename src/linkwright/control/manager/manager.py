@@ -98,7 +98,7 @@ class ControllerManager:
         try:
             made = controller_class(str(kind))
         except LinkwrightError as error:
-            logger.error(f"Loader for controller '{name}' (type '{kind}') not found.")  # noqa: TRY400
+            logger.error(f"Loader for controller '{name}' (type '{kind}') not found.")  # noqa: TRY400 - `_tell` says why
             self._tell(error)
             logger.info("Available classes:")
             for each in controller_types():
@@ -125,8 +125,8 @@ class ControllerManager:
             )
         except LinkwrightError as error:
             self._tell(error)
-        except Exception as error:  # noqa: BLE001  # a fault of a controller must not end the others
-            self._logger.error(_traced("Exception thrown during init stage with message", error))  # noqa: TRY400
+        except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
+            self._logger.error(_traced("Exception thrown during init stage with message", error))  # noqa: TRY400 - `_traced` has its place
         if node is not None:
             node.destroy_node()
         return None
@@ -392,10 +392,10 @@ class ControllerManager:
         try:
             callback()
         except ControllerError as error:
-            logger.error(error.diagnostics[0].message)  # noqa: TRY400
+            logger.error(error.diagnostics[0].message)  # noqa: TRY400 - the message is for users
             return False
-        except Exception as error:  # noqa: BLE001  # a fault of a controller must not end the others
-            logger.error(_traced(f"Caught exception in callback for {what}", error))  # noqa: TRY400
+        except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
+            logger.error(_traced(f"Caught exception in callback for {what}", error))  # noqa: TRY400 - `_traced` has its place
             self._on_error(loaded)
             return False
         return True
@@ -403,8 +403,9 @@ class ControllerManager:
     def _on_error(self, loaded: Loaded) -> None:
         try:
             loaded.controller.on_error()
-        except Exception as error:  # noqa: BLE001
-            loaded.controller.node.logger.error(_traced("Caught exception in callback for on_error", error))  # noqa: TRY400
+        except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
+            logger = loaded.controller.node.logger
+            logger.error(_traced("Caught exception in callback for on_error", error))  # noqa: TRY400 - as above
 
     def set_hardware_state(self, name: str, target: LifecycleState) -> bool:
         """Take hardware to a lifecycle state; whether it got there. Its controllers are deactivated first."""
@@ -442,7 +443,7 @@ class ControllerManager:
                     loaded.controller.step(time_ns, step_s)
                 else:
                     loaded.timing.measure(loaded.controller.step, time_ns, step_s)
-            except Exception as error:  # noqa: BLE001  # a fault of a controller must not end the others
+            except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
                 self._fail(loaded, error)  # `_active` is another list then
                 continue
             wrong = loaded.take_back_wrong_commands()

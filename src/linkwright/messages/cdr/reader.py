@@ -94,7 +94,7 @@ class _ReaderCode:
         return "".join(self._lines)
 
     def compiled(self, source: str, structure: Structure) -> Any:
-        exec(compile(source, f"<CDR reader of {structure.type_name}>", "exec"), self._scope)  # noqa: S102
+        exec(compile(source, f"<CDR reader of {structure.type_name}>", "exec"), self._scope)  # noqa: S102 - our own code
         return self._scope["read"]
 
     # --- structures and fields ------------------------------------------------------------------------------

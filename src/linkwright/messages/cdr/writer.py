@@ -108,7 +108,7 @@ class _WriterCode:
         return pieces[0] if len(pieces) == 1 and pieces[0].startswith("P") else f"join(({', '.join(pieces)},))"
 
     def compiled(self, source: str, structure: Structure) -> Any:
-        exec(compile(source, f"<CDR writer of {structure.type_name}>", "exec"), self._scope)  # noqa: S102
+        exec(compile(source, f"<CDR writer of {structure.type_name}>", "exec"), self._scope)  # noqa: S102 - our own code
         return self._scope["write"]
 
     # --- structures and fields ------------------------------------------------------------------------------

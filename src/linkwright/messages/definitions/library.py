@@ -205,7 +205,7 @@ class Library:
         """The finder in use. One of our own is kept for a while: it has read the folders of the workspace."""
         finder = active_finder()
         if finder is None:
-            now, folder = time.monotonic(), os.getcwd()  # noqa: PTH109
+            now, folder = time.monotonic(), os.getcwd()  # noqa: PTH109 - a Path takes longer
             if self._own is None or folder != self._own_folder or now > self._own_until:
                 self._own, self._own_folder = PackageFinder(), folder
             self._own_until = now + _FINDER_KEPT_S

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -94,11 +95,11 @@ class PoseGraph:
         edges, within = np.arange(3 * len(self.first)), np.arange(3)
         rows = np.broadcast_to(edges.reshape(-1, 3, 1), (len(self.first), 3, 3)).ravel()
 
-        def block(values: Floats, nodes: list[int]) -> object:
+        def block(values: Floats, nodes: list[int]) -> Any:
             columns = np.broadcast_to((3 * np.array(nodes)[:, None] + within)[:, None, :], values.shape)
             return sparse.csr_matrix((values.ravel(), (rows, columns.ravel())), shape=(len(edges), size))
 
-        jacobian = block(of_first, self.first) + block(of_second, self.second)  # type: ignore[operator]
+        jacobian = block(of_first, self.first) + block(of_second, self.second)
         columns = np.broadcast_to(edges.reshape(-1, 1, 3), information.shape).ravel()
         weight = sparse.csr_matrix((information.ravel(), (rows, columns)), shape=(len(edges), len(edges)))
         weighted = jacobian.T @ weight

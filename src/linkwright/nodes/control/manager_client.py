@@ -151,7 +151,7 @@ def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Na
         raise LinkwrightError(Diagnostic("NODE831", text, hint=foreign(parser.format_usage().strip())))
 
     # argparse ends the program where a required option is missing, in Python up to 3.12 also with exit_on_error=False.
-    parser.error = refuse  # type: ignore[method-assign]
+    parser.error = refuse  # type: ignore[method-assign]  # on purpose, see above
     try:
         return parser.parse_args(_said(parser, words))
     except argparse.ArgumentError as error:

@@ -113,7 +113,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("-package_to_model", action="store_true")
     parser.add_argument("-b", action="store_true")
     # argparse ends the program where a required option is missing, in Python up to 3.12 also with exit_on_error=False.
-    parser.error = _refuse  # type: ignore[method-assign]
+    parser.error = _refuse  # type: ignore[method-assign]  # on purpose, see above
     try:
         return parser.parse_args(words)
     except argparse.ArgumentError as error:

@@ -19,6 +19,7 @@ from linkwright.whole_files import write_whole_file
 
 if TYPE_CHECKING:
     from linkwright.vision.training.learning.course import Epoch
+    from linkwright.vision.training.learning.network import Network
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,10 +121,10 @@ def _judging_split(dataset: Dataset) -> str:
 
 
 def _facts(
-    options: Options, dataset: Dataset, lesson: Sequence[Labelled], epochs: int, best: int, network: object
+    options: Options, dataset: Dataset, lesson: Sequence[Labelled], epochs: int, best: int, network: Network
 ) -> dict[str, str]:
     """The facts on the making, for the card."""
-    parameters = sum(each.numel() for each in network.parameters())  # type: ignore[attr-defined]
+    parameters = sum(each.numel() for each in network.parameters())
     asked = sum(int((~each.ignored).sum()) for each in lesson)
     return {
         "command": f"`{options.command}`",

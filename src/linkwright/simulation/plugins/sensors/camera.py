@@ -304,7 +304,7 @@ class GzCamera(CameraPlugin[NoParameters]):
             self._depth.publish(message)
         if self._cloud is not None and self._cloud.is_wanted:
             message = self.message(CLOUD, self._frame)
-            points = points_of(eye.optics, limited(picture.depth, clip.near, clip.far))  # type: ignore[arg-type]
+            points = points_of(eye.optics, limited(picture.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
             forwards = np.stack([points[:, :, 2], -points[:, :, 0], -points[:, :, 1]], axis=-1)
             fill_camera_cloud(message, forwards, picture.colour)  # type: ignore[arg-type]  # it was asked for
             self._cloud.publish(message)

@@ -148,7 +148,7 @@ class GzSegmentation(_LabellingCamera):
         if not (self._maps.is_wanted or self._coloured.is_wanted):
             return
         geoms = self.see(eye, Wanted.GEOMS).geoms
-        labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)  # type: ignore[arg-type]
+        labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)  # type: ignore[arg-type]  # asked for
         if eye.camera.segmentation_type in ("instance", "panoptic"):
             high, low = (instances >> 8).astype(np.uint8), (instances & 0xFF).astype(np.uint8)
             numbers, coloured = np.stack([low, high, labels], axis=-1), self._colours[(labels + 31 * low) % _LABELS]
