@@ -18,7 +18,8 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.noise import Noise
 from linkwright.sdf.populations import KINDS, Distribution
 from linkwright.sdf.shapes import Polyline
-from linkwright.sdf.worlds import ModelState, Sdf
+from linkwright.sdf.states import ModelState
+from linkwright.sdf.worlds import Sdf
 from linkwright.xmltree import Element
 
 NUMBERS = st.floats(-1e12, 1e12, allow_nan=False)

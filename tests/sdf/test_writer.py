@@ -20,8 +20,9 @@ from linkwright.sdf.models import Frame, Include, Model
 from linkwright.sdf.poses import RawPose
 from linkwright.sdf.reader import read
 from linkwright.sdf.sensors import Sensor
+from linkwright.sdf.states import State
 from linkwright.sdf.text import parse_as_gazebo
-from linkwright.sdf.worlds import Road, State, World
+from linkwright.sdf.worlds import Road, World
 from linkwright.sdf.writer import save
 from tests.sdf.objects import objects
 from tests.sdf.worlds import model, read_sdf, world

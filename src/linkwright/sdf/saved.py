@@ -12,7 +12,8 @@ from linkwright.geometry.single import Transform, compose, invert
 from linkwright.sdf.frames import FrameError, Frames, pose_of, transform_of
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import RawPose
-from linkwright.sdf.worlds import ModelState, World
+from linkwright.sdf.states import ModelState
+from linkwright.sdf.worlds import World
 
 
 def as_saved(world: World) -> World:

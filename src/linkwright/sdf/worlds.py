@@ -1,7 +1,6 @@
-"""``<world>`` and ``<sdf>``: worlds, physics, scene, saved state.
+"""``<world>`` and ``<sdf>``: worlds with their scene, place on earth, atmosphere and roads.
 
-Source of the elements and defaults: the SDFormat specification 1.12, ``world.sdf``, ``physics.sdf``, ``scene.sdf``,
-``state.sdf``.
+Source of the elements and defaults: the SDFormat specification 1.12, ``world.sdf``, ``scene.sdf``.
 """
 
 from __future__ import annotations
@@ -15,51 +14,24 @@ from linkwright.sdf.actors import ACTOR, Actor
 from linkwright.sdf.joints import JOINT, Joint
 from linkwright.sdf.lights import LIGHT, Light
 from linkwright.sdf.models import FRAME, INCLUDE, MODEL, Frame, Include, Model
+from linkwright.sdf.physics import PHYSICS, Physics
 from linkwright.sdf.plugins import PLUGIN, Plugin
 from linkwright.sdf.populations import POPULATION, Population, models_of
-from linkwright.sdf.poses import POSE, RawPose
 from linkwright.sdf.skies import FOG, SKY, Fog, Sky
+from linkwright.sdf.states import STATE, State
 from linkwright.sdf.values import (
     COLOR,
-    INTEGER,
     NUMBER,
     TEXT,
-    TIME,
     TRUTH,
     VECTOR3,
     Color,
     made,
-    name_of,
     readable,
     value,
     values,
 )
 from linkwright.xmltree import Element
-
-
-@dataclass(frozen=True, slots=True)
-class Physics:
-    """Time step and solver of the physics engine.
-
-    Attributes:
-        type: the engine that the author had in mind.
-        default: whether this is the one to take among several.
-        max_step_size: the step in seconds.
-        real_time_factor: how many times faster than real time it shall go at most.
-        real_time_update_rate: steps a real second in Gazebo classic; 0 for as many as there can be.
-        max_contacts: how many points of contact of two shapes count at most.
-        gravity: up to SDF 1.5, in m/s2; None where nothing is said.
-    """
-
-    name: str = "default_physics"
-    type: str = "ode"
-    default: bool = False
-    max_step_size: float = 0.001
-    real_time_factor: float = 1.0
-    real_time_update_rate: float = 1000.0
-    max_contacts: int = 20
-    gravity: Vector3 | None = None
-    element: Element | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,69 +77,6 @@ class Road:
     name: str = ""
     width: float = 1.0
     points: tuple[Vector3, ...] = ()
-    element: Element | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class LinkState:
-    """The state of a link in a saved world, in the frame of the world."""
-
-    name: str
-    pose: RawPose | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class ModelState:
-    """The state of a model, its links and nested models in a saved world, in the frame of the world."""
-
-    name: str
-    pose: RawPose | None = None
-    scale: Vector3 = (1.0, 1.0, 1.0)
-    links: tuple[LinkState, ...] = ()
-    models: tuple[ModelState, ...] = ()
-    element: Element | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class LightState:
-    """The state of a light in a saved world."""
-
-    name: str
-    pose: RawPose | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Insertions:
-    """Models and lights that were inserted after the start."""
-
-    models: tuple[Model, ...] = ()
-    lights: tuple[Light, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Deletions:
-    """Names of models and lights that were deleted after the start."""
-
-    names: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class State:
-    """A saved state of a world by Gazebo classic, which replaces what the rest of the file says.
-
-    Attributes:
-        world_name: the world.
-        sim_time: simulated time in seconds.
-        iterations: how many steps were made.
-    """
-
-    world_name: str = ""
-    sim_time: float = 0.0
-    iterations: int = 0
-    models: tuple[ModelState, ...] = ()
-    lights: tuple[LightState, ...] = ()
-    insertions: Insertions = Insertions()
-    deletions: Deletions = Deletions()
     element: Element | None = field(default=None, compare=False, repr=False)
 
 
@@ -240,89 +149,6 @@ class _Wind:
 def _world(wind: _Wind | None, **parts: Any) -> World:
     return World(wind=wind.linear_velocity if wind else (0.0, 0.0, 0.0), **parts)
 
-
-PHYSICS = ElementRule(
-    "physics",
-    "how time goes",
-    (
-        AttributeRule("name", TEXT, "its name", default="default_physics"),
-        AttributeRule("type", TEXT, "the engine that the author had in mind", default="ode"),
-        AttributeRule("default", TRUTH, "whether this is the one to take among several", default="false"),
-    ),
-    (
-        value("max_step_size", NUMBER, "the step", "s", default="0.001"),
-        value("real_time_factor", NUMBER, "how many times faster than real time it goes at most", default="1"),
-        value(
-            "real_time_update_rate", NUMBER, "steps a real second; 0 for as many as there can be", "Hz", default="1000"
-        ),
-        value("max_contacts", INTEGER, "how many points of contact of two shapes count at most", default="20"),
-        value("gravity", VECTOR3, "gravity, up to SDF 1.5", "m/s2"),
-    ),
-    many=True,
-    make=Physics,
-    keeps=True,
-    located=True,
-)
-
-_STATE_POSE = replace(POSE, default=None)
-
-_LINK_STATE = ElementRule(
-    "link",
-    "where a link was",
-    (name_of("its name"),),
-    (_STATE_POSE,),
-    many=True,
-    make=LinkState,
-    keeps=True,
-    field="links",
-)
-
-_MODEL_STATE = ElementRule(
-    "model",
-    "where a model was",
-    (name_of("its name"),),
-    (_STATE_POSE, value("scale", VECTOR3, "its scale", default="1 1 1"), _LINK_STATE),
-    many=True,
-    make=ModelState,
-    keeps=True,
-    located=True,
-    nests=True,
-    field="models",
-)
-
-STATE = ElementRule(
-    "state",
-    "how the world was when it was saved",
-    (AttributeRule("world_name", TEXT, "the world", default=""),),
-    (
-        value("sim_time", TIME, "simulated time", "s", default="0"),
-        value("iterations", INTEGER, "how many steps were made", default="0"),
-        _MODEL_STATE,
-        ElementRule(
-            "light",
-            "where a light was",
-            (name_of("its name"),),
-            (_STATE_POSE,),
-            many=True,
-            make=LightState,
-            keeps=True,
-            field="lights",
-        ),
-        made(Insertions, "insertions", "what was put in after the start", MODEL, LIGHT, default=Insertions()),
-        made(
-            readable(Deletions),
-            "deletions",
-            "what was taken out after the start",
-            values("name", TEXT, "its name"),
-            default=Deletions(),
-        ),
-    ),
-    many=True,
-    make=State,
-    keeps=True,
-    located=True,
-    field="states",
-)
 
 WORLD = ElementRule(
     "world",

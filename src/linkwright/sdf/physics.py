@@ -1,0 +1,62 @@
+"""``<physics>``: the time step and the solver of a physics engine.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``physics.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from linkwright.geometry.vectors import Vector3
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, value
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Physics:
+    """Time step and solver of the physics engine.
+
+    Attributes:
+        type: the engine that the author had in mind.
+        default: whether this is the one to take among several.
+        max_step_size: the step in seconds.
+        real_time_factor: how many times faster than real time it shall go at most.
+        real_time_update_rate: steps a real second in Gazebo classic; 0 for as many as there can be.
+        max_contacts: how many points of contact of two shapes count at most.
+        gravity: up to SDF 1.5, in m/s2; None where nothing is said.
+    """
+
+    name: str = "default_physics"
+    type: str = "ode"
+    default: bool = False
+    max_step_size: float = 0.001
+    real_time_factor: float = 1.0
+    real_time_update_rate: float = 1000.0
+    max_contacts: int = 20
+    gravity: Vector3 | None = None
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+PHYSICS = ElementRule(
+    "physics",
+    "how time goes",
+    (
+        AttributeRule("name", TEXT, "its name", default="default_physics"),
+        AttributeRule("type", TEXT, "the engine that the author had in mind", default="ode"),
+        AttributeRule("default", TRUTH, "whether this is the one to take among several", default="false"),
+    ),
+    (
+        value("max_step_size", NUMBER, "the step", "s", default="0.001"),
+        value("real_time_factor", NUMBER, "how many times faster than real time it goes at most", default="1"),
+        value(
+            "real_time_update_rate", NUMBER, "steps a real second; 0 for as many as there can be", "Hz", default="1000"
+        ),
+        value("max_contacts", INTEGER, "how many points of contact of two shapes count at most", default="20"),
+        value("gravity", VECTOR3, "gravity, up to SDF 1.5", "m/s2"),
+    ),
+    many=True,
+    make=Physics,
+    keeps=True,
+    located=True,
+)

@@ -1,0 +1,140 @@
+"""``<state>``: the poses of a world's models and lights when Gazebo classic saved it.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``state.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from linkwright.geometry.vectors import Vector3
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.lights import LIGHT, Light
+from linkwright.sdf.models import MODEL, Model
+from linkwright.sdf.poses import POSE, RawPose
+from linkwright.sdf.values import INTEGER, TEXT, TIME, VECTOR3, made, name_of, readable, value, values
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class LinkState:
+    """The state of a link in a saved world, in the frame of the world."""
+
+    name: str
+    pose: RawPose | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ModelState:
+    """The state of a model, its links and nested models in a saved world, in the frame of the world."""
+
+    name: str
+    pose: RawPose | None = None
+    scale: Vector3 = (1.0, 1.0, 1.0)
+    links: tuple[LinkState, ...] = ()
+    models: tuple[ModelState, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class LightState:
+    """The state of a light in a saved world."""
+
+    name: str
+    pose: RawPose | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Insertions:
+    """Models and lights that were inserted after the start."""
+
+    models: tuple[Model, ...] = ()
+    lights: tuple[Light, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Deletions:
+    """Names of models and lights that were deleted after the start."""
+
+    names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A saved state of a world by Gazebo classic, which replaces what the rest of the file says.
+
+    Attributes:
+        world_name: the world.
+        sim_time: simulated time in seconds.
+        iterations: how many steps were made.
+    """
+
+    world_name: str = ""
+    sim_time: float = 0.0
+    iterations: int = 0
+    models: tuple[ModelState, ...] = ()
+    lights: tuple[LightState, ...] = ()
+    insertions: Insertions = Insertions()
+    deletions: Deletions = Deletions()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+_STATE_POSE = replace(POSE, default=None)
+
+_LINK_STATE = ElementRule(
+    "link",
+    "where a link was",
+    (name_of("its name"),),
+    (_STATE_POSE,),
+    many=True,
+    make=LinkState,
+    keeps=True,
+    field="links",
+)
+
+_MODEL_STATE = ElementRule(
+    "model",
+    "where a model was",
+    (name_of("its name"),),
+    (_STATE_POSE, value("scale", VECTOR3, "its scale", default="1 1 1"), _LINK_STATE),
+    many=True,
+    make=ModelState,
+    keeps=True,
+    located=True,
+    nests=True,
+    field="models",
+)
+
+STATE = ElementRule(
+    "state",
+    "how the world was when it was saved",
+    (AttributeRule("world_name", TEXT, "the world", default=""),),
+    (
+        value("sim_time", TIME, "simulated time", "s", default="0"),
+        value("iterations", INTEGER, "how many steps were made", default="0"),
+        _MODEL_STATE,
+        ElementRule(
+            "light",
+            "where a light was",
+            (name_of("its name"),),
+            (_STATE_POSE,),
+            many=True,
+            make=LightState,
+            keeps=True,
+            field="lights",
+        ),
+        made(Insertions, "insertions", "what was put in after the start", MODEL, LIGHT, default=Insertions()),
+        made(
+            readable(Deletions),
+            "deletions",
+            "what was taken out after the start",
+            values("name", TEXT, "its name"),
+            default=Deletions(),
+        ),
+    ),
+    many=True,
+    make=State,
+    keeps=True,
+    located=True,
+    field="states",
+)
