@@ -17,7 +17,7 @@ from linkwright.navigation.grids.marking import ray_counts
 from linkwright.navigation.maps.map_files import SavedAs, save_map
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.simulation.casting import GROUPS, cast
+from linkwright.simulation.ray_casting import GROUPS, cast
 from linkwright.simulation.simulation import Simulation
 from linkwright.testing.scenes import read_world
 

@@ -124,7 +124,7 @@ def _take_images_out(spec: Any, model: Any) -> None:
     """Give what wears an image its mean colour instead: MJCF has images in files of their own only."""
     import numpy as np
 
-    from linkwright.simulation.rendering.rays import mean_colour
+    from linkwright.simulation.rendering.ray_renderer import mean_colour
 
     means: dict[str, Any] = {}
     for material in spec.materials:

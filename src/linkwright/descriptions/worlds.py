@@ -131,7 +131,7 @@ def _document(
 
         expansion = expand(str(path), arguments, packages=finder, text=text, overlay=overlay)
         return expansion.document, expansion.diagnostics, expansion.dependencies
-    from linkwright.sdf.crowds import has_more_links
+    from linkwright.sdf.link_counts import has_more_links
     from linkwright.sdf.text import parse_as_gazebo
 
     written = read_bytes(path) if text is None else text

@@ -17,8 +17,8 @@ from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.actuators import Motor, Servo
-from linkwright.simulation.bouncing import Bouncing
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.restitution import Stepper
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
 from linkwright.simulation.scene.compiling import compiled, count_links, refused_models, whole_step
 from linkwright.simulation.scene.figures import let_walk, put_kinematic
@@ -249,7 +249,7 @@ class Simulation:
         """Set another model of MuJoCo and its state."""
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
-        self._bouncing = Bouncing(model, data)
+        self._stepper = Stepper(model, data)
         self._solving.take(model, data, self.time, self.step)
 
     def reset(self) -> None:
@@ -289,7 +289,7 @@ class Simulation:
         mujoco, (positions, velocities) = self._mujoco, self._state
         before = positions.tobytes(), velocities.tobytes()  # in half of the time of a copy into arrays
         try:
-            self._bouncing.make_steps(count)
+            self._stepper.make_steps(count)
         except mujoco.FatalError as error:
             said = str(error).splitlines()[0]
             raise LinkwrightError(Diagnostic("SIM121", phrase("MuJoCo gave up: {said}", said=foreign(said)))) from None
@@ -310,7 +310,7 @@ class Simulation:
         mujoco, model, data, before = self._mujoco, self.model, self.data, (positions, velocities)
         for _ in range(count):
             data.qpos[:], data.qvel[:] = before
-            self._bouncing.make_steps(1)
+            self._stepper.make_steps(1)
             if not self._is_sound():
                 break
             before = data.qpos.copy(), data.qvel.copy()

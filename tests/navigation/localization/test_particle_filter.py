@@ -7,9 +7,9 @@ from math import ceil, pi, sqrt
 import numpy as np
 import pytest
 
-from linkwright.navigation.localization.motion import Noise, Poses, differential
+from linkwright.navigation.localization.motion_models import Noise, Poses, differential
 from linkwright.navigation.localization.particle_filter import FilterSettings, ParticleFilter
-from tests.navigation.localization.test_models import beams_in_room, room
+from tests.navigation.localization.test_sensor_models import beams_in_room, room
 
 
 def _nowhere(count: int) -> Poses:

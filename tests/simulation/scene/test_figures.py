@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from linkwright.simulation.casting import GROUPS, cast
+from linkwright.simulation.ray_casting import GROUPS, cast
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.scene.figures import skeleton_begins
 from linkwright.simulation.server.unsimulated import unsimulated

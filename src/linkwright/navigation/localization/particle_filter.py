@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.grids.library import load_scipy
-from linkwright.navigation.localization.motion import Poses
+from linkwright.navigation.localization.motion_models import Poses
 
 _BIN = np.array((0.5, 0.5, np.pi / 18.0))
 """Metres, metres and radians within which poses count as one."""

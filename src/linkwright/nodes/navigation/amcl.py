@@ -21,9 +21,9 @@ from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import TFMessage, TransformBatch, get_message, get_service
 from linkwright.navigation.grids.occupancy import BadGridError, grid_of
 from linkwright.navigation.localization.beams import Beams, beams_of_scan
-from linkwright.navigation.localization.models import MapLikelihoods
-from linkwright.navigation.localization.motion import Pose, turned_by
+from linkwright.navigation.localization.motion_models import Pose, turned_by
 from linkwright.navigation.localization.particle_filter import Estimate, ParticleFilter
+from linkwright.navigation.localization.sensor_models import MapLikelihoods
 from linkwright.nodes.navigation.amcl_parameters import declare_parameters, read_parameters
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.map_server import MAP_QOS

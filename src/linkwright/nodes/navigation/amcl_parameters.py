@@ -6,9 +6,9 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from linkwright.graph import Node
-from linkwright.navigation.localization.models import MODELS, BeamSkipping, LaserSettings
-from linkwright.navigation.localization.motion import MotionModel, Noise, Pose, differential, omnidirectional
+from linkwright.navigation.localization.motion_models import MotionModel, Noise, Pose, differential, omnidirectional
 from linkwright.navigation.localization.particle_filter import FilterSettings
+from linkwright.navigation.localization.sensor_models import MODELS, BeamSkipping, LaserSettings
 from linkwright.nodes.settings import bad_value
 
 _DEFAULTS: dict[str, Any] = {

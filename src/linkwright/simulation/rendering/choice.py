@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 
-from linkwright.simulation.rendering.casting import Caster, EmbreeCaster, MujocoCaster
 from linkwright.simulation.rendering.opengl import BACKENDS, OpenGlRenderer
-from linkwright.simulation.rendering.rays import RayRenderer
+from linkwright.simulation.rendering.ray_casters import Caster, EmbreeCaster, MujocoCaster
+from linkwright.simulation.rendering.ray_renderer import RayRenderer
 from linkwright.simulation.rendering.renderer import Renderer
 from linkwright.simulation.simulation import Simulation
 

@@ -16,8 +16,8 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import rotation_matrix
 from linkwright.sdf.sensors import Lidar, Sweep
-from linkwright.simulation.casting import GROUPS, cast
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.ray_casting import GROUPS, cast
 from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
 from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of, parts_of
 from linkwright.simulation.sensors.noise import NoiseSource

@@ -15,7 +15,7 @@ from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World, physics_of
 from linkwright.simulation.scene.compiling import count_links
 from linkwright.simulation.scene.scene import SceneModel
-from linkwright.simulation.server.carrying import Motion
+from linkwright.simulation.server.motion import Motion
 from linkwright.simulation.simulation import Simulation
 
 

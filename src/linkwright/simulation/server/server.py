@@ -34,9 +34,9 @@ from linkwright.simulation.plugins.registry import (
 )
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.scene.scene import SceneModel
-from linkwright.simulation.server.carrying import motion_of, resume
 from linkwright.simulation.server.changes import Coming, changes_to, check, come_into, surroundings
-from linkwright.simulation.server.standing import stand_up, touches_nothing
+from linkwright.simulation.server.ground_contact import stand_up, touches_nothing
+from linkwright.simulation.server.motion import motion_of, resume
 from linkwright.simulation.server.unsimulated import unsimulated, unsimulated_in
 from linkwright.simulation.simulation import Simulation
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from linkwright.descriptions.worlds import examine_world
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, joined, phrase
 from linkwright.packages import PackageFinder
-from linkwright.sdf.crowds import has_more_links
+from linkwright.sdf.link_counts import has_more_links
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
 from linkwright.simulation.scene.compiling import MOST_LINKS, count_links, fewer_links

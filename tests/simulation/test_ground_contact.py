@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.simulation.server.standing import stand_up, touches_nothing
+from linkwright.simulation.server.ground_contact import stand_up, touches_nothing
 from tests.simulation.worlds import GROUND, box, model, simulated
 
 PLATE = (

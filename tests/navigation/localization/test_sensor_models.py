@@ -11,8 +11,8 @@ from linkwright.geometry.single import IDENTITY, Transform, quaternion_from_rpy
 from linkwright.messages import get_message
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
 from linkwright.navigation.localization.beams import Beams, beams_of_scan
-from linkwright.navigation.localization.models import MODELS, BeamSkipping, LaserSettings, MapLikelihoods
-from linkwright.navigation.localization.motion import MotionModel, Noise, differential, omnidirectional
+from linkwright.navigation.localization.motion_models import MotionModel, Noise, differential, omnidirectional
+from linkwright.navigation.localization.sensor_models import MODELS, BeamSkipping, LaserSettings, MapLikelihoods
 
 _QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
 

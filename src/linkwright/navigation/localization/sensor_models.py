@@ -15,7 +15,7 @@ from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, Grid
 from linkwright.navigation.grids.rays import ranges
 from linkwright.navigation.localization.beams import Beams
-from linkwright.navigation.localization.motion import Poses
+from linkwright.navigation.localization.motion_models import Poses
 
 Likelihoods = NDArray[np.float64]
 MODELS = ("likelihood_field", "likelihood_field_prob", "beam")

@@ -3,7 +3,7 @@
 import pytest
 
 from linkwright.cli import main
-from linkwright.sdf.crowds import has_more_links
+from linkwright.sdf.link_counts import has_more_links
 
 MOST = 1000
 LINK = '<model name="m"><link name="l"/></model>'

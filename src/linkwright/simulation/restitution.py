@@ -24,7 +24,7 @@ _ROUNDS = 50
 """How often impulses are fitted to each other: a box that lands flat has four."""
 
 
-class Bouncing:
+class Stepper:
     """Makes the time steps of a model, with bounces.
 
     Both shapes that touch must have a coefficient, and that of the pair is their product, as in gz. It bounces above

@@ -9,8 +9,8 @@ import numpy as np
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import Array
-from linkwright.simulation.casting import GROUPS
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.ray_casting import GROUPS
 from linkwright.simulation.rendering.movable import MovableGeoms, View, pixels_towards
 from linkwright.simulation.rendering.triangles import Mesh, is_endless, triangles_of
 from linkwright.simulation.scene.bodies import VISUAL_GROUP

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from linkwright.simulation.casting import GROUPS, cast
+from linkwright.simulation.ray_casting import GROUPS, cast
 from tests.simulation.worlds import simulated
 
 
