@@ -82,7 +82,7 @@ function colorsOf({ colors }: GridSurface): Uint8Array {
 }
 
 /** Two triangles between four cells that are there, one between three of them. */
-export function trianglesOf(content: GridSurface): number[] {
+function trianglesOf(content: GridSurface): number[] {
   const { rows, columns } = content;
   const result: number[] = [];
   for (let row = 0; row + 1 < rows; row++) {

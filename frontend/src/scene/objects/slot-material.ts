@@ -3,7 +3,7 @@ import { AMBIENT } from "../light";
 
 /** Texels of a slot: three rows of the matrix, then grey, alpha and colour. */
 export const TEXELS_PER_SLOT = 4;
-export const SLOTS_PER_ROW = 64;
+const SLOTS_PER_ROW = 64;
 
 const READING = /* glsl */ `
   attribute float slot;

@@ -131,10 +131,6 @@ export class Modelling {
     return more.length === 0 && thing !== undefined && thing.shape !== null;
   }
 
-  get canPaste(): boolean {
-    return this.clipboard.some((name) => this.find(name));
-  }
-
   find(name: string): WorldThing | null {
     return this.told.things.find((thing) => thing.name === name) ?? null;
   }

@@ -48,7 +48,7 @@ export function wallBetween(a: Place, b: Place): Placement | null {
 }
 
 /** How high the origin of a shape is that stands on the ground, m. */
-export function restingHeight(shape: Shape, size: readonly number[]): number {
+function restingHeight(shape: Shape, size: readonly number[]): number {
   const [first = 0, second = 0, third = 0] = size;
   if (shape === "sphere") return first;
   return (shape === "cylinder" ? second : third) / 2;
