@@ -8,7 +8,7 @@ import type { Camera } from "./state/views/camera";
 import { shortName } from "./state/views/catalog";
 import { number, vector } from "./state/views/view-controller";
 
-/** What tests and curious users read as `window.linkwright`; every value is a copy made when it is read. */
+/** The value of `window.linkwright`, for tests and curious users; each property is a copy made when it is read. */
 interface Inspection {
   /** The robot, its meshes and its first transforms were drawn. */
   readonly ready: boolean;

@@ -1,4 +1,4 @@
-/** What the page remembers. */
+/** The storage of the page's settings. */
 export type TextStorage = Pick<Storage, "getItem" | "setItem">;
 
 export interface BrowserStorage extends TextStorage {
@@ -8,8 +8,8 @@ export interface BrowserStorage extends TextStorage {
 }
 
 /**
- * What the browser keeps from visit to visit, or with `sessionStorage` as long as a tab is open; where there is none, or
- * the user forbids it, what lasts as long as the page.
+ * The browser's storage from visit to visit, or with `sessionStorage` as long as a tab is open; where there is none, or
+ * the user forbids it, one that lasts as long as the page.
  */
 export function browserStorage(which: "localStorage" | "sessionStorage" = "localStorage"): BrowserStorage {
   try {

@@ -53,7 +53,7 @@ export class Connection {
     });
   }
 
-  /** How many messages were taken in since the socket was opened. */
+  /** The number of messages received since the socket was opened. */
   get received(): number {
     return this.receivedCount;
   }
@@ -147,7 +147,7 @@ export class Connection {
     this.retryMs = Math.min(this.retryMs * 1.6, LONGEST_RETRY_MS);
   }
 
-  /** Where the socket is, with the token. */
+  /** The address of the socket, with the token. */
   private get address(): URL {
     const url = new URL(this.url);
     if (this.shown !== null) url.searchParams.set("token", this.shown);
@@ -186,8 +186,8 @@ export class Connection {
 }
 
 /**
- * Where the server's WebSocket is for a page at `page`; `own` is by what the page names displays of its own, `language`
- * what it is told things in.
+ * The address of the WebSocket for a page at `page`; `own` is the name of its own displays, `language` that of its
+ * texts.
  */
 export function socketUrl(page: string, own: string | null = null, language: string | null = null): string {
   const url = new URL("ws", page);

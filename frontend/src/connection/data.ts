@@ -3,10 +3,10 @@ import { DATA_KIND, type DataContent } from "../protocol";
 const HEADER_BYTES = 16;
 const ALIGNMENT = 8;
 
-/** What a display draws of the messages it took: one binary frame. */
+/** The content that a display draws: one binary frame. */
 export interface DisplayData {
   display: string;
-  /** Which of several contents of the display this is; it replaces the one before with the same key. */
+  /** The key of this content among several of the display; it replaces the one before with the same key. */
   key: string;
   /** The frame that the content is in; empty for the fixed frame. */
   frame: string;

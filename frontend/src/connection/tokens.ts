@@ -3,7 +3,7 @@ import type { BrowserStorage } from "../storage";
 const PARAMETER = "token";
 const KEY = "linkwright.token";
 
-/** Where the page is; `moveTo` changes what the address bar shows and loads nothing. */
+/** The address bar; `moveTo` changes its text and loads nothing. */
 export interface AddressBar {
   readonly href: string;
   moveTo(href: string): void;
@@ -30,7 +30,7 @@ export class Tokens {
     return known[this.refusals % Math.max(1, known.length)] ?? null;
   }
 
-  /** This one was let in: it is kept, and goes from the address bar. */
+  /** Keeps a token that the server accepted, and removes it from the address bar. */
   accepted(token: string): void {
     const { address, storage } = this;
     this.take(token);

@@ -27,7 +27,7 @@ export class Upload {
     private readonly progress: (sent: number) => void,
   ) {}
 
-  /** What the server calls the recording; null where it was cancelled. */
+  /** Uploads a recording and returns the server's name for it; null where it was cancelled. */
   async send(name: string, files: readonly NamedFile[]): Promise<string | null> {
     const announced = { name, files: files.map((each) => ({ name: each.name, size: each.file.size })) };
     this.key = (await this.ask("POST", "recordings", JSON.stringify(announced)))?.key ?? "";
@@ -40,7 +40,7 @@ export class Upload {
     return (await this.ask("POST", `recordings/${this.key}`, null))?.recording ?? null;
   }
 
-  /** What the server calls a recording that it made itself, by the address of its file; null where it was cancelled. */
+  /** Opens a recording of the server's by the address of its file, and returns its name; null where it was cancelled. */
   async show(file: string): Promise<string | null> {
     return (await this.ask("POST", file, null))?.recording ?? null;
   }

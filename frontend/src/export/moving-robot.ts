@@ -54,7 +54,7 @@ export class MovingRobot {
     this.anchor = { row, pose: poses[row]?.clone() ?? new Matrix4() };
   }
 
-  /** Where all frames are for positions of joints, rad or m. */
+  /** The transforms of all frames for positions of joints, rad or m. */
   transforms(positions: Positions): Transforms {
     const poses = this.frames.map(() => new Matrix4());
     for (const row of this.order) {
@@ -74,7 +74,7 @@ export class MovingRobot {
     return { revision: this.table.revision, stamp: 0, poses: numbers, ages: new Float32Array(poses.length) };
   }
 
-  /** Of a joint, be it one that follows another. */
+  /** The position of a joint, be it one that mimics another. */
   position(name: string, positions: Positions): number {
     let [factor, offset, at] = [1, 0, name];
     for (let i = 0; i < MOST_FOLLOWED; i++) {

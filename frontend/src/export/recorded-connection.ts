@@ -97,7 +97,7 @@ function cellFor(diagonal: number): number {
   return 10 ** Math.floor(Math.log10(diagonal * 1.5));
 }
 
-/** Of TF, so that axes are seen beside the links and do not cover them: `ModelSize.marker_scale` there. */
+/** The Marker Scale of TF at which axes are seen beside the links: `ModelSize.marker_scale` of the server. */
 function markerScaleFor(diagonal: number, spacing: number): number {
   const axis = Math.min(Math.max(spacing / 2, diagonal / 40), diagonal / 10);
   return Number((axis / AXIS).toPrecision(2));

@@ -1,6 +1,6 @@
 import type { ServerMessage } from "../protocol";
 
-/** What the server told when the robot was exported; `viewer/features/export/html.py` writes it. */
+/** The messages of the server at the time of the export; `viewer/features/export/html.py` writes them. */
 export interface Recording {
   /** Name and version of the program. */
   program: string;
@@ -8,7 +8,7 @@ export interface Recording {
   display: string;
   /** Whether grid and axes are to have the size of the robot: nobody chose one, and nobody has drawn the robot. */
   awaits_size: boolean;
-  /** From a link's frame to that of its parent, for most links, m; null where that is not known. */
+  /** The usual distance of a link's frame from its parent's, m; null where that is not known. */
   spacing: number | null;
   messages: ServerMessage[];
   /** Binary frames, base64. */

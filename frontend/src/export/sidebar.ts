@@ -13,7 +13,7 @@ import type { Side } from "./views";
 
 const SIDES: readonly Side[] = ["iso", "front", "left", "top"];
 
-/** What the sidebar has the page do. */
+/** The actions of the sidebar. */
 export interface SidebarActions {
   lookFrom(side: Side): void;
   /** Looks at all of what is selected. */
@@ -59,7 +59,7 @@ export class Sidebar {
     );
   }
 
-  /** How two descriptions differ, where two are in the file. */
+  /** The differences of two descriptions, where the file has two. */
   private comparison(): HTMLElement | null {
     const { comparison } = this.session;
     if (comparison.compared === null) return null;

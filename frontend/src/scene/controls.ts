@@ -39,7 +39,7 @@ export class Controls {
     canvas.addEventListener("keydown", (event) => this.keyed(event));
   }
 
-  /** Where the pointer is over the canvas; null while it is elsewhere. */
+  /** The position of the pointer over the canvas; null while it is elsewhere. */
   get place(): { x: number; y: number } | null {
     return this.isOver ? this.last : null;
   }

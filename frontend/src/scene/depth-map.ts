@@ -13,7 +13,7 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-/** How far the nearest surface is at each pixel of the scene: what is behind it is hidden. */
+/** The distance of the nearest surface at each pixel of the scene: anything behind it is hidden. */
 export class DepthMap {
   private readonly pixels: Uint8Array;
   private readonly size: Vector2;
@@ -64,7 +64,7 @@ export class DepthMap {
     return false;
   }
 
-  /** From the eye to the nearest surface at a pixel, m along the line of sight. */
+  /** The distance from the eye to the nearest surface at a pixel, m along the line of sight. */
   private surface(column: number, row: number): number {
     if (column < 0 || row < 0 || column >= this.size.x || row >= this.size.y) return 0;
     const first = (row * this.size.x + column) * 4;

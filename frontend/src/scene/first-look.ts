@@ -14,7 +14,7 @@ const ROBOTS_SEEN = "robots";
 const AHEAD = 5;
 const NEAREST = 0.5;
 
-/** What of a world is needed to look at it. */
+/** The part of a world that the first look uses. */
 export interface LookedAt {
   readonly hasRobots: boolean;
   extents(): { robots: Box3; world: Box3 };

@@ -10,7 +10,7 @@ const LASTS_MS = 1600;
 /** New meshes may take a moment; the flash waits for a part of its time. */
 const FULL_MS = 600;
 
-/** Lets the links that an edit changed, or that its joints moved, light up for a moment. */
+/** Lights up the links that an edit changed, or whose joints it moved, for a moment. */
 export class Flash {
   private readonly outline: Outline;
   private links: { display: string; names: ReadonlySet<string>; startMs: number }[] = [];

@@ -13,7 +13,7 @@ const TIMELY_FRAMES = 300;
 /** After a coarse frame, how long nothing must move until a fine one is drawn. */
 const STILL_AFTER_MS = 250;
 
-/** How finely a frame is drawn: with smooth edges or without, and on what share of the canvas's pixels along a side. */
+/** The detail of a frame: with antialiasing or without, and the share of the canvas's pixels along a side. */
 export interface Detail {
   /** Of a moving picture that the machine is slow at: what nobody sees may be left out. */
   readonly moving: boolean;
@@ -66,7 +66,7 @@ export class FrameLoop {
     return this.requestedAt === null && this.besides.size === 0 && this.lastIsFine;
   }
 
-  /** Whoever draws is known to be slow: moving pictures are coarse from the first one on. */
+  /** Draws moving pictures coarsely from the first one on, as the renderer is known to be slow. */
   expectSlow(): void {
     this.level = Math.max(this.level, 1);
   }

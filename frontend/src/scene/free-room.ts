@@ -39,7 +39,10 @@ export class FreeRoom {
     return { width: width - right, height: height - above };
   }
 
-  /** What the camera looks at goes to the middle of what nothing at the right lies over, as far as robots stay on the canvas. */
+  /**
+   * Moves the focal point to the middle of the part that nothing covers at the right, as far as robots stay on the
+   * canvas.
+   */
   makeRoom(): void {
     const { viewport } = this;
     const before = viewport.aside;
@@ -61,7 +64,7 @@ export class FreeRoom {
     if (viewport.below !== before) this.invalidate();
   }
 
-  /** How far from the left edge of the canvas robots reach, pixels: 0 without one. */
+  /** The distance from the left edge of the canvas that robots reach, pixels: 0 without one. */
   get robotsReach(): number {
     return this.reach()?.right ?? 0;
   }

@@ -34,7 +34,7 @@ export class JointDrag {
     private readonly session: Session,
   ) {}
 
-  /** What is done to the joints by an event of the mouse; false for one that the tool in hand should have. */
+  /** Handles an event of the mouse; false for one that the current tool should have. */
   pointer(event: ToolEvent): boolean {
     if (this.hold) {
       if (event.type === "move" && event.left) this.pull(this.hold, event);
@@ -53,7 +53,7 @@ export class JointDrag {
     return false;
   }
 
-  /** Where joints turn is part of the description, which is not kept for those who never drag. */
+  /** Asks for the joints' axes, which are part of the description: that is not kept for pages that never drag. */
   private askForAxes(): void {
     if (!this.isHolding) this.session.description.hold();
     this.isHolding = true;
@@ -118,7 +118,7 @@ export class JointDrag {
   }
 }
 
-/** How far a point must slide along an axis to come closest to a ray, m; 0 when they are parallel. */
+/** The distance that a point must slide along an axis to come closest to a ray, m; 0 when they are parallel. */
 export function slideTowards(ray: Ray, axis: Vector3, grabbed: Vector3): number {
   const between = grabbed.clone().sub(ray.origin);
   const cosine = axis.dot(ray.direction);

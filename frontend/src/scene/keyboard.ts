@@ -4,7 +4,7 @@ import type { Stage } from "./stage";
 import { TOOLS } from "./tools/catalog";
 import type { Toolbox } from "./tools/toolbox";
 
-/** Where a letter is text, or chooses among things. */
+/** A selector of the elements in which a letter is text, or chooses among entries. */
 export const TAKES_LETTERS = "input:not([type=checkbox]):not([type=range]):not([type=button]), textarea, select, [contenteditable], [role=menu], [role=listbox], dialog";
 
 /** RViz's keys for tools and views: they work wherever no text is being typed. */

@@ -21,8 +21,8 @@ import { filmic } from "./filmic-tone";
 import type { Lighting } from "./light";
 
 /**
- * How a surface reflects lamps: roughness and metalness from 0 to 1, and images of these and of its normals; what it gives
- * off by itself, and where (red) light from all sides does not reach it.
+ * The reflection of a surface: roughness and metalness from 0 to 1, maps of these and of its normals, its emission, and
+ * its ambient occlusion (red).
  */
 export interface Surface {
   readonly roughness: number;
@@ -42,7 +42,7 @@ export function mapsOf(surface: Surface | null | undefined): (Texture | null)[] 
   return [normalMap, roughnessMap, metalnessMap, emissiveMap, aoMap];
 }
 
-/** What a surface looks like; equal looks share one material. */
+/** The look of a surface; equal looks share one material. */
 export interface Look {
   color: readonly [number, number, number];
   alpha: number;
@@ -60,14 +60,14 @@ export const RVIZ_RED = [1, 0, 0] as const;
 /** Below this alpha RViz blends and stops writing depth. */
 export const OPAQUE_FROM = 0.9998;
 
-/** Lets what is behind a surface be seen, or no more. */
+/** Makes a surface translucent, or opaque again. */
 export function blend(material: Material, seeThrough: boolean): void {
   material.transparent = seeThrough;
   material.depthWrite = !seeThrough;
   material.needsUpdate = true;
 }
 
-/** What lets lines and marks in the plane of a surface be seen on it. */
+/** The polygon offset that keeps lines and marks in the plane of a surface visible. */
 export function behind(isBehind: boolean): { polygonOffset: boolean; polygonOffsetFactor: number; polygonOffsetUnits: number } {
   return { polygonOffset: isBehind, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
 }
@@ -147,7 +147,7 @@ function reflecting(style: MeshStandardMaterialParameters, surface: Surface): Me
 
 let theRoom: DataTexture | null = null;
 
-/** What metal reflects besides lamps, or it would be black: bright above and dark below, the same from all sides. */
+/** The environment map that metal reflects besides lamps, or it would be black: bright above and dark below. */
 function room(): DataTexture {
   if (theRoom) return theRoom;
   const greys = [90, 90, 110, 150, 190, 215, 230, 240];

@@ -26,13 +26,13 @@ export class Picker {
     private readonly drawings: () => Iterable<readonly [string, Drawing]>,
   ) {}
 
-  /** What draws a display that is on. */
+  /** The drawing of a display that is on. */
   drawing(display: string): Drawing | undefined {
     for (const [id, drawing] of this.drawings()) if (id === display) return drawing;
     return undefined;
   }
 
-  /** From the eye through a place. */
+  /** The ray from the eye through a place. */
   rayAt(x: number, y: number): Raycaster {
     this.viewport.aim(this.session.view);
     const ray = new Raycaster();
@@ -61,7 +61,7 @@ export class Picker {
     return found && [found.hit.point.x, found.hit.point.y, found.hit.point.z];
   }
 
-  /** Where the plane z = 0 of the fixed frame is seen at a place. */
+  /** The point of the plane z = 0 of the fixed frame at a place. */
   groundAt(x: number, y: number): Vector | null {
     const { origin, direction } = this.rayAt(x, y).ray;
     const distance = -origin.z / direction.z;
@@ -90,7 +90,7 @@ export class Picker {
     this.session.selection.pick(items, mode);
   }
 
-  /** What the Selection panel shows of a thing; null when it is drawn no more. */
+  /** The rows of the Selection panel for a thing; null when it is not drawn any more. */
   describe(item: SelectedItem): Described | null {
     for (const [display, drawing] of this.drawings()) {
       if (display === item.display) return drawing.describe?.(item.key) ?? null;

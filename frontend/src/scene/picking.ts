@@ -45,7 +45,7 @@ export interface ScenePointer {
   /** What of the drawing the ray meets; while something is held, what it met when it was taken. */
   readonly hit: Hit | null;
   setCursor(cursor: string): void;
-  /** What the status line says. */
+  /** Sets the text of the status line. */
   setHint(hint: string): void;
 }
 

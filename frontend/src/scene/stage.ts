@@ -143,7 +143,7 @@ export class Stage {
     if (box) this.session.view.fit(box, this.room.take());
   }
 
-  /** Tells the drawings whether their things can be moved now. */
+  /** Passes on to the drawings whether their markers can be moved now. */
   setInteraction(interaction: Interaction): void {
     this.interaction = interaction;
     for (const { drawing } of this.drawings.values()) drawing.interactionChanged?.(interaction);

@@ -37,7 +37,7 @@ export function studioSky(): HemisphereLight {
   return sky;
 }
 
-/** Lets a light cast shadows with soft edges. */
+/** Makes a light cast shadows with soft edges. */
 export function castShadows(light: DirectionalLight | SpotLight): void {
   light.castShadow = true;
   light.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
@@ -55,7 +55,7 @@ export function aimSun(light: DirectionalLight, direction: Vector3, middle: Vect
   camera.updateProjectionMatrix();
 }
 
-/** Lets surfaces cast and receive shadows, or no more. */
+/** Makes surfaces cast and receive shadows, or not. */
 export function shade(root: Object3D, shadowed: boolean): void {
   root.traverse((object) => {
     if (object instanceof Mesh) object.castShadow = object.receiveShadow = shadowed;

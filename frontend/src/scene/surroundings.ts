@@ -1,7 +1,7 @@
 import { Color, DataTexture, EquirectangularReflectionMapping, Fog, FogExp2, LinearFilter, type Scene } from "three";
 import type { FogScene } from "../protocol";
 
-/** What is around a world: a colour, or a sky, and fog. */
+/** The background of a world: a colour, or a sky, and fog. */
 export interface Surroundings {
   readonly background: string | null;
   /** How bright the sky is, from 0 to 1; null for none. */
@@ -11,7 +11,7 @@ export interface Surroundings {
   readonly backdrop?: string | null;
 }
 
-/** How a world or a studio lights the scene by itself: whether with shadows, and what is around it. */
+/** The lighting of a world or a studio: whether with shadows, and its background. */
 export interface OwnLight extends Surroundings {
   readonly shadows: boolean;
 }

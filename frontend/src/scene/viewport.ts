@@ -86,7 +86,7 @@ export class Viewport {
     return this.software === null && !this.foundSlow;
   }
 
-  /** What draws with the processor, as it calls itself; null where a graphics card draws. */
+  /** The name of a renderer that draws with the processor; null where a graphics card draws. */
   get software(): string | null {
     this.drawnBy ??= nameOfRenderer(this.renderer.getContext());
     return SOFTWARE.test(this.drawnBy) ? (/SwiftShader|llvmpipe|softpipe|Basic Render/i.exec(this.drawnBy)?.[0] ?? this.drawnBy) : null;
@@ -127,12 +127,12 @@ export class Viewport {
     this.fit();
   }
 
-  /** Of the canvas, pixels. */
+  /** The size of the canvas, pixels. */
   get size(): ViewSize {
     return { width: Math.max(1, this.canvas.clientWidth), height: Math.max(1, this.canvas.clientHeight) };
   }
 
-  /** What the next frame is drawn for: the camera, and the height of the picture in pixels of its own. */
+  /** The camera of the next frame, and the height of the picture in its own pixels. */
   get drawn(): { camera: PerspectiveCamera | OrthographicCamera; height: number } {
     return { camera: this.inUse, height: this.canvas.height };
   }
@@ -195,7 +195,7 @@ function makeRenderer(): WebGLRenderer {
   return new WebGLRenderer(context ? { ...options, canvas, context } : options);
 }
 
-/** What draws, as the graphics driver calls itself; empty where the browser does not say. */
+/** The name of the renderer, as the graphics driver gives it; empty where the browser does not tell. */
 function nameOfRenderer(gl: WebGLRenderingContext | WebGL2RenderingContext): string {
   const said = gl.getExtension("WEBGL_debug_renderer_info");
   return String(gl.getParameter(said ? said.UNMASKED_RENDERER_WEBGL : gl.RENDERER));

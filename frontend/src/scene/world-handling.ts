@@ -34,8 +34,8 @@ interface Hold {
 }
 
 /**
- * What the mouse does to the models of a simulated world: Ctrl moves one along the ground, Ctrl and Shift pull it by a
- * force, and a click with the right button opens its menu.
+ * Handles the mouse on models of a simulated world: Ctrl moves one along the ground, Ctrl and Shift pull it by a force,
+ * and a click with the right button opens its menu.
  */
 export class WorldHandling {
   private hold: Hold | null = null;

@@ -88,7 +88,7 @@ export class WorldLights {
     }
   }
 
-  /** Lets surfaces cast and receive shadows, or no more. */
+  /** Makes surfaces cast and receive shadows, or not. */
   shade(root: Object3D): void {
     shade(root, this.shadowed);
   }
@@ -159,7 +159,7 @@ export class WorldLights {
   }
 }
 
-/** How strong a light is at the distance at which it is seen most; nearer and farther it is the same up to its range. */
+/** The intensity of a light at the distance at which it is seen most; nearer and farther it is the same up to its range. */
 function strength({ kind, range, fading }: LightScene): number {
   if (kind === "directional") return 1;
   const [constant = 1, linear = 0, quadratic = 0] = fading;

@@ -9,7 +9,7 @@ import { FileDialog } from "./file-dialog";
 const LARGEST = 800_000;
 const CONTENT_TYPE = "application/yaml";
 
-/** What the user does with the configuration file, with the questions that keep work from being lost. */
+/** The commands on the configuration file, with the questions that keep work from being lost. */
 export class FileCommands {
   /** What was asked for, to be asked for again when the user says that changes may be lost. */
   private pending: ((discard: boolean) => void) | null = null;

@@ -1,7 +1,7 @@
 import { h } from "../dom";
 import { strings } from "../strings";
 
-/** What stands in the place of the scene where it cannot be drawn. */
+/** The notice in place of the scene where it cannot be drawn. */
 export function noWebgl(): HTMLElement {
   const { noWebgl, noWebglHelp } = strings.scene;
   return h("p", { class: "no-webgl", role: "alert" }, h("strong", {}, noWebgl), h("span", {}, noWebglHelp));

@@ -1,6 +1,6 @@
 import type { NamedFile } from "../connection/upload";
 
-/** What of a recording is dropped: the name of its file or folder, and its files. */
+/** A dropped recording: the name of its file or folder, and its files. */
 export interface Dropped {
   name: string;
   files: NamedFile[];

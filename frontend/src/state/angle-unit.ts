@@ -6,7 +6,7 @@ export type AngleUnit = "rad" | "deg";
 const KEY = "linkwright.angle-unit";
 const DEGREES = 180 / Math.PI;
 
-/** In which unit angles are shown and typed; remembered by the browser. */
+/** The unit in which angles are shown and typed; remembered by the browser. */
 export class AngleUnits {
   readonly changed = new Signal();
   private unit: AngleUnit;
@@ -25,7 +25,7 @@ export class AngleUnits {
     this.changed.emit();
   }
 
-  /** What a position of a joint of this kind is multiplied with to be shown: 1 for metres. */
+  /** The factor from a joint's position to the number shown: 1 for metres. */
   scale(kind: string): number {
     return kind !== "prismatic" && this.unit === "deg" ? DEGREES : 1;
   }

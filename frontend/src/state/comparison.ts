@@ -13,7 +13,7 @@ export const MARK_COLORS: Readonly<Record<MarkName, string>> = {
   old: "#c4ccd6",
 };
 
-/** How a link is drawn instead of as its description says. */
+/** The look of a link in place of its description's. */
 export interface Instead {
   /** r g b, from 0 to 1 */
   readonly color: readonly [number, number, number];
@@ -49,7 +49,7 @@ export class ComparisonState {
     this.changed.emit();
   }
 
-  /** How a display draws a link; null for as it is described. */
+  /** The look of a link in a display; null for that of its description. */
   instead(display: string, link: string): Instead | null {
     const { told } = this;
     if (!told || display === "") return null;
@@ -104,7 +104,7 @@ export function grouped(items: readonly ComparedItem[]): DifferenceGroup[] {
   return groups.map((each) => ({ items: each, kind: each.length === 1 ? (each[0]?.kind ?? "changed") : "changed" }));
 }
 
-/** Which marks there are among the links, in the order of a legend. */
+/** The marks among the links, in the order of a legend. */
 export function marksIn(robots: readonly ComparedRobot[]): MarkName[] {
   const found = new Set<MarkName>(robots.flatMap(({ marks }) => Object.values(marks)));
   return [...(["added", "changed", "removed"] as const).filter((mark) => found.has(mark)), "old"];

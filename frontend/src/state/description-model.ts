@@ -7,7 +7,7 @@ export interface ElementName {
   readonly name: string;
 }
 
-/** What the expanded text is called among the files. */
+/** The name of the expanded text among the files. */
 export const EXPANDED = "";
 
 /** A description as a tree, with places. */

@@ -3,7 +3,7 @@ import type { DescriptionChanged, InertiaFinding, InertiaFindings } from "../pro
 import { Signal } from "../signal";
 import { DescriptionModel } from "./description-model";
 
-/** What an edit on disk changed. */
+/** The changes by an edit on disk. */
 export interface Change {
   readonly display: string;
   readonly links: readonly string[];
@@ -11,7 +11,7 @@ export interface Change {
 }
 
 /**
- * What stands behind the robots. The server tells only when it is another; the rest is asked for as long as somebody
+ * The descriptions of the robots. The server tells only when it is another; the rest is asked for as long as somebody
  * holds it, and texts when they are read.
  */
 export class DescriptionState {

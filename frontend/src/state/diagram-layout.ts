@@ -63,7 +63,7 @@ export function layOut(model: DescriptionModel, origins: boolean, measure: (text
   return { nodes, width: tree.width, height: tree.height };
 }
 
-/** From the leaves up, without recursion: descriptions may be chains of thousands. */
+/** Builds the tree from the leaves up, without recursion: descriptions may be chains of thousands. */
 function build(
   model: DescriptionModel,
   origins: boolean,
@@ -89,7 +89,7 @@ function build(
   return made.get(model.description.root) ?? size("link", model.description.root, [], []);
 }
 
-/** As urdf_to_graphviz writes it: metres, and radians that came through the quaternion. */
+/** The text of an origin as urdf_to_graphviz writes it: metres, and radians that came through the quaternion. */
 function originText({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
   return [`xyz: ${xyz.map(general).join(" ")}`, `rpy: ${rpy.map(general).join(" ")}`];
 }

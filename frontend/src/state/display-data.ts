@@ -18,7 +18,7 @@ export class DisplayDataStore {
     });
   }
 
-  /** What a display draws now. */
+  /** The contents of a display. */
   of(display: string): Iterable<DisplayData> {
     return this.contents.get(display)?.values() ?? [];
   }

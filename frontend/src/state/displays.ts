@@ -32,7 +32,7 @@ export class DisplayState {
     this.update(display);
   }
 
-  /** What of its status is no "ok", the worst first; nothing while it is off. */
+  /** The status rows that are not "ok", the worst first; none while it is off. */
   get troubles(): StatusRow[] {
     return this.enabled ? troublesOf(this.status) : [];
   }
@@ -155,7 +155,7 @@ export class DisplaysState {
     return this.displays.filter((display) => display.group === group);
   }
 
-  /** How many displays that are on have an error; the global status counts as one. */
+  /** The number of enabled displays with an error; the global status counts as one. */
   get failing(): number {
     const all = [troublesOf(this.globalStatus), ...this.displays.map((each) => each.troubles)];
     return all.filter(([worst]) => worst?.level === "error").length;

@@ -29,7 +29,7 @@ export class ElementFocus {
     return selected && { display: selected.display, kind: "link", name: selected.link.name };
   }
 
-  /** What the pointer is over in a list or tree. */
+  /** The element under the pointer in a list or tree. */
   get hovered(): ElementName | null {
     return this.hover;
   }

@@ -64,7 +64,7 @@ export class FrameStore {
     return row >= 0 && !Number.isNaN(this.poses[row * 7] ?? NaN);
   }
 
-  /** How far apart two frames are: the largest difference of their coordinates, m, and parts of quaternions. */
+  /** The distance of two frames: the largest difference of their coordinates, m, and components of quaternions. */
   apart(one: string, other: string): number {
     const [a, b] = [this.row(one), this.row(other)];
     if (!this.has(a) || !this.has(b)) return Infinity;

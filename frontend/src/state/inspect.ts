@@ -3,7 +3,7 @@ import type { TextStorage } from "../storage";
 
 const KEY = "linkwright.inspect";
 
-/** What is drawn of a robot that cannot be seen. */
+/** The invisible parts of a robot that are drawn. */
 export interface Inspected {
   /** Centres of mass of the links and of the whole robot. */
   centers: boolean;
@@ -28,7 +28,7 @@ const NOTHING: Inspected = {
   frames: false,
 };
 
-/** What the user wants to see of the invisible; remembered by the browser, for it is no part of an .rviz file. */
+/** The user's choice of invisible parts to draw; remembered by the browser, for it is no part of an .rviz file. */
 export class InspectState {
   readonly changed = new Signal();
   private shown: Inspected;
@@ -50,7 +50,7 @@ export class InspectState {
     return Object.values(this.shown).some(Boolean);
   }
 
-  /** How large marks are drawn; 1 suits the robot. */
+  /** The scale of marks; 1 suits the robot. */
   get scale(): number {
     return this.size;
   }

@@ -25,7 +25,7 @@ interface Words {
   readonly table: { readonly damping: (value: string) => string; readonly friction: (value: string) => string };
 }
 
-/** What the cells of a joint's row say. */
+/** The texts of a joint's row. */
 export function cells(joint: JointDetails, angles: AngleUnits, words: Words): Record<Column, string> {
   const scale = angles.scale(joint.kind);
   const unit = joint.kind === "prismatic" ? "m" : angles.current;

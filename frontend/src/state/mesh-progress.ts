@@ -5,7 +5,7 @@ const TOLD_AFTER_MS = 500;
 /** Reading holds the page up, so that files from here on are told before it begins. */
 const LARGE_BYTES = 4_000_000;
 
-/** How far the loading of one mesh file is. */
+/** The progress of loading a mesh file. */
 export interface MeshLoad {
   /** The file's, without folders. */
   readonly name: string;
@@ -20,7 +20,7 @@ export class MeshProgress {
   readonly changed = new Signal();
   private readonly shown = new Set<MeshLoad>();
 
-  /** Those that are to be told, in the order of their beginnings. */
+  /** The loads to be shown, in the order of their beginnings. */
   get loads(): readonly Readonly<MeshLoad>[] {
     return [...this.shown];
   }
@@ -55,7 +55,7 @@ export class MeshProgress {
   }
 }
 
-/** What the loader of one file tells. */
+/** The reports of a file's loader. */
 export interface LoadReport {
   /** So many bytes are there. */
   came(bytes: number, total: number | null): void;

@@ -10,7 +10,7 @@ export function composed(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
   return [a[0] + x, a[1] + y, a[2] + z, ...product(turnOf(a), turnOf(b))];
 }
 
-/** Where `b` is as seen from `a`, both given in one frame. */
+/** The pose of `b` in `a`, both given in one frame. */
 export function relative(a: PoseNumbers, b: PoseNumbers): PoseNumbers {
   const [x, y, z, w] = turnOf(a);
   const back: Turn = [-x, -y, -z, w];

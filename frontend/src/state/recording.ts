@@ -2,7 +2,7 @@ import type { Connection } from "../connection/connection";
 import type { RecordedFile, RecordingState } from "../protocol";
 import { Signal } from "../signal";
 
-/** What the server records for pages: one recording at a time, which all of them see. */
+/** The recording that the server makes for pages: one at a time, which all of them see. */
 export class RecordingControl {
   readonly changed = new Signal();
   /** What this page had recorded or saved is a file now. */
@@ -37,7 +37,7 @@ export class RecordingControl {
     return this.told?.path ?? "";
   }
 
-  /** How long it is, s. */
+  /** The length of the recording, s. */
   get length(): number {
     return this.told?.length ?? 0;
   }
@@ -56,7 +56,7 @@ export class RecordingControl {
     return this.told?.problem ?? "";
   }
 
-  /** Those made since the program runs, the last first. */
+  /** The recordings made since the program runs, the last first. */
   get files(): readonly RecordedFile[] {
     return this.told?.files ?? [];
   }

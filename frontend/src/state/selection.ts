@@ -13,10 +13,10 @@ export interface SelectedLink {
   link: LinkScene;
 }
 
-/** How a selection changes what was selected before. */
+/** The effect of a selection on the one before. */
 export type SelectionMode = "replace" | "add" | "remove";
 
-/** What is selected in the scene and in the tree; links outlive a reload of the robot that still has them. */
+/** The selection in the scene and in the tree; links outlive a reload of the robot that still has them. */
 export class SelectionState {
   readonly changed = new Signal<SelectedLink | null>();
   private current: readonly SelectedItem[] = [];

@@ -7,7 +7,7 @@ const COUNTED_MS = 3000;
 /** A WebP of all pixels that is better than this looks as the image itself. */
 const NOTICED_QUALITY = 70;
 
-/** How a display's content was made smaller. */
+/** The way in which a display's content was reduced. */
 export type Reduction =
   | { kind: "points"; step: number }
   | { kind: "image"; columns: number; rows: number; width: number; height: number; quality: number };
@@ -19,7 +19,7 @@ export interface Reduced {
   rate: number | null;
 }
 
-/** What the server sends in less detail because the line to this page is slow. */
+/** The contents that the server sends in less detail because the line to this page is slow. */
 export class SlowLine {
   readonly changed = new Signal();
   private readonly known = new Map<string, { reduction: Reduction; times: number[] }>();

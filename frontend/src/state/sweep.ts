@@ -21,7 +21,7 @@ export class Sweep {
     this.joints = controls.filter((joint) => joint.mimic === null);
   }
 
-  /** Where the joints are after so many seconds at speed 1; those that do not move now stand where they did at the start. */
+  /** The positions after so many seconds at speed 1; joints that do not move now keep those of the start. */
   positionsAt(seconds: number): Record<string, number> {
     const round = seconds / ROUND_S;
     const moving = Math.floor(round) % Math.max(1, this.joints.length);
@@ -35,7 +35,7 @@ export class Sweep {
   }
 }
 
-/** From `start` to the upper limit, to the lower one and back, evenly; `part` of the way, 0 to 1. */
+/** The position on the way from `start` to the upper limit, to the lower one and back; `part` of the way, 0 to 1. */
 export function roundTrip({ lower, upper }: Pick<JointControl, "lower" | "upper">, start: number, part: number): number {
   const range = upper - lower;
   const gone = part * 2 * range;

@@ -46,7 +46,7 @@ export class TimeControlState {
     });
   }
 
-  /** What the clocks show now; null before the server told. */
+  /** The times of the clocks; null before the server sent any. */
   times(): Times | null {
     if (!this.clock) return null;
     const { ros, ros_start, wall, wall_start, running } = this.clock;

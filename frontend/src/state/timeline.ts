@@ -45,7 +45,7 @@ export class TimelineState {
     connection.on("playhead", (playhead) => this.take(playhead));
   }
 
-  /** What is played; null where nothing is. */
+  /** The timeline that is shown; null where there is none. */
   get timeline(): Timeline | null {
     return this.recording;
   }
@@ -55,7 +55,7 @@ export class TimelineState {
     return this.playhead?.live ?? false;
   }
 
-  /** What is kept of the last minutes; null for a recording. */
+  /** The kept part of the last minutes; null for a recording. */
   get kept(): Kept | null {
     return this.keptNow;
   }

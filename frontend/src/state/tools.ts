@@ -43,12 +43,12 @@ export class ToolsState {
     return this.inHand;
   }
 
-  /** What is in hand when no other is: the first. */
+  /** The default tool: the first. */
   get default(): ToolState | null {
     return this.tools.find((tool) => tool.supported) ?? null;
   }
 
-  /** What the status line says the mouse does. */
+  /** The text of the status line about the mouse. */
   get hint(): string {
     return this.text;
   }

@@ -90,7 +90,7 @@ export class ViewState {
     return this.lookedAt !== null && what !== this.lookedAt.what;
   }
 
-  /** Somebody works with what is seen now: the camera stays where it is. */
+  /** Keeps the camera where it is, since somebody works with it. */
   stay(): void {
     this.lookedAt = null;
   }
@@ -108,8 +108,8 @@ export class ViewState {
   }
 
   /**
-   * Tells how large the robots are that a camera is before that nobody has put anywhere, and how high the ground is that
-   * they stand on, once all of them are there.
+   * Reports the size of the robots, while nobody has moved the camera, and the height of the ground that they stand on,
+   * once all of them are there.
    */
   measured({ min, max }: Span, ground: number): void {
     if (this.lookedAt === null || this.measuredFor === this.revision) return;

@@ -1,4 +1,4 @@
-/** What a piece of XML text is, for its colour. */
+/** The kind of a piece of XML text, for its colour. */
 type TokenKind = "text" | "tag" | "attribute" | "value" | "expression" | "comment" | "punctuation";
 
 export interface Token {
@@ -6,7 +6,7 @@ export interface Token {
   readonly text: string;
 }
 
-/** What a line begins inside of. */
+/** The construct that a line begins inside of. */
 export type LineState = "text" | "tag" | "comment" | "cdata" | "instruction" | '"' | "'";
 
 /** One way into the parts that go on over line ends, and the way out of each. */
@@ -30,7 +30,7 @@ export function tokenize(line: string, state: LineState): { tokens: Token[]; sta
   return { tokens: scanner.tokens, state: scanner.state };
 }
 
-/** What each line of a text begins inside of. */
+/** The state at the beginning of each line. */
 export function lineStates(lines: readonly string[]): LineState[] {
   let state: LineState = "text";
   return lines.map((line) => {

@@ -5,7 +5,7 @@ import { strings } from "../strings";
 import { TextEditor } from "./text-editor";
 import type { Editor, TreeItem } from "./tree-item";
 
-/** Tells the names to choose from, at once or when they are known. */
+/** Offers the names to choose from, at once or when they are known. */
 export type Offer = (item: TreeItem, show: (names: readonly string[]) => void) => void;
 
 /** The name of a frame or topic: any text, or one of those known from a list. */

@@ -36,7 +36,7 @@ export function clamp(value: number, minimum: number | null, maximum: number | n
   return value;
 }
 
-/** How much an arrow key changes a number: a step of its own size, 1 for whole numbers. */
+/** The step of an arrow key for a number, by its size; 1 for whole numbers. */
 export function stepFor(value: number, whole: boolean): number {
   if (whole) return 1;
   const size = Math.abs(value);

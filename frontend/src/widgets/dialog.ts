@@ -62,7 +62,7 @@ export class Dialog {
     this.element.close();
   }
 
-  /** From the last element Tab goes to the first: the browser would go on to its own buttons, by way of the page. */
+  /** Moves the focus from the last element to the first on Tab: the browser would go on to its own buttons. */
   private keepFocus(event: KeyboardEvent): void {
     const all = this.element.querySelectorAll<HTMLElement>("button, input, select, textarea, [tabindex]");
     const stops = [...all].filter((each) => each.tabIndex >= 0 && !each.matches(":disabled") && each.checkVisibility());
@@ -81,7 +81,7 @@ export class Dialog {
 
 let opened = 0;
 
-/** Says something that the user must know; `lines` are what it is about, one below the other. */
+/** Shows a notice to the user; `lines` are its subjects, one below the other. */
 export function tell(title: string, text: string, lines: readonly string[] = []): void {
   const list = h("ul", { class: "dialog-lines" }, ...lines.map((line) => h("li", {}, line)));
   const content = lines.length > 0 ? [h("p", {}, text), list] : [h("p", {}, text)];

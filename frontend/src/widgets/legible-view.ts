@@ -1,4 +1,4 @@
-/** Where a picture is in its window: the place of its corner, px, and what it is scaled by. */
+/** The view of a picture in its window: the place of its corner, px, and its scale. */
 export interface PictureView {
   readonly x: number;
   readonly y: number;

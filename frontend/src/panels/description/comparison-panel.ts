@@ -12,7 +12,7 @@ import { shortPlace } from "../place";
 const KIND_ICONS = { added: "plus", removed: "minus", renamed: "rename", changed: "options" } as const satisfies Record<string, IconName>;
 const SUBJECT_ICONS = { robot: "diagram", link: "cube", joint: "joints", extension: "code" } as const satisfies Record<string, IconName>;
 
-/** How two descriptions differ, and which of them are seen. */
+/** The differences of two descriptions, and which of the two are drawn. */
 export class ComparisonPanel implements Panel {
   readonly id = "comparison";
   readonly icon = "compare";
@@ -169,7 +169,7 @@ export class ComparisonPanel implements Panel {
     return h("div", { class: "difference" }, line, places.length > 0 ? h("div", { class: "difference-places" }, ...places) : null);
   }
 
-  /** Where it is written: a way into the Source panel where that can show it. */
+  /** The place in the text: a link into the Source panel where that can show it. */
   private place(place: ComparedPlace | null, side: "old" | "new"): HTMLElement | null {
     if (!place) return null;
     const { text, file, line } = place;

@@ -8,7 +8,7 @@ import { troubleText } from "../displays/display-items";
 import type { Panel } from "../panel";
 import { placeText, shortPath } from "../place";
 
-/** What is wrong with the description, with the lines it is about, and why displays show nothing. */
+/** The findings on the description, with the lines they point to, and why displays show nothing. */
 export class DiagnosticsPanel implements Panel {
   readonly id = "diagnostics";
   readonly icon = "warn";
@@ -66,7 +66,7 @@ export class DiagnosticsPanel implements Panel {
   }
 }
 
-/** What is wrong with a display. */
+/** The problems of a display. */
 class TroubleCard {
   readonly element = h("article");
   private readonly sign = h("span");

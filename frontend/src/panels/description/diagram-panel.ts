@@ -145,7 +145,7 @@ export class DiagramPanel implements Panel {
     if (this.diagram && this.canvas.clientWidth > 0) this.panZoom.show(this.diagram.width, this.diagram.height);
   }
 
-  /** What is selected, or else the root, is in sight and can be read. */
+  /** Brings the selected element, or else the root, into sight at a legible size. */
   private place(): void {
     const { diagram } = this;
     if (!diagram || this.canvas.clientWidth === 0) return;
@@ -179,7 +179,7 @@ function key({ kind, name }: ElementName): string {
   return `${kind} ${name}`;
 }
 
-/** From the lower end of one node to the upper end of the other. */
+/** The path from the lower end of one node to the upper end of the other. */
 function edge(from: DiagramNode, to: DiagramNode): string {
   const [top, bottom] = [from.y + from.height / 2, to.y - to.height / 2];
   const middle = Math.min(14, (bottom - top) / 2);

@@ -18,7 +18,7 @@ interface Spot {
   readonly look: Highlight["look"];
   /** The display whose description the file belongs to, where that is another one than the panels are about. */
   readonly display: string | undefined;
-  /** What readers know the file by, where that is not its path, such as one of a commit. */
+  /** The file's name for readers, where that is not its path, such as one of a commit. */
   readonly name: string | undefined;
 }
 
@@ -163,7 +163,7 @@ export class SourcePanel implements Panel {
     return written ?? { expanded: null, origin: null, calls: [] };
   }
 
-  /** What diagnostics say of the file that is shown. */
+  /** The findings in the file that is shown. */
   private problems(): Highlight[] {
     return this.session.diagnostics.flatMap(({ file, line, end_line }) =>
       file === this.file && line !== null ? [{ from: line, to: end_line ?? line, look: "problem" as const }] : [],

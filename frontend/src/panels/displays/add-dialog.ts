@@ -204,7 +204,7 @@ export class AddDialog {
   }
 }
 
-/** What a class of displays is for, in a sentence. */
+/** The purpose of a class of displays, in a sentence. */
 function aboutDisplay(cls: string): string {
   return (strings.displays.about as Readonly<Record<string, string | undefined>>)[shortName(cls)] ?? cls;
 }

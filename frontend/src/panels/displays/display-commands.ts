@@ -6,7 +6,7 @@ import type { MenuEntry } from "../../widgets/menu";
 import { keyText, matches, SHORTCUTS } from "../../widgets/shortcuts";
 import { AddDialog } from "./add-dialog";
 
-/** What can be done to the display that is selected, or to all of them. */
+/** The commands on the selected display, or on all of them. */
 export class DisplayCommands {
   constructor(
     private readonly session: Session,

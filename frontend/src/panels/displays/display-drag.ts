@@ -1,6 +1,6 @@
 import type { DisplayState } from "../../state/displays";
 
-/** Where something is dropped on a display's row. */
+/** The part of a display's row on which something is dropped. */
 export type DropPart = "before" | "inside" | "after";
 
 export interface DropPlace {
@@ -8,7 +8,7 @@ export interface DropPlace {
   before: string | null;
 }
 
-/** Where a display goes that is dropped on another; null where it cannot go. */
+/** The new place of a display that is dropped on another; null where it cannot go. */
 export function dropPlace(
   displays: readonly DisplayState[],
   dragged: DisplayState,
@@ -41,7 +41,7 @@ interface Tree {
   move(dragged: DisplayState, place: DropPlace): void;
 }
 
-/** Lets the rows of displays be dragged to other places. */
+/** Makes the rows of displays draggable. */
 export class DisplayDrag {
   private dragged: DisplayState | null = null;
   private marked: HTMLElement | null = null;

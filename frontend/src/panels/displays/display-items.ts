@@ -64,7 +64,7 @@ function displayItem(
   };
 }
 
-/** What descriptions of robots come as. */
+/** The message type of robots' descriptions. */
 const TEXT = "std_msgs/msg/String";
 
 /** The topics that fit a row of a display. */
@@ -96,7 +96,7 @@ export function troubleText({ name, text }: StatusRow): string {
   return `${name}: ${text}`;
 }
 
-/** What a display is, in a sentence or two. */
+/** A description of a display, in a sentence or two. */
 export function describe(display: DisplayState, drawn = isDrawn(display)): string {
   const name = display.cls.split("/").pop() ?? "";
   const about = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];

@@ -188,7 +188,7 @@ export class DisplaysPanel implements Panel {
     });
   }
 
-  /** What a display is, and before that what is wrong with it. */
+  /** Shows the description of a display, and its problems before that. */
   private explainDisplay(display: DisplayState): void {
     this.explain(display.name, describe(display), display.troubles);
   }

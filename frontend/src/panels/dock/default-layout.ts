@@ -131,7 +131,7 @@ const LOW = "(max-height: 480px) and (max-width: 1000px) and (min-aspect-ratio: 
 /** The part of such a window that panels have, and its least and most in pixels. */
 const [LOW_SHARE, LOW_LEAST, LOW_MOST] = [0.4, 270, 340];
 
-/** How a window is arranged: with room beside the scene, with all panels below it, or, where it is low, with all beside it. */
+/** The form of a window: with room beside the scene, with all panels below it, or, where it is low, with all beside it. */
 export type Form = "wide" | "narrow" | "low";
 
 export function formOf(api: DockviewApi): Form {
@@ -143,7 +143,7 @@ const SCENE_SHARE = 0.5;
 const LINES_HEIGHT = 54;
 const MOST_BELOW = 0.45;
 
-/** On a phone: the scene, and below it one group with everything else. */
+/** The place of a panel on a phone: the scene has one group with everything else below it. */
 function narrowHome(api: DockviewApi, id: PanelId): Home {
   if (id === "scene") return HOMES.scene;
   const others = (Object.keys(HOMES) as PanelId[]).filter((each) => each !== "scene" && each !== id);
@@ -152,7 +152,7 @@ function narrowHome(api: DockviewApi, id: PanelId): Home {
   return { beside, height: Math.round(Math.min(left, api.height * MOST_BELOW)), inactive: !IN_FRONT.includes(id) };
 }
 
-/** On a phone that is held across: the scene, and beside it one group with everything else. */
+/** The place of a panel on a phone held across: the scene has one group with everything else beside it. */
 function lowHome(api: DockviewApi, id: PanelId): Home {
   const { beside: near, inactive = false } = narrowHome(api, id);
   const beside: Home["beside"] = near.map(([other, where]) => [other, where === "below" ? "right" : where]);

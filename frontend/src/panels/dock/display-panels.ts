@@ -62,13 +62,13 @@ export class DisplayPanels implements PanelHost {
     for (const panel of this.offered.values()) if (!this.api().getPanel(panel.key)) this.add(panel);
   }
 
-  /** What the dock shows of a panel; null for one that is no display's. */
+  /** The content of a panel for the dock; null for one that is no display's. */
   content(name: string): IContentRenderer | null {
     if (!name.startsWith(PREFIX)) return null;
     return { element: this.host(name), init: () => undefined };
   }
 
-  /** Its tab; null for one that is no display's. */
+  /** The tab of a panel; null for one that is no display's. */
   tab(key: string): PanelTab | null {
     if (!key.startsWith(PREFIX)) return null;
     const close = (): void => {
@@ -97,7 +97,7 @@ export class DisplayPanels implements PanelHost {
     for (const each of [...before, { group, height }]) each.group.api.setSize({ height: each.height });
   }
 
-  /** Where a panel goes, of which there are some before it. */
+  /** The place of a new panel, after `count` others. */
   private home({ instead }: DisplayPanel, last: string | undefined, count: number): Home {
     const api = this.api();
     const form = formOf(api);

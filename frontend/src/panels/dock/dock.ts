@@ -143,7 +143,7 @@ export class Dock {
     this.remember();
   }
 
-  /** Of the panels that files know of, opens these and closes the others. */
+  /** Opens these panels, and closes all others that files list. */
   showOnly(panels: readonly PanelName[]): void {
     for (const id of FILE_PANELS) {
       if (panels.includes(id)) this.add(id);
@@ -167,7 +167,7 @@ export class Dock {
     this.widths.take();
   }
 
-  /** What is alone in its place may need no tab. */
+  /** Hides the tabs of panels that are alone in their group and need none. */
   private followLone(): void {
     this.strip.follow();
     this.sceneTab.follow(this.form !== "wide");

@@ -14,7 +14,7 @@ export const FILE_PANELS: readonly PanelName[] = [
   "navigation",
 ];
 
-/** What of the dock this needs. */
+/** The part of the dock that `FilePanels` uses. */
 export interface Arrangement {
   readonly changed: Signal;
   readonly file: string | null;
@@ -28,7 +28,7 @@ export interface Arrangement {
 }
 
 /**
- * Which panels are open, between the file and the browser.
+ * Keeps the open panels and the file's in step.
  *
  * A page that opens has the arrangement that the browser keeps for the file. Where there is none, and whenever another
  * configuration takes the place of the one before, the file says which of its panels are open. What the user opens and

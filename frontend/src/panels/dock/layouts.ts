@@ -17,7 +17,7 @@ const MOST = 12;
 export class Layouts {
   constructor(private readonly storage: TextStorage) {}
 
-  /** That of the file that was seen last in such a window. */
+  /** The arrangement of the file that was seen last in a window of a form. */
   latest(form: Form): Layout | null {
     return this.read().find((each) => each.form === form) ?? null;
   }

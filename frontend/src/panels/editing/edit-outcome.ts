@@ -11,7 +11,7 @@ const [NEAR_BEFORE, NEAR_AFTER] = [16, 10];
 /** Characters of a line that is shown whole where there is room. */
 const LONGEST_WHOLE = 90;
 
-/** What an edit comes to in the files, or why it cannot be; writing it, and taking that back. */
+/** The preview of an edit in the files, or why it is refused, with buttons to write and undo it. */
 export class EditOutcome {
   readonly element: HTMLElement;
   private readonly text = h("div", { class: "edit-text", role: "status", tabIndex: 0 });

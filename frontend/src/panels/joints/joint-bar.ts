@@ -4,7 +4,7 @@ import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { UnitSwitch } from "../../widgets/unit-switch";
 
-/** What concerns all joints: Randomize and Center as joint_state_publisher_gui has them, and their unit. */
+/** The controls of all joints: Randomize and Center as joint_state_publisher_gui has them, and their unit. */
 export function jointBar({ connection, angles }: Session): HTMLElement {
   const words = strings.joints;
   return h(

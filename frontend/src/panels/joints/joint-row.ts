@@ -135,13 +135,13 @@ export class JointRow {
     return this.angles.current === "deg" ? words.degrees : words.radians;
   }
 
-  /** How a joint follows another: `2 × elbow + 0.1 rad`. */
+  /** The text of a joint's mimic: `2 × elbow + 0.1 rad`. */
   private get relationText(): string {
     const { mimic, multiplier, offset } = this.joint;
     return mimic === null ? "" : mimicText(mimic, multiplier, offset * this.scale, this.unitName);
   }
 
-  /** What an arrow key in the number field moves: 1 degree, 0.01 rad, 1 mm. */
+  /** The step of an arrow key in the number field: 1 degree, 0.01 rad, 1 mm. */
   private get step(): number {
     if (this.joint.kind === "prismatic") return 0.001;
     return this.angles.current === "deg" ? Math.PI / 180 : 0.01;

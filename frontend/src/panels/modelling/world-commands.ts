@@ -28,7 +28,7 @@ const OTHERS = "dialog, [role=menu]";
 /** Panels have keys of their own; the world's hold in its own panel. */
 const ELSEWHERE = ".panel:not(.world-panel)";
 
-/** What keys and buttons do to the world. */
+/** The commands of keys and buttons on the world. */
 export class WorldCommands {
   private readonly runs: Readonly<Record<keyof typeof WORLD_KEYS, () => void>>;
 

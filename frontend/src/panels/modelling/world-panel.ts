@@ -14,7 +14,7 @@ import { thingItems } from "./thing-items";
 import { ThingList } from "./thing-list";
 import { WORLD_KEYS, type WorldCommands } from "./world-commands";
 
-/** What stands in the world that is modelled, and the numbers of what is selected. */
+/** The models and lights of the world that is edited, and the numbers of the selected ones. */
 export class WorldPanel implements Panel {
   readonly id = "world";
   readonly icon = "build";

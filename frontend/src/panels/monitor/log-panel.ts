@@ -11,7 +11,7 @@ import type { Panel } from "../panel";
 
 const ROW_PX = 21;
 
-/** What rqt_console shows of /rosout. */
+/** The records of /rosout, as rqt_console shows them. */
 export class LogPanel implements Panel {
   readonly id = "log";
   readonly icon = "log";

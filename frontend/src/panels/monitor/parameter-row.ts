@@ -58,7 +58,7 @@ export class ParameterLine {
     if (this.slider && document.activeElement !== this.slider) this.slider.value = row.values[0] ?? "0";
   }
 
-  /** What came of setting it: the value that stands is shown, and the reason of a refusal. */
+  /** Shows the outcome of setting the parameter: its present value, and the reason of a refusal. */
   settled(successful: boolean, reason: string): void {
     this.problem.hidden = successful;
     this.problem.textContent = successful ? "" : reason || strings.monitor.parameters.refused;

@@ -8,7 +8,7 @@ import { whenSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 import { ParameterLine } from "./parameter-row";
 
-/** What rqt_reconfigure shows: the parameters of a node, to be edited. */
+/** The parameters of a node, to be edited, as rqt_reconfigure shows them. */
 export class ParametersPanel implements Panel {
   readonly id = "parameters";
   readonly icon = "parameters";

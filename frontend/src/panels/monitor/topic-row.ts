@@ -5,12 +5,12 @@ import { bandwidthText, clockText, rateText } from "../../state/monitor/figure-t
 import { strings } from "../../strings";
 import { MessageTree } from "./message-tree";
 
-/** What a row of the topic monitor tells of the user. */
+/** The user's actions on a row of the topic monitor. */
 export interface TopicRowEvents {
   measured(topic: string, ticked: boolean): void;
   opened(topic: string, open: boolean): void;
   plotted(topic: string, path: string): void;
-  /** It is to be seen in the scene. */
+  /** The topic is to be shown in the scene. */
   shown(topic: string): void;
 }
 

@@ -7,7 +7,7 @@ import { whenSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
 import { TopicLine } from "./topic-row";
 
-/** What rqt_topic shows: all topics, figures of those that are ticked, the last message of those that are opened. */
+/** The topics, as rqt_topic shows them: figures of ticked ones, the last message of opened ones. */
 export class TopicsPanel implements Panel {
   readonly id = "topics";
   readonly icon = "topics";

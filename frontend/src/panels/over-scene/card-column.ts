@@ -1,14 +1,14 @@
 import { h } from "../../dom";
 
-/** What a scene knows and does for what lies over it. */
+/** The scene, as the cards over it see it. */
 export interface Below {
-  /** How many pixels at the right something lies over. */
+  /** The width in pixels that is covered at the right. */
   covered: () => number;
-  /** How far from its left edge robots reach, pixels. */
+  /** The distance from the left edge that robots reach, pixels. */
   readonly robotsReach: number;
-  /** What is looked at goes to the middle of what nothing lies over. */
+  /** Moves the focal point to the middle of the uncovered part. */
   makeRoom(): void;
-  /** What stands as high as something that lies over the upper edge, pixels, goes below it. */
+  /** Moves what is seen below something of this height, pixels, that lies over the upper edge. */
   makeRoomAbove(height: number): void;
 }
 
@@ -36,7 +36,7 @@ export class CardColumn {
     return isOpen ? (this.element.parentElement?.clientWidth ?? 0) - this.left : 0;
   }
 
-  /** Where it begins, in pixels from the scene's left edge. */
+  /** The distance of the column from the scene's left edge, pixels. */
   private get left(): number {
     return this.element.getBoundingClientRect().left - (this.element.parentElement?.getBoundingClientRect().left ?? 0);
   }

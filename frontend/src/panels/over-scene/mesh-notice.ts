@@ -25,7 +25,7 @@ export class MeshNotice {
   }
 }
 
-/** How far a file is: bytes of bytes, then that it is read. */
+/** The progress of a file: bytes of bytes, then that it is read. */
 export function progressText({ bytes, total, stage }: Readonly<MeshLoad>): string {
   const words = strings.meshes.progress;
   if (stage === "reading") return words.reading;

@@ -59,7 +59,7 @@ export class ScenePanel implements Panel {
     session.displays.enabledChanged.on(update);
   }
 
-  /** What lies over a scene makes room there for itself. */
+  /** Connects the cards over the scene with it. */
   lieOver(scene: Below): void {
     this.column.lieOver(scene);
     new ResizeObserver(() => scene.makeRoomAbove(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);

@@ -8,7 +8,7 @@ import { openMenu } from "../../widgets/menu";
 /** Shows all of the robot, or of what is selected. */
 export const FIT_KEY = "Shift F";
 
-/** What a tool is called in the user's language. */
+/** The name of a tool in the user's language. */
 export function toolName({ cls, name }: Pick<ToolState, "cls" | "name">): string {
   const names: Readonly<Record<string, string>> = strings.tools.names;
   return names[cls] ?? name;

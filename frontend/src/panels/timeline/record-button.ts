@@ -11,7 +11,7 @@ import { amountText, lengthText } from "./timeline-text";
 /** Files that the menu offers. */
 const MOST_FILES = 5;
 
-/** In the timeline: begins and ends recordings, which the server writes, and saves the last minutes. */
+/** The button in the timeline that starts and ends recordings, which the server writes, and saves the last minutes. */
 export class RecordButton {
   readonly element: HTMLElement;
   private readonly button: HTMLButtonElement;
@@ -88,7 +88,7 @@ export class RecordButton {
     ];
   }
 
-  /** Says where it is, and has it shown or fetched if the user likes. */
+  /** Tells where a recording is, and offers to show or fetch it. */
   private offer(file: RecordedFile): void {
     const words = strings.recording;
     new Dialog(

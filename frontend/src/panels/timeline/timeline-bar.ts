@@ -12,7 +12,7 @@ import { agoText, clockText, densities, keptText, momentText, passedText } from 
 /** From this part of its room on, what is kept is as much as there can be. */
 const FULL = 0.9;
 
-/** How much is kept, and how more could be where there is no more room. */
+/** The tooltip about what is kept, and how to keep more where the room is used up. */
 function keptTip(kept: Kept): string {
   const text = strings.timeline.kept(keptText(kept), (kept.most / 1e6).toFixed(0));
   return kept.size < FULL * kept.most ? text : `${text}\n${strings.timeline.more}`;
@@ -212,7 +212,7 @@ export class TimelineBar {
     });
   }
 
-  /** Who has pressed into the scene of another time steps on with the arrows; who came there by Tab turns the camera with them. */
+  /** Steps with the arrow keys after a press into the scene of another time; after Tab they turn the camera. */
   private takeKeysOfScene(): void {
     document.addEventListener("pointerdown", () => (this.pressed = true), true);
     document.addEventListener(
@@ -235,7 +235,7 @@ export class TimelineBar {
     return target === document.body || this.element.contains(target);
   }
 
-  /** How dense messages are, a line for each topic that has any, the more the darker. */
+  /** Draws the density of messages, a line for each topic that has any, the more the darker. */
   private drawMarks(): void {
     const rows = densities(this.timeline.timeline?.topics ?? []);
     const { width, height } = this.track.getBoundingClientRect();

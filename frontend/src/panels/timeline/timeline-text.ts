@@ -58,7 +58,10 @@ export function momentText(seconds: number): string {
   return `${clock}.${String(date.getMilliseconds()).padStart(3, "0")}`;
 }
 
-/** How dense messages are in the parts of a recording, 0 to 1 in relation to each topic's densest part; those with most first. */
+/**
+ * The density of messages in the parts of a recording, 0 to 1 in relation to each topic's densest part; those with most
+ * first.
+ */
 export function densities(topics: readonly TimelineTopic[]): number[][] {
   const known = topics.filter(({ counts }) => counts.length > 0).sort((a, b) => b.count - a.count);
   return known.slice(0, MOST_ROWS).map(({ counts }) => {

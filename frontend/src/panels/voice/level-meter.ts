@@ -5,7 +5,7 @@ import { strings } from "../../strings";
 /** A peak from which on sound is cut off. */
 const LOUD = 0.97;
 
-/** How loud the microphone is. */
+/** A meter of the microphone's level. */
 export class LevelMeter {
   readonly element: HTMLElement;
   private readonly bar = h("div", { class: "level-bar" });

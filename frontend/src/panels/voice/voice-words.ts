@@ -1,7 +1,7 @@
 import type { VoiceState } from "../../state/voice/voice";
 import { strings } from "../../strings";
 
-/** What stands in the way of talking, and what to do about it; null when nothing does. */
+/** The obstacle to talking, and what to do about it; null when there is none. */
 export function obstacle(voice: VoiceState): string | null {
   const words = strings.voice;
   const { microphone, told, held, open } = voice;
@@ -16,7 +16,7 @@ export function obstacle(voice: VoiceState): string | null {
   return null;
 }
 
-/** What the microphone does. */
+/** The state of the microphone, in words. */
 export function activity(voice: VoiceState): string {
   const words = strings.voice;
   if (voice.microphone.isOpening) return words.opening;

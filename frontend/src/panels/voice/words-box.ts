@@ -129,7 +129,7 @@ export class WordsBox {
   }
 }
 
-/** What became of a recording, in words. */
+/** The outcome of a take, in words. */
 function judgement({ code, text, peak, seconds }: TakeJudged): string {
   const texts = strings.voice.words;
   const known: Readonly<Record<string, string>> = texts.codes;

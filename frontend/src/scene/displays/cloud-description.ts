@@ -3,7 +3,7 @@ import type { Described } from "../picking";
 
 const DIGITS = 6;
 
-/** What RViz's Selection panel shows of a point: its place in the message's frame, then its other fields, numbered. */
+/** The rows of RViz's Selection panel for a point: its position in the message's frame, then its other fields, numbered. */
 export function described(
   index: number,
   cloud: string,

@@ -16,8 +16,8 @@ export interface Placed<C> {
 }
 
 /**
- * What displays have in common that draw contents of one kind, each in its frame. A subclass makes its objects in
- * `arrange`, which comes before a frame in which a content, a property or the place of a content is another.
+ * The base of displays that draw contents of one kind, each in its frame. A subclass makes its objects in `arrange`,
+ * which comes before a frame in which a content, a property or the place of a content is another.
  */
 export abstract class ContentDrawing<K extends Kind> implements Drawing {
   readonly root = new Group();
@@ -54,7 +54,7 @@ export abstract class ContentDrawing<K extends Kind> implements Drawing {
     this.arrange();
   }
 
-  /** Tells of everything drawn; the bounds are in the fixed frame, null of nothing. */
+  /** The counts and bounds of everything drawn; bounds are in the fixed frame, null of nothing. */
   inspect(): object {
     const box = new Box3();
     this.expandBox(box);

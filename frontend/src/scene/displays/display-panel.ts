@@ -13,7 +13,7 @@ export interface DisplayPanel {
   closed(): void;
 }
 
-/** Where displays put panels of their own. */
+/** The host of displays' own panels. */
 export interface PanelHost {
   offer(panel: DisplayPanel): void;
   withdraw(key: string): void;

@@ -7,7 +7,7 @@ import type { MovingPicture } from "../robot/moving-meshes";
 import type { PanelHost } from "./display-panel";
 import type { Described, Hit, Interaction, ScenePointer, SelectionBox } from "../picking";
 
-/** What a drawing is given to work with. */
+/** The objects that a drawing works with. */
 export interface DrawingContext {
   readonly display: DisplayState;
   readonly session: Session;
@@ -34,7 +34,7 @@ export interface DrawnScene {
   showing(accepts: (display: DisplayState) => boolean, draw: () => void): void;
 }
 
-/** What one display draws. The stage shows and hides `root` with the display's enable box. */
+/** The drawing of a display. The stage shows and hides `root` with the display's enable box. */
 export interface Drawing {
   readonly root: Object3D;
   /** It has no place in the scene, so that its content asks for no frame. */
@@ -74,6 +74,6 @@ export interface Drawing {
   dispose(): void;
 }
 
-/** How a display comes to be drawn: one class for each RViz display class, listed in `registry.ts`. */
+/** The constructor of a drawing: one class for each RViz display class, listed in `registry.ts`. */
 export type DrawingClass = new (context: DrawingContext) => Drawing;
 

@@ -65,7 +65,7 @@ export class EffortDrawing extends ContentDrawing<"effort_rings"> {
   }
 }
 
-/** How much of its limit an effort uses, at most 1; of a joint without limit the effort itself. */
+/** The used part of an effort's limit, at most 1; of a joint without limit the effort itself. */
 function usedPart(effort: number, limit: number): number {
   return limit === 0 ? Math.abs(effort) : Math.min(Math.abs(effort) / limit, 1);
 }

@@ -1,4 +1,4 @@
-/** How a frame that was not heard of for a while is drawn. */
+/** The look of a frame that was not updated for a while. */
 export interface Fade {
   /** 0 its own colours, 1 all grey. */
   grey: number;

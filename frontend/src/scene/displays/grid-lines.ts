@@ -1,4 +1,4 @@
-/** What a grid looks like; lengths in metres. */
+/** The shape of a grid; lengths in metres. */
 export interface GridShape {
   cells: number;
   normalCells: number;

@@ -88,7 +88,7 @@ export class ImageDrawing implements Drawing {
     this.panel.close();
   }
 
-  /** Says in place of a picture why there is none: as a rule the display's status tells. */
+  /** Shows the reason why there is no picture, as a rule from the display's status. */
   private explain(): void {
     const { none, unreadable } = strings.pictures;
     const cause = this.context.display.troubles[0]?.text;
@@ -96,7 +96,7 @@ export class ImageDrawing implements Drawing {
     else this.panel.say(this.state === "unreadable" ? unreadable : none, cause);
   }
 
-  /** More pixels than the panel has need not come. */
+  /** Tells the server the panel's size, since more pixels need not be sent. */
   private tellSize(): void {
     const { display, session } = this.context;
     const pixels = (points: number): number => Math.ceil(points * window.devicePixelRatio);

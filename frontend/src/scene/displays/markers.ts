@@ -139,7 +139,7 @@ export class MarkersDrawing implements Drawing {
     this.outlined.clear();
   }
 
-  /** What a ray meets. */
+  /** The surfaces that a ray can hit. */
   private surfacesOf(shown: Shown): Object3D[] {
     if (shown.object) return [shown.object.root];
     if (shown.marker.frame !== "") return this.makeSurfaces(shown); // it moves

@@ -1,4 +1,4 @@
-/** Lets a display update at most once in its Update Interval, and asks for the frame that is then due. */
+/** Limits a display to one update in its Update Interval, and asks for the frame that is then due. */
 export class Pacing {
   private last = -Infinity;
   private timer: ReturnType<typeof setTimeout> | undefined;

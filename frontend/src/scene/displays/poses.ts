@@ -102,7 +102,7 @@ export class PosesDrawing extends ContentDrawing<"pose_marks"> {
   }
 }
 
-/** Where the one pose of a content is. */
+/** The position of the one pose of a content. */
 function placeOf({ content, pose }: Placed<PoseMarks>): Vector3 {
   return new Vector3().setFromMatrixPosition(poseAt(content.poses, 0, new Matrix4()).premultiply(pose));
 }

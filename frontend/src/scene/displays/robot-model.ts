@@ -51,7 +51,7 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.linkCount ?? 0;
   }
 
-  /** Tells apart which parts of which robot are seen; empty while there is none, or nothing tells where it is. */
+  /** A key of the parts of the robot that are seen; empty while there is none, or no transform of it. */
   get seen(): string {
     const { posed, loading } = this.shown?.progress ?? { posed: 0, loading: 0 };
     const isPlain = this.visualsDrawn === 0 && loading > 0;
@@ -63,7 +63,7 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.bounds() ?? new Box3();
   }
 
-  /** How high the ground is that it stands on, in the fixed frame, m. */
+  /** The height of the ground that it stands on, in the fixed frame, m. */
   ground(): number {
     return this.shown?.ground() ?? 0;
   }
@@ -149,7 +149,10 @@ export class RobotModelDrawing implements Drawing {
     this.shown?.dispose();
   }
 
-  /** Tells which links of an old description are not drawn: those that look as in the new one, and are where that has them. */
+  /**
+   * A predicate of the links of an old description that are not drawn: they look as in the new one, and have the same
+   * pose.
+   */
   private covered(): ((link: LinkScene) => boolean) | undefined {
     const { display, session } = this.context;
     const { comparison, displays, frames, robots } = session;

@@ -117,7 +117,7 @@ export class TfDrawing implements Drawing {
     return { name: `Frame ${name}`, children: [{ name: "Parent", value: parent }, ...describedPose(pose)] };
   }
 
-  /** How many of each are drawn, and their bounds in the fixed frame. */
+  /** The number of axes, names and arrows drawn, and their bounds in the fixed frame. */
   inspect(): object {
     const box = new Box3();
     this.markers.axes.expandBox(box);

@@ -92,7 +92,7 @@ export class WorldDrawing implements Drawing {
     this.shown?.move(picture);
   }
 
-  /** How it is lit; null while it is drawn in the light of the camera. */
+  /** Its lighting; null while it is drawn in the light of the camera. */
   get ownLight(): OwnLight | null {
     if (!this.scene || !this.lights.isLit) return null;
     const own = this.lights.isOfWorld;
@@ -138,13 +138,13 @@ export class WorldDrawing implements Drawing {
     return { robots, world: world.isEmpty() ? all : world };
   }
 
-  /** Where a model can be put, in the frame of the world, m. */
+  /** A free position for a model, in the frame of the world, m. */
   freePlace(): number[] {
     const boxes = [...(this.shown?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box));
     return freePlace(boxes.map(([, box]) => box), this.world());
   }
 
-  /** Where its file puts the camera, looking along x, in the fixed frame; null where it does not say. */
+  /** The pose of the file's camera, looking along x, in the fixed frame; null where it has none. */
   cameraOfFile(): Matrix4 | null {
     const camera = this.scene?.camera;
     return camera ? poseMatrix(camera, new Matrix4()).premultiply(this.world()) : null;
@@ -176,7 +176,7 @@ export class WorldDrawing implements Drawing {
     return this.shown?.placeOf(link) ?? null;
   }
 
-  /** Where a link is in the fixed frame; null before that is known. */
+  /** The pose of a link in the fixed frame; null before that is known. */
   poseOf(link: string): Matrix4 | null {
     return this.shown?.poseOf(link) ?? null;
   }
@@ -211,7 +211,7 @@ export class WorldDrawing implements Drawing {
     return new Vector3().fromArray(point).applyMatrix4(this.world().invert()).toArray();
   }
 
-  /** Where the world is in the fixed frame. */
+  /** The pose of the world in the fixed frame. */
   world(): Matrix4 {
     const world = new Matrix4();
     if (this.placed) dataPose(this.context.session.frames, this.placed.data, world);

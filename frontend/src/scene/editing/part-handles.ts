@@ -117,7 +117,7 @@ export class PartHandles {
     if (span) this.session.view.fit(span, this.stage.room.take());
   }
 
-  /** What the numbers of a part are relative to, in the fixed frame; null where nothing tells where it is. */
+  /** The frame of a part's numbers, in the fixed frame; null without a transform. */
   private base(part: EditablePart): Matrix4 | null {
     const { current } = this.editing;
     const robot = this.session.robots.get(current?.display ?? "");
@@ -219,7 +219,7 @@ export class PartHandles {
   }
 }
 
-/** Where a part is, or how its axis points: turned from x. */
+/** The pose of a part, or the direction of its axis: turned from x. */
 function partMatrix(part: EditablePart, { xyz, rpy }: Draft): Matrix4 {
   if (part.part === "axis") {
     const turn = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), new Vector3().fromArray(xyz).normalize());

@@ -19,7 +19,7 @@ const ELLIPSOID = Math.sqrt(5 / 12);
 /** Corners of a cube of one metre that its edges join. */
 const EDGES = cubeEdges();
 
-/** Which marks are wanted. */
+/** The marks to be drawn. */
 export interface MassMarkChoice {
   centers: boolean;
   boxes: boolean;

@@ -48,7 +48,7 @@ export class VertexStream {
     this.count = 0;
   }
 
-  /** How the vertices after this look; `color` is 0xrrggbb. */
+  /** Sets the look of the vertices after this; `color` is 0xrrggbb. */
   setLook(color: number, alpha = 1): void {
     this.color.setHex(color);
     this.alpha = alpha;

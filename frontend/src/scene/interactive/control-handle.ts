@@ -84,7 +84,7 @@ export class ControlHandle {
     this.root.quaternion.copy(independent ? orientation : this.framed);
   }
 
-  /** Where a ray of the world meets its markers. */
+  /** The intersection of a ray, in the world, with its markers. */
   hit(ray: Raycaster): Intersection | null {
     this.root.updateWorldMatrix(true, true);
     const objects: Object3D[] = this.objects.map((object) => object.root);

@@ -1,13 +1,13 @@
 import { Plane, Quaternion, Ray, Vector3 } from "three";
 import type { InteractiveControl } from "../../protocol";
 
-/** Where an interactive marker is in its reference frame. */
+/** The pose of an interactive marker in its reference frame. */
 export interface MarkerPose {
   position: Vector3;
   orientation: Quaternion;
 }
 
-/** What a movement of the mouse is worked out from; everything in the marker's reference frame. */
+/** The movement of the mouse; everything in the marker's reference frame. */
 export interface DragEvent {
   /** From the eye through the pointer. */
   ray: Ray;
@@ -104,7 +104,7 @@ export class Drag {
     return true;
   }
 
-  /** As a cart on a string: what was grabbed goes where the mouse is, and the marker turns and follows. */
+  /** Moves and turns the marker like a cart on a string: the grabbed point follows the mouse. */
   private moveAndTurn(ray: Ray): boolean {
     const center = this.foot(this.pose.position);
     const at = onPlane(ray, center, this.axis);
@@ -152,7 +152,7 @@ function copyOf(pose: MarkerPose): MarkerPose {
   return { position: pose.position.clone(), orientation: pose.orientation.clone() };
 }
 
-/** How far along the axis through `origin` the ray passes nearest to it; null where they are parallel. */
+/** The distance along the axis through `origin` at which the ray passes nearest; null where they are parallel. */
 export function alongAxis(ray: Ray, origin: Vector3, axis: Vector3): number | null {
   const between = origin.clone().sub(ray.origin);
   const slant = axis.dot(ray.direction);

@@ -17,7 +17,7 @@ const AXES_RADIUS = 0.05;
 const TITLE_HEIGHT = 0.15;
 const TITLE_ABOVE = 1.4;
 
-/** What the display's boxes say. */
+/** The values of the display's boxes. */
 export interface MarkerOptions {
   descriptions: boolean;
   axes: boolean;
@@ -150,7 +150,7 @@ export class MarkerHandle {
     this.drag = null;
   }
 
-  /** What a message to the server says of a control. */
+  /** The feedback to the server about a control. */
   feedback(control: ControlHandle, event: MarkerFeedback["event"], menuEntry = 0): MarkerFeedback {
     return {
       type: "marker_feedback",

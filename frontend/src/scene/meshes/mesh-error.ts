@@ -1,4 +1,7 @@
-/** Says in the user's language why a mesh cannot be drawn. What readers and browsers throw else is not for users. */
+/**
+ * An error that says in the user's language why a mesh cannot be drawn. What readers and browsers throw else is not for
+ * users.
+ */
 export class MeshError extends Error {}
 
 /** A count with a space between thousands: 40 000 000. */

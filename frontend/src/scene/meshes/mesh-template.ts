@@ -38,10 +38,10 @@ export interface MeshTemplate {
   problem: string | null;
 }
 
-/** What Assimp, and with it RViz, gives a mesh that says nothing about its colour. */
+/** The grey that Assimp, and with it RViz, gives a mesh without a colour. */
 export const UNCOLOURED_GREY = 0.6;
 
-/** What a loader made, as parts. */
+/** The parts of a loaded mesh. */
 export interface Flattened {
   parts: MeshPart[];
   /** Of each part. */

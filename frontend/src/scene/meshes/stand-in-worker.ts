@@ -1,7 +1,7 @@
 import { MeshoptSimplifier } from "meshoptimizer/simplifier";
 import { standIn, type StandIn, type Triangles } from "./stand-in";
 
-/** What the page asks for: a stand-in for each piece of a mesh. */
+/** The request of the page: a stand-in for each piece of a mesh. */
 export interface StandInRequest {
   readonly id: number;
   readonly pieces: readonly Triangles[];

@@ -1,6 +1,6 @@
 import type { MeshoptSimplifier } from "meshoptimizer/simplifier";
 
-/** What of meshoptimizer is needed. */
+/** The part of meshoptimizer that is used. */
 export type Simplifier = Pick<typeof MeshoptSimplifier, "generatePositionRemap" | "simplifyWithAttributes" | "compactMesh" | "getScale">;
 
 /** Triangles with a normal at each corner: three corners in a row for each, or as the index says. */

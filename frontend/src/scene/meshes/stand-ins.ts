@@ -5,7 +5,7 @@ import type { StandInAnswer, StandInRequest } from "./stand-in-worker";
 /** Of larger meshes no copies are sent to a worker. */
 const MOST_CORNERS = 9_000_000;
 
-/** What makes stand-ins beside the page, as a `Worker`. */
+/** The `Worker` that makes stand-ins, as the page uses it. */
 export interface StandInWorker {
   onmessage: ((event: MessageEvent<StandInAnswer>) => void) | null;
   onerror: ((event: ErrorEvent) => void) | null;

@@ -7,7 +7,7 @@ import { thingMatrix } from "./thing-pose";
 /** What has no shape of its own is shown as a disc on the ground, m. */
 const DISC = [0.2, 0.2, 0.01] as const;
 
-/** What is about to be put into the world, seen through. */
+/** A translucent preview of the thing that is about to be added to the world. */
 export class Ghost {
   readonly root = new Mesh<BufferGeometry, MeshBasicMaterial>(
     unitBox,

@@ -28,7 +28,7 @@ export class Gizmo {
     return this.controls.dragging;
   }
 
-  /** Where the frame is, without its scale. */
+  /** The pose of the frame, without its scale. */
   get pose(): Matrix4 {
     return new Matrix4().compose(this.frame.position, this.frame.quaternion, new Vector3(1, 1, 1));
   }
@@ -51,7 +51,7 @@ export class Gizmo {
     this.stage.loop.invalidate();
   }
 
-  /** Where on the canvas the arrow or ring of an axis is, pixels; for tests. */
+  /** The position of an axis's arrow or ring on the canvas, pixels; for tests. */
   seenAt(axis: Vector3): { x: number; y: number } {
     const { camera, size } = this.stage.viewport;
     const angle = camera instanceof PerspectiveCamera ? (camera.fov * Math.PI) / 180 : 1;
@@ -93,7 +93,7 @@ export class Gizmo {
     this.controls.pointerUp(null);
   }
 
-  /** What the controls want of an event: the place from -1 to 1, and a button as browsers number them. */
+  /** The event for three.js's controls: the place from -1 to 1, and a button as browsers number them. */
   private pointer({ x, y }: ToolEvent, button: number): PointerEvent {
     const { width, height } = this.stage.viewport.size;
     return { x: (x / width) * 2 - 1, y: 1 - (y / height) * 2, button } as PointerEvent;

@@ -6,7 +6,7 @@ import { thingMatrix } from "./thing-pose";
 const RADIUS = 0.12;
 const [COLOR, SELECTED] = [0xffd54a, 0x5db0ff];
 
-/** Where the lights of the world are: they shine, but there is nothing to see of them. */
+/** Marks at the lights of the world, which could not be seen or clicked otherwise. */
 export class LightMarks {
   /** In the world's frame. */
   readonly root = new Group();

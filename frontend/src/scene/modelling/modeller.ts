@@ -11,7 +11,7 @@ import { Manipulation } from "./manipulation";
 import { Placer } from "./placer";
 import { worldFrame } from "./world-frame";
 
-/** What the mouse does while the world is modelled: selects, moves and adds things. */
+/** Handles the mouse while the world is edited: selects, moves and adds models and lights. */
 export class Modeller {
   private readonly manipulation: Manipulation;
   private readonly placer: Placer;
@@ -49,7 +49,7 @@ export class Modeller {
     this.drop();
   }
 
-  /** What is left of an event for others; null for nothing. */
+  /** Handles an event and returns it for the tool in hand; null where that is to have none. */
   pointer(event: ToolEvent): ToolEvent | null {
     const { modelling, tools } = this.session;
     if (!modelling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return event;
@@ -143,7 +143,7 @@ export class Modeller {
     this.stage.loop.invalidate();
   }
 
-  /** What is selected is outlined in the scene as everything that is. */
+  /** Outlines the selected models in the scene. */
   private select(): void {
     const { stage, session } = this;
     const { world } = stage;

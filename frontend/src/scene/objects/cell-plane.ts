@@ -36,7 +36,7 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-/** How cells are drawn. */
+/** The look of cells. */
 export interface CellLook {
   /** 256 times red, green, blue and alpha: the colours of the bytes. */
   palette: Uint8Array;

@@ -23,7 +23,7 @@ const MOST_ARRANGED = 1000;
 /** After everything but labels. */
 const OVERLAY_ORDER = 5;
 
-/** What copies are drawn over, or behind. */
+/** The drawing order of copies: over everything, or behind. */
 export interface CopyPlace {
   /** Over everything; for shapes that do not hide parts of themselves. */
   readonly isOverlay?: boolean;
@@ -31,7 +31,7 @@ export interface CopyPlace {
   readonly isBehind?: boolean;
 }
 
-/** Which copy a ray met, and where in the fixed frame, m. */
+/** The copy that a ray hit, and the point in the fixed frame, m. */
 export interface CopyHit {
   copy: number;
   distance: number;

@@ -141,7 +141,7 @@ function spread(rows: Matrix3Rows): { deviations: number[]; axes: Matrix4 } | nu
   return { deviations: values.map((value) => Math.sqrt(Math.max(0, value))), axes };
 }
 
-/** How wide an angle is at a distance of one metre. */
+/** The width of an angle at a distance of one metre. */
 function opening(radians: number): number {
   return 2 * Math.tan(Math.min(radians / 2, MOST_RADIANS));
 }

@@ -6,7 +6,7 @@ const MARGIN_PX = 6;
 const CELL_HEIGHT_PX = 60;
 const FONT = `600 ${FONT_PX}px "Liberation Sans", "Noto Sans", Arial, "Noto Sans CJK SC", sans-serif`;
 
-/** Where a character is in the atlas; sizes in units of the line height. */
+/** The place of a character in the atlas; sizes in units of the line height. */
 export interface Glyph {
   /** u, v of the lower left corner, width and height, 0 to 1. */
   uv: readonly [number, number, number, number];

@@ -3,7 +3,7 @@ import { Color, GLSL3, ShaderMaterial, Vector3 } from "three";
 /** RViz's styles of points. */
 export type PointStyle = "Points" | "Squares" | "Flat Squares" | "Spheres" | "Boxes" | "Tiles";
 
-/** What points look like. */
+/** The look of points. */
 export interface PointLook {
   style: PointStyle;
   /** Sides along x, y and z of the points' frame, m; what faces the camera has the first two. */

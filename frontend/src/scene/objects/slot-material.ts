@@ -61,7 +61,7 @@ const LIT_FRAGMENT = /* glsl */ `
   }
 `;
 
-/** For so many slots, 64 in a row. */
+/** A texture for so many slots, 64 in a row. */
 export function slotTexture(slots: number): DataTexture {
   const width = SLOTS_PER_ROW * TEXELS_PER_SLOT;
   const height = Math.max(1, Math.ceil(slots / SLOTS_PER_ROW));
@@ -81,14 +81,17 @@ export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, col
 }
 
 /**
- * For copies that read their matrix, colour, grey and alpha from a texture. Lit as everything else by the light at the
- * camera, but at the vertices: small things do not show the difference, software renderers do.
+ * A material for copies that read their matrix, colour, grey and alpha from a texture. Lit as everything else by the
+ * light at the camera, but at the vertices: small things do not show the difference, software renderers do.
  */
 export function slotMaterial(slots: { value: Texture }): ShaderMaterial {
   return new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { slots } });
 }
 
-/** For opaque surfaces that are seen from both sides and lit at each pixel, exactly as three.js does by the light at the camera. */
+/**
+ * A material for opaque surfaces that are seen from both sides and lit at each pixel, as three.js does by the light at
+ * the camera.
+ */
 export function litSlotMaterial(slots: { value: Texture }): ShaderMaterial {
   return new ShaderMaterial({ vertexShader: LIT_VERTEX, fragmentShader: LIT_FRAGMENT, uniforms: { slots }, side: DoubleSide });
 }

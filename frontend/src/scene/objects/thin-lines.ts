@@ -31,7 +31,7 @@ export class ThinLines {
     this.settle();
   }
 
-  /** How many segments there are. */
+  /** The number of segments. */
   get count(): number {
     return (this.root.geometry.attributes["position"]?.count ?? 0) / 2;
   }

@@ -3,7 +3,7 @@ import type { CameraModel } from "../../protocol";
 
 const NEAR = 0.01;
 
-/** How much of a window an image covers, along x and y, for it to keep its shape; RViz's rule. */
+/** The share of a window that an image covers along x and y, so that it keeps its shape; RViz's rule. */
 export function imageZoom(
   camera: CameraModel,
   factor: number,
@@ -28,7 +28,7 @@ export function projection(camera: CameraModel, zoom: readonly [number, number],
   return new Matrix4().set(x, 0, shiftX, 0, 0, y, shiftY, 0, 0, 0, depth, shift, 0, 0, -1, 0);
 }
 
-/** Where the camera is in the frame of its image, turned from the image's axes (z ahead) to the scene's (z back). */
+/** The pose of the camera in the frame of its image, turned from the image's axes (z ahead) to the scene's (z back). */
 export function cameraInImageFrame({ offset_x, offset_y }: CameraModel): Matrix4 {
   return new Matrix4().makeRotationX(Math.PI).setPosition(offset_x, offset_y, 0);
 }

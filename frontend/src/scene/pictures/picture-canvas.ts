@@ -32,7 +32,7 @@ export class PictureCanvas {
     this.context = context;
   }
 
-  /** How many images it has shown. */
+  /** The number of images shown. */
   get count(): number {
     return this.painted;
   }

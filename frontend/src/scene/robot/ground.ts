@@ -5,9 +5,9 @@ import type { RobotScene } from "../../protocol";
 const STANDS = 0.01;
 
 /**
- * How high the ground of a robot is in the fixed frame, m: at its lowest point where that is below z = 0, as with
- * wheels below the frame that they turn about. A robot whose base stands on z = 0 stays there whatever reaches below
- * it, as an arm may that is mounted on a table.
+ * The height of a robot's ground in the fixed frame, m: its lowest point where that is below z = 0, as with wheels below
+ * the frame that they turn about. A robot whose base stands on z = 0 stays there whatever reaches below it, as an arm
+ * may that is mounted on a table.
  *
  * @param robot its base are the links that no joint moves.
  * @param boxes around what is seen of each link, by its name.

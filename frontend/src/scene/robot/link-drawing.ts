@@ -8,7 +8,7 @@ import type { MovingPiece } from "./moving-meshes";
 import { ShapeDrawing, type ShapePiece, type ShapeTold } from "./shape-drawing";
 import type { SolidKind, Solids } from "./solids";
 
-/** How a link is to be drawn: the display's properties and the link's own, together. */
+/** The style of a link: the display's properties and the link's own, together. */
 export interface LinkStyle {
   enabled: boolean;
   visual: boolean;
@@ -81,7 +81,7 @@ export class LinkDrawing {
     return this.visuals.filter((each) => each.drawn).length;
   }
 
-  /** Where it is drawn; null before it had a transform. */
+  /** The pose at which it is drawn; null before it had a transform. */
   get pose(): Matrix4 | null {
     return this.posed ? this.root.matrix : null;
   }

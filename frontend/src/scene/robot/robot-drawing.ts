@@ -73,7 +73,7 @@ export class RobotDrawing {
     return this.links.size;
   }
 
-  /** How many of its links have a place, and how many of its meshes and textures are still to come. */
+  /** The number of links that have a pose, and of meshes and textures that are still being loaded. */
   get progress(): { posed: number; loading: number } {
     return { posed: [...this.links.values()].filter((link) => link.pose !== null).length, loading: this.loading };
   }
@@ -95,7 +95,7 @@ export class RobotDrawing {
     return box;
   }
 
-  /** How high the ground is that it stands on, in the fixed frame, m. */
+  /** The height of the ground that it stands on, in the fixed frame, m. */
   ground(): number {
     return groundOf(this.scene, this.boundsOfLinks());
   }
@@ -176,12 +176,12 @@ export class RobotDrawing {
     return link ? { name: `Link ${name}`, children: describedPose(link.root.matrix) } : null;
   }
 
-  /** Where a link is drawn; null before that is known. */
+  /** The pose of a link; null before that is known. */
   poseOf(name: string): Matrix4 | null {
     return this.links.get(name)?.pose ?? null;
   }
 
-  /** Where the origin of a link is; null before that is known. */
+  /** The origin of a link; null before that is known. */
   placeOf(name: string): Vector3 | null {
     const pose = this.poseOf(name);
     return pose ? new Vector3().setFromMatrixPosition(pose) : null;

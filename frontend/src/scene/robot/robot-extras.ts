@@ -15,10 +15,10 @@ const MASS_COLOR = 0xff0000;
 const DENSITY = 11340;
 const ONE = new Vector3(1, 1, 1);
 
-/** Where a link is drawn; null before it had a transform. */
+/** The pose at which a link is drawn; null before it had a transform. */
 export type LinkPose = (link: string) => Matrix4 | null;
 
-/** What RViz draws of a robot beside its shapes: axes of links and joints, joint axes, masses and inertias. */
+/** The parts of a robot that RViz draws beside its shapes: axes of links and joints, joint axes, masses and inertias. */
 export class RobotExtras {
   private readonly axes: AxesBatch;
   private readonly arrows: ArrowBatch;
@@ -42,7 +42,7 @@ export class RobotExtras {
     this.joints = scene.joints.map((joint) => ({ joint, origin: jointOrigin(joint) }));
   }
 
-  /** How many of each are drawn. */
+  /** The number of each that is drawn. */
   get counts(): { axes: number; jointAxes: number; masses: number; inertias: number } {
     return {
       axes: this.axes.size,

@@ -23,7 +23,7 @@ interface Part {
   own: readonly (OwnMaterial | null)[];
 }
 
-/** What is drawn together with others of its kind instead of by a mesh of its own. */
+/** A shape that is drawn in a batch of its kind, and not by a mesh of its own. */
 export interface Solid {
   readonly kind: SolidKind;
   /** From the shape of size one to the link. */
@@ -77,7 +77,7 @@ export class ShapeDrawing {
     return this.parts.length > 0;
   }
 
-  /** How it is drawn together with others; its mesh is then there for rays and outlines only. */
+  /** Its entry in a batch; its mesh then serves rays and outlines only. */
   get solid(): Solid | null {
     return this.together;
   }

@@ -9,7 +9,7 @@ const place = new Vector3();
 /** A kind of shape of which all are drawn in one call. */
 export type SolidKind = keyof typeof GEOMETRIES;
 
-/** What shapes of a kind are drawn together with; null for those that are not. */
+/** The batch for shapes of a kind; null for those that are drawn singly. */
 export function solidKind(kind: string): SolidKind | null {
   if (kind === "ellipsoid") return "sphere";
   return kind in GEOMETRIES ? (kind as SolidKind) : null;
@@ -45,14 +45,14 @@ export class Solids {
     this.small = batch(smallSphere);
   }
 
-  /** How many are drawn. */
+  /** The number of solids drawn. */
   get size(): number {
     let sum = this.spheres.length;
     for (const [kind, batch] of this.batches) if (kind !== "sphere") sum += batch.size;
     return sum;
   }
 
-  /** How many spheres are drawn with few corners. */
+  /** The number of spheres drawn with few triangles. */
   get smallSpheres(): number {
     return this.small.size;
   }

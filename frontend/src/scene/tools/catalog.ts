@@ -8,7 +8,7 @@ import { PublishPointTool } from "./publish-point";
 import { SelectTool } from "./select";
 import type { SceneToolClass } from "./tool";
 
-/** What the page knows of a class of tools; its settings are declared in `viewer/config/tools.py`. */
+/** An entry for a class of tools; its settings are declared in `viewer/config/tools.py`. */
 export interface ToolEntry {
   /** RViz's key. */
   readonly key: string;

@@ -95,7 +95,7 @@ export class MeasureTool implements SceneTool {
     return length === null || length === 0 ? "" : `${Number(length.toPrecision(4))} m`;
   }
 
-  /** At the middle of the line, of one size however far that is. */
+  /** Places the label at the middle of the line, with the same size on the screen at any distance. */
   private placeLabel(): void {
     const { labelText: text, start, end } = this;
     this.label.begin(text.length);

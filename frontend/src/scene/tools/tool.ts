@@ -4,7 +4,7 @@ import type { Stage } from "../stage";
 
 export type PointerButton = "left" | "middle" | "right";
 
-/** What the mouse, a pen or a finger did over the scene. */
+/** An event of the mouse, a pen or a finger over the scene. */
 export interface ToolEvent {
   readonly type: "move" | "down" | "up" | "wheel" | "leave";
   /** Pixels from the canvas' upper left corner, and since the event before. */
@@ -26,7 +26,7 @@ export interface ToolEvent {
   readonly click: boolean;
 }
 
-/** What a tool works with. */
+/** The objects that a tool works with. */
 export interface ToolContext {
   readonly stage: Stage;
   readonly session: Session;
@@ -39,7 +39,7 @@ export interface ToolContext {
   finish(): void;
 }
 
-/** What the mouse does while a tool is in hand: one class for each of RViz's, listed in `catalog.ts`. */
+/** A tool, which handles the mouse while it is in hand: one class for each of RViz's, listed in `catalog.ts`. */
 export interface SceneTool {
   /** Gets all keys, those of other tools included; only its own and Escape put it away, as RViz's Select. */
   readonly grabsKeys?: boolean;

@@ -4,14 +4,14 @@ import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import { Snapping } from "../modelling/snapping";
 
-/** Where the part that is edited shall be: metres, or the parts of an axis; rad, empty for an axis. */
+/** The wanted pose of the edited part: metres, or the components of an axis; rad, empty for an axis. */
 export interface Draft {
   readonly xyz: readonly number[];
   readonly rpy: readonly number[];
 }
 
 export type HandleMode = "translate" | "rotate";
-/** Whose axes the handles have. */
+/** The frame whose axes the handles have. */
 export type HandleFrame = "parent" | "own";
 
 const SNAPPING = "linkwright.editing-snapping";
@@ -170,7 +170,7 @@ export class EditingState {
     this.reset();
   }
 
-  /** What the chosen part shall have; the files are asked for when the hand rests. */
+  /** Sets the wanted pose of the chosen part; the preview is asked for when the pointer rests. */
   move(draft: Draft): void {
     const { part } = this;
     if (!part || this.whyNot !== "") return;

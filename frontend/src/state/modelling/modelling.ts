@@ -5,10 +5,10 @@ import type { TextStorage } from "../../storage";
 import type { Change, NewKind, Placement } from "./shapes";
 import { Snapping } from "./snapping";
 
-/** What the gizmo does to what is selected. */
+/** The mode of the gizmo. */
 export type GizmoMode = "translate" | "rotate" | "scale";
 
-/** What a click in the scene puts there; `address` is of a model. */
+/** The thing that a click in the scene adds; `address` is of a model. */
 export interface Placing {
   readonly kind: NewKind;
   readonly address: string;
@@ -154,7 +154,7 @@ export class Modelling {
     this.dropped.emit();
   }
 
-  /** What was dropped last, once: the scene may have come later. */
+  /** The last drop, returned only once: the scene may have come later. */
   takeDrop(): Drop | null {
     const drop = this.falling;
     this.falling = null;

@@ -6,7 +6,7 @@ export type Shape = NonNullable<WorldThing["shape"]>;
 /** A place of the ground: x and y in the world, m. */
 export type Place = readonly [number, number];
 
-/** What is to be different about a thing; what is not named stays. */
+/** A change of a thing; properties that are not given stay. */
 export type Change = Pick<ThingChange, "name"> & Partial<ThingChange>;
 
 /** Metres: what new walls have. */
@@ -47,7 +47,7 @@ export function wallBetween(a: Place, b: Place): Placement | null {
   return { pose: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, restingHeight("wall", size), 0, 0, Math.atan2(dy, dx)], size };
 }
 
-/** How high the origin of a shape is that stands on the ground, m. */
+/** The height of the origin of a shape that stands on the ground, m. */
 function restingHeight(shape: Shape, size: readonly number[]): number {
   const [first = 0, second = 0, third = 0] = size;
   if (shape === "sphere") return first;

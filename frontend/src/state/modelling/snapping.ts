@@ -41,7 +41,7 @@ export class Snapping {
     this.keep();
   }
 
-  /** Of the grid, m. */
+  /** The step of the grid, m. */
   get metres(): number {
     return this.length;
   }

@@ -38,7 +38,7 @@ const DEBUG_NODES = /(^|\/)_?(ros2cli|rqt_gui)[^/]*$/;
 const TF_TOPICS = new Set(["/tf", "/tf_static"]);
 const ACTION = "/_action/";
 
-/** What of the graph is drawn: vertices with the edges between them, each in the order of their names. */
+/** The vertices and edges to draw for a graph, each in the order of their names. */
 export function drawnGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph {
   const vertices = new Map<string, GraphVertex>();
   const nodes = graph.nodes.filter((name) => options.debug || !DEBUG_NODES.test(name));

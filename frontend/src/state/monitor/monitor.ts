@@ -9,7 +9,7 @@ import { PlotsState } from "./plots";
 import { TeleopState } from "./teleop";
 import { TopicsState } from "./topics";
 
-/** What the live panels know. */
+/** The state of the live panels. */
 export class MonitorState {
   readonly topics: TopicsState;
   readonly plots: PlotsState;

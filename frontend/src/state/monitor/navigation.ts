@@ -2,7 +2,7 @@ import type { Connection } from "../../connection/connection";
 import type { NavigationCommand, NavigationState as Told } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** What nav2 is doing; asked for only while the panel is seen. */
+/** The state of nav2; asked for only while the panel is seen. */
 export class NavigationState {
   readonly changed = new Signal();
   /** Null before the server told. */

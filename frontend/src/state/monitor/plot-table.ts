@@ -4,7 +4,7 @@ import type { SeriesBuffer, TimeSource } from "./series-buffer";
 export type PlotTable = [number[], ...(number | null | undefined)[][]];
 
 /**
- * What is drawn of some series between two times.
+ * The samples of some series between two times, as uPlot draws them.
  *
  * Where there are more samples than the plot has columns of pixels, each column shows the least and the greatest value
  * in it: the picture is the same, and takes as long for a thousand samples a second as for ten. One sample beyond each

@@ -77,7 +77,7 @@ export class PlotsState {
     return this.heldAt !== null;
   }
 
-  /** From when to when the plots show, seconds; null while there is nothing to show. */
+  /** The time span of the plots, seconds; null while there is nothing to show. */
   get window(): readonly [number, number] | null {
     if (this.heldAt) return this.heldAt;
     const times = this.series.map((each) => each.buffer.latest(this.source)).filter((time) => time !== null);

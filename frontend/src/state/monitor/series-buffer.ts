@@ -1,4 +1,4 @@
-/** Which time a sample is plotted at. */
+/** The time at which a sample is plotted. */
 export type TimeSource = "received" | "stamp";
 
 const FIRST_CAPACITY = 1024;

@@ -46,7 +46,7 @@ const KEYS: Readonly<Record<string, Motion>> = {
 
 const SIDEWAYS: Readonly<Record<string, Motion>> = { ArrowLeft: motion(0, 0, 1), ArrowRight: motion(0, 0, -1) };
 
-/** What a key means; null when it means nothing to the pad. */
+/** The motion of a key; null for other keys. */
 export function motionOfKey(key: string, shift: boolean): Motion | null {
   return (shift ? SIDEWAYS[key] : undefined) ?? KEYS[key] ?? null;
 }

@@ -16,7 +16,7 @@ export interface TeleopSettings {
   gamepad: boolean;
 }
 
-/** What moves the robot: keys and the pad add up, a gamepad goes by itself. */
+/** A source of motion: keys and the pad add up, a gamepad is alone. */
 export type Source = "keys" | "pad" | "gamepad";
 
 const SAVED_KEY = "linkwright.teleop.1";

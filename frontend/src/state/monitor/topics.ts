@@ -37,7 +37,7 @@ export class TopicsState {
     });
   }
 
-  /** Somebody wants the list of topics to be current, or does so no longer. */
+  /** Starts or stops keeping the list of topics current for a reader. */
   list(reader: object, wanted: boolean): void {
     const before = this.readers.size;
     if (wanted) this.readers.add(reader);
@@ -45,7 +45,7 @@ export class TopicsState {
     if (before === 0 || this.readers.size === 0) this.announce();
   }
 
-  /** Which topics are to be measured, and of which the last message is wanted. */
+  /** Sets the topics to be measured, and those whose last message is wanted. */
   watch(measured: Iterable<string>, opened: Iterable<string>): void {
     this.measured = [...measured];
     this.opened = [...opened];

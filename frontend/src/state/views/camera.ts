@@ -3,7 +3,7 @@ import { add, dot, scale, subtract, turn, unit, type Vector } from "./vector";
 /** Ogre's default vertical field of view, which RViz leaves as it is. */
 export const FIELD_OF_VIEW = Math.PI / 4;
 
-/** Where a camera is and how it looks. */
+/** The pose and projection of a camera. */
 export interface Camera {
   readonly position: Vector;
   /** Unit vectors at right angles; the camera looks against `back`. */
@@ -66,7 +66,7 @@ export function rayThrough(camera: Camera, x: number, y: number, { width, height
   return { origin: camera.position, direction: unit(towards) };
 }
 
-/** Where a ray meets the plane z = 0; null where it leads away from it. */
+/** The intersection of a ray with the plane z = 0; null where it leads away from it. */
 export function onGround({ origin, direction }: Ray): Vector | null {
   const distance = -origin[2] / direction[2];
   if (!Number.isFinite(distance) || distance < 0) return null;
@@ -84,7 +84,7 @@ function moved(camera: Camera, place: (point: Vector) => Vector, yaw: number): C
   };
 }
 
-/** How large a pixel is at a point, m. */
+/** The size of a pixel at a point, m. */
 export function pixelSize(camera: Camera, point: Vector, { height }: ViewSize): number {
   if (camera.scale !== null) return 1 / camera.scale;
   const depth = Math.max(1e-3, dot(subtract(camera.position, point), camera.back));

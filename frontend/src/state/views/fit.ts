@@ -9,7 +9,7 @@ const NEAREST_CLIP = 0.001;
 const CLIP_SHARE = 0.25;
 const NEAR_CLIP = "Near Clip Distance";
 
-/** How to see all of a box from the side that a camera is at. */
+/** The framing of a box from the side that a camera is at. */
 export interface Framing {
   /** Of the box. */
   readonly middle: Vector;

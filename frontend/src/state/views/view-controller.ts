@@ -5,7 +5,7 @@ import type { Span, Vector } from "./vector";
 /** Values of a view by the paths of their properties: `Distance`, `Focal Point/X`. */
 export type ViewValues = Readonly<Record<string, PropertyValue>>;
 
-/** What the mouse did: which buttons it holds, and how far it went, pixels. */
+/** A movement of the mouse: its buttons, and its distance in pixels. */
 export interface Drag extends ViewSize {
   readonly left: boolean;
   readonly middle: boolean;
@@ -18,10 +18,10 @@ export interface Drag extends ViewSize {
   readonly dy: number;
 }
 
-/** What the camera does under the mouse; each has its cursor. */
+/** The motion of the camera under the mouse; each has its cursor. */
 export type Motion = "rotate3d" | "rotate2d" | "moveXY" | "moveZ" | "zoom";
 
-/** Which text of the status line tells what the buttons do. */
+/** The text of the status line about the buttons. */
 export type MouseHint = "orbit" | "orbitShift" | "groundShift" | "fly" | "flyShift" | "map" | "mapShift";
 
 /** The view to look like: its class, its values, and its camera in the frame of the new one's target. */

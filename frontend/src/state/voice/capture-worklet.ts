@@ -9,7 +9,7 @@ declare class AudioWorkletProcessor {
 }
 declare function registerProcessor(name: string, processor: new () => AudioWorkletProcessor): void;
 
-/** What the thread for sound sends. */
+/** A message of the thread for sound. */
 export interface CaptureMessage {
   samples: Int16Array;
   /** Seconds of sound that were found to be lost since the last message. */

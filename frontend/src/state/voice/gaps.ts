@@ -26,7 +26,7 @@ export class GapFinder {
   private least = Infinity;
   private before = Infinity;
 
-  /** For a stream of `rate` samples a second. */
+  /** Detects gaps in a stream of `rate` samples a second. */
   constructor(private readonly rate: number) {
     this.windowEnd = WINDOW * rate;
   }

@@ -8,7 +8,7 @@ import workletUrl from "./capture-worklet.ts?worker&url";
  */
 export type MicrophoneProblem = "insecure" | "denied" | "none" | "busy" | "lost" | "failed";
 
-/** What makes sound of a microphone; tests have one of their own. */
+/** A running capture of a microphone; tests have one of their own. */
 export interface Capture {
   /** Has the part of a block that is there delivered; resolves when it is. */
   flush(): Promise<void>;

@@ -115,7 +115,7 @@ export class VoiceState {
     return this.isAnswered;
   }
 
-  /** Somebody wants to know what is said, or no longer. */
+  /** Starts or stops listening to the conversation for `who`. */
   watch(who: object, wanted: boolean): void {
     const before = this.watched;
     if (wanted) this.watching.add(who);
