@@ -4,13 +4,37 @@ from __future__ import annotations
 
 from array import array
 from collections import OrderedDict
-from typing import Any
+from typing import Any, NamedTuple
 
 from linkwright.messages.checks import is_array, is_scalar
 from linkwright.messages.definitions.interfaces import PRIMITIVES, Container, FieldType
 from linkwright.messages.message import Message, definition_of
 
-_CUT = "..."
+CUT = "..."
+"""The end of texts and lists that are cut."""
+
+
+class Abridgement(NamedTuple):
+    """The parts of messages that are not shown.
+
+    Attributes:
+        truncate_length: longer texts and lists are cut to this length and end with ``...``; None for no limit.
+        no_arr: whether arrays and sequences are replaced by their type and length.
+        no_str: whether texts are replaced by their length.
+    """
+
+    truncate_length: int | None = None
+    no_arr: bool = False
+    no_str: bool = False
+
+    def text(self, text: str) -> str:
+        """What is shown of a text."""
+        return f"<string length: <{len(text)}>>" if self.no_str else self.cut(text)
+
+    def cut(self, text: str) -> str:
+        """A text, cut where it is too long."""
+        length = self.truncate_length
+        return text[:length] + CUT if length is not None and len(text) > length else text
 
 
 def to_dict(
@@ -26,16 +50,20 @@ def to_dict(
 
     Bytes are texts of the characters of the same numbers (rosidl_runtime_py).
     """
+    return _dict(message, Abridgement(truncate_length, no_arr, no_str))
+
+
+def _dict(message: Message, shown: Abridgement) -> OrderedDict[str, Any]:
     plain: OrderedDict[str, Any] = OrderedDict()
     for field in definition_of(type(message)).fields:
         kind = field.type
         value = getattr(message, field.name)
         if kind.container is Container.ONE:
-            plain[field.name] = _plain(value, truncate_length, no_arr, no_str)
-        elif no_arr:
+            plain[field.name] = _plain(value, shown)
+        elif shown.no_arr:
             plain[field.name] = abbreviated(kind, value)
         else:
-            plain[field.name] = _plain_list(value, truncate_length, no_arr, no_str)
+            plain[field.name] = _plain_list(value, shown)
     return plain
 
 
@@ -48,13 +76,17 @@ def to_csv(message: Message, *, truncate_length: int | None = None, no_arr: bool
         no_arr: as in `to_dict`.
         no_str: as in `to_dict`.
     """
+    return _line(message, Abridgement(truncate_length, no_arr, no_str))
+
+
+def _line(message: Message, shown: Abridgement) -> str:
     words: list[str] = []
     for field in definition_of(type(message)).fields:
         value = getattr(message, field.name)
-        if no_arr and field.type.container is not Container.ONE:
+        if shown.no_arr and field.type.container is not Container.ONE:
             words.append(abbreviated(field.type, value))
         else:
-            words.append(_csv(value, truncate_length, no_arr, no_str))
+            words.append(_csv(value, shown))
     # A field of no values leaves nothing, not even a comma at the beginning of the line.
     text = ""
     for word in words:
@@ -72,44 +104,37 @@ def abbreviated(kind: FieldType, value: Any) -> str:
     return f"<sequence type: {name}{bound}, length: {len(value)}>"
 
 
-def abbreviated_text(text: str) -> str:
-    """The length of a text, in place of it."""
-    return f"<string length: <{len(text)}>>"
-
-
-def _plain(value: Any, truncate_length: int | None, no_arr: bool, no_str: bool) -> Any:
+def _plain(value: Any, shown: Abridgement) -> Any:
     if isinstance(value, bytes):
-        return _cut(value.decode("latin-1"), truncate_length)
+        return shown.cut(value.decode("latin-1"))
     if isinstance(value, str):
-        return abbreviated_text(value) if no_str else _cut(value, truncate_length)
+        return shown.text(value)
     if isinstance(value, Message):
-        return to_dict(value, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
+        return _dict(value, shown)
     return value.item() if is_scalar(value) else value
 
 
-def _plain_list(values: Any, truncate_length: int | None, no_arr: bool, no_str: bool) -> list[Any]:
-    cut = truncate_length is not None and len(values) > truncate_length
+def _plain_list(values: Any, shown: Abridgement) -> list[Any]:
+    length = shown.truncate_length
+    cut = length is not None and len(values) > length
     if isinstance(values, array) or is_array(values):
-        numbers: list[Any] = (values.ravel() if is_array(values) else values)[:truncate_length].tolist()
-        return [*numbers, _CUT] if cut else numbers
-    plain = [_plain(each, truncate_length, no_arr, no_str) for each in list(values)[:truncate_length]]
-    return [*plain, _CUT] if cut else plain
+        numbers: list[Any] = (values.ravel() if is_array(values) else values)[:length].tolist()
+        return [*numbers, CUT] if cut else numbers
+    plain = [_plain(each, shown) for each in list(values)[:length]]
+    return [*plain, CUT] if cut else plain
 
 
-def _cut(text: str, length: int | None) -> str:
-    return text[:length] + _CUT if length is not None and len(text) > length else text
-
-
-def _csv(value: Any, truncate_length: int | None, no_arr: bool, no_str: bool) -> str:
+def _csv(value: Any, shown: Abridgement) -> str:
     if isinstance(value, Message):
-        return to_csv(value, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
+        return _line(value, shown)
     if isinstance(value, str):
-        return abbreviated_text(value) if no_str else _cut(value, truncate_length)
+        return shown.text(value)
     if isinstance(value, bytes):
         return str(value)
     if isinstance(value, (list, tuple, array)) or is_array(value):
-        words = [_csv(each, truncate_length, no_arr, no_str) for each in list(value)[:truncate_length]]
-        if truncate_length is not None and len(value) > truncate_length:
-            words.append(_CUT)
+        length = shown.truncate_length
+        words = [_csv(each, shown) for each in list(value)[:length]]
+        if length is not None and len(value) > length:
+            words.append(CUT)
         return ",".join(words)
     return str(value)

@@ -42,7 +42,7 @@ def set_fields(
         UnknownFieldError: MSG301, a field that there is not; also an AttributeError.
         WrongValueError: MSG302, a value that the field cannot have; also a TypeError.
     """
-    setter = _Setter(expand_header_auto, expand_time_now)
+    setter = _Setter(expand_header=expand_header_auto, expand_time=expand_time_now)
     setter.fields(message, values, "")
     if setter.found:
         unknown = setter.found[0].code == "MSG301"
@@ -57,7 +57,7 @@ class _Unfit(Exception):  # noqa: N818 - becomes a diagnostic
 class _Setter:
     """Sets fields and collects all mistakes."""
 
-    def __init__(self, expand_header: bool, expand_time: bool) -> None:
+    def __init__(self, *, expand_header: bool, expand_time: bool) -> None:
         self._expand_header = expand_header
         self._expand_time = expand_time
         self.found: list[Diagnostic] = []

@@ -12,22 +12,14 @@ from collections import OrderedDict
 from collections.abc import Callable
 from functools import lru_cache
 from math import isfinite
-from typing import Any, NamedTuple
+from typing import Any
 
 from linkwright.messages.checks import is_array
-from linkwright.messages.conversion import abbreviated, abbreviated_text, to_dict
+from linkwright.messages.conversion import CUT, Abridgement, abbreviated, to_dict
 from linkwright.messages.definitions.interfaces import Container, Field, FieldType
 from linkwright.messages.message import Message, definition_of
 
 _LONGEST_REMEMBERED = 200
-
-
-class _Options(NamedTuple):
-    """The options of a text."""
-
-    truncate_length: int | None
-    no_arr: bool
-    no_str: bool
 
 
 def to_yaml(
@@ -48,17 +40,17 @@ def to_yaml(
         flow_style: lists in brackets; what lies in them in braces.
     """
     if flow_style:
-        return _dumped(to_dict(message, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str), True)
+        return _dumped(to_dict(message, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str), flow_style=True)
     lines: list[str] = []
-    _Writer(_Options(truncate_length, no_arr, no_str), lines).message(message, "", ())
+    _Writer(Abridgement(truncate_length, no_arr, no_str), lines).message(message, "", ())
     return "".join(lines) or "{}\n"
 
 
 class _Writer:
     """Writes one message. A path is the containers of a value, ``m`` for mappings and ``s`` for lists."""
 
-    def __init__(self, options: _Options, lines: list[str]) -> None:
-        self._options = options
+    def __init__(self, shown: Abridgement, lines: list[str]) -> None:
+        self._shown = shown
         self._lines = lines
 
     def message(self, message: Message, indent: str, way: tuple[str, ...]) -> None:
@@ -82,15 +74,15 @@ class _Writer:
                 append(f"{indent}{key}: {self._text(value, way)}\n")
 
     def _list(self, kind: FieldType, values: Any, indent: str, way: tuple[str, ...]) -> None:
-        lines, options = self._lines, self._options
-        if options.no_arr:
+        lines = self._lines
+        if self._shown.no_arr:
             lines.append(f" {_scalar(abbreviated(kind, values))}\n")
             return
         if not len(values):
             lines.append(" []\n")
             return
         lines.append("\n")
-        length = options.truncate_length
+        length = self._shown.truncate_length
         shown = values if length is None else list(values)[:length]
         bullet = indent + "- "
         number = _number_text(kind)
@@ -102,7 +94,7 @@ class _Writer:
             for each in shown:
                 self._item(each, indent, bullet, way)
         if len(shown) < len(values):
-            lines.append(f"{bullet}'...'\n")
+            lines.append(f"{bullet}'{CUT}'\n")
 
     def _item(self, value: Any, indent: str, bullet: str, way: tuple[str, ...]) -> None:
         lines = self._lines
@@ -117,12 +109,7 @@ class _Writer:
             lines.append(f"{bullet}{{}}\n")
 
     def _text(self, value: Any, way: tuple[str, ...]) -> str:
-        length = self._options.truncate_length
-        text: str = value.decode("latin-1") if isinstance(value, bytes) else value
-        if self._options.no_str and not isinstance(value, bytes):
-            text = abbreviated_text(text)
-        elif length is not None and len(text) > length:
-            text = text[:length] + "..."
+        text = self._shown.cut(value.decode("latin-1")) if isinstance(value, bytes) else self._shown.text(value)
         if len(text) <= _LONGEST_REMEMBERED and text.isprintable():
             return _scalar(text)
         return _placed_scalar(text, way)
@@ -169,13 +156,13 @@ def _float_text(value: float) -> str:
 @lru_cache(maxsize=8192)
 def _scalar(text: str) -> str:
     """A text of one line as a value or a key."""
-    return _dumped({"k": text}, False)[len("k: ") : -1]
+    return _dumped({"k": text}, flow_style=False)[len("k: ") : -1]
 
 
 def _placed_scalar(text: str, way: tuple[str, ...]) -> str:
     """A text of several lines: they are indented according to the place, so PyYAML is shown one like it."""
-    marker = _dumped(_wrapped("X", way), False)
-    return _dumped(_wrapped(text, way), False)[marker.index("X") : -1]
+    marker = _dumped(_wrapped("X", way), flow_style=False)
+    return _dumped(_wrapped(text, way), flow_style=False)[marker.index("X") : -1]
 
 
 def _wrapped(text: str, way: tuple[str, ...]) -> Any:
@@ -185,7 +172,7 @@ def _wrapped(text: str, way: tuple[str, ...]) -> Any:
     return value
 
 
-def _dumped(data: Any, flow_style: bool) -> str:
+def _dumped(data: Any, *, flow_style: bool) -> str:
     import yaml  # here, because a launch without an echo has no use for it
 
     class Dumper(yaml.SafeDumper):
