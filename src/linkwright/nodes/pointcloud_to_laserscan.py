@@ -33,7 +33,6 @@ _TINY = float(np.finfo(np.float64).tiny)
 class _Converter(SingleNode, ABC):
     """The base of both: a target frame, two topics, and work only while anybody subscribes."""
 
-    INPUT: str
     INPUT_TYPE: str
     OUTPUT_TYPE: str
 

@@ -18,7 +18,6 @@ from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read
 from linkwright.geometry.meshes import read_mesh, unreadable
 from linkwright.geometry.polygon import triangulated
 from linkwright.geometry.single import Transform, compose, rotation_from_z
-from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.links import Visual
 from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Plane, Polyline, Shape
@@ -36,7 +35,6 @@ _MOST_HULL_CORNERS = 64
 """The hull of what moves has no more corners."""
 _LEAST_AREA = 1e-12
 """In m2: what has no more is not seen, and MuJoCo refuses it."""
-_UNIT: Vector3 = (1.0, 1.0, 1.0)
 
 
 class MeshLibrary:

@@ -83,11 +83,6 @@ def make_soft(geom: Any) -> None:
     geom.solref = list(_SOFT)
 
 
-def is_slippery(geom: Any) -> bool:
-    """Whether a geom is frictionless."""
-    return bool(geom.condim == 1)
-
-
 def make_wheel(geom: Any, step: float, grip: float | None = None) -> None:
     """Let a geom roll without slipping: a hard contact, of higher priority than that of a ground of equal friction.
 

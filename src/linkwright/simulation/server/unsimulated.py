@@ -28,25 +28,32 @@ def unsimulated_in(model: Model) -> list[str]:
 
 
 def _named(roots: Iterable[Element]) -> list[str]:
-    found: dict[str, None] = {}
+    found: set[str] = set()
     for root in roots:
         pending = [root]
         while pending:
             element = pending.pop()
             for child in element.elements():
-                if child.tag in _NOWHERE:
-                    found[f"<{child.tag}>"] = None
-                elif element.tag == "world" and child.tag == "joint" and child.first("sensor") is not None:
-                    found["<sensor> in <joint> of <world>"] = None
-                elif (element.tag, child.tag) in _IN:
-                    found[f"<{child.tag}> in <{element.tag}>"] = None
-                elif child.tag == "plugin" and element.tag in _WITHOUT_PLUGINS:
-                    filename = child.attributes.get("filename", "")
-                    if not needs_nothing(filename):
-                        found[f"{filename} in <{element.tag}>"] = None
+                name = _name(element, child)
+                if name:
+                    found.add(name)
                 elif child.tag not in OPEN and child.tag != "state":
                     pending.append(child)
     return sorted(found)
+
+
+def _name(parent: Element, child: Element) -> str:
+    """The name of an element that is not simulated; empty for others."""
+    if child.tag in _NOWHERE:
+        return f"<{child.tag}>"
+    if parent.tag == "world" and child.tag == "joint" and child.first("sensor") is not None:
+        return "<sensor> in <joint> of <world>"
+    if (parent.tag, child.tag) in _IN:
+        return f"<{child.tag}> in <{parent.tag}>"
+    if child.tag == "plugin" and parent.tag in _WITHOUT_PLUGINS:
+        filename = child.attributes.get("filename", "")
+        return "" if needs_nothing(filename) else f"{filename} in <{parent.tag}>"
+    return ""
 
 
 def _roots(world: World) -> Iterator[Element]:
