@@ -97,7 +97,7 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
     if alone and computed is not None and comparison is not None:
         if present.mass > 0:
             density = present.mass / computed.mass * found.density
-            reasons += _of_density(density, any(isinstance(each.geometry, Mesh) for each in shapes))
+            reasons += _of_density(density, has_mesh=any(isinstance(each.geometry, Mesh) for each in shapes))
         reasons += _of_comparison(comparison, computed)
     if reasons:
         worst = min(reasons, key=lambda each: _ORDER.index(each.standing)).standing
@@ -124,7 +124,7 @@ def _without(link: Link, bodies: Bodies) -> Verdict:
     return Verdict(Standing.UNJUDGED, phrase("it is only a frame"))
 
 
-def _of_density(density: float, has_mesh: bool) -> list[_Reason]:
+def _of_density(density: float, *, has_mesh: bool) -> list[_Reason]:
     if density > HEAVIEST_DENSITY:
         # A mesh may be a thin skin around what weighs.
         standing = Standing.DOUBTFUL if has_mesh else Standing.IMPOSSIBLE

@@ -56,10 +56,10 @@ def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
         for name, velocity in zip(names, last.velocities, strict=False):
             if abs(velocity) > _STANDING:
                 return f"Velocity of last trajectory point of joint {name} is not zero: {velocity:.15f}"
-    return _objection_to_points(points, len(names), parameters.allow_integration_in_goal_trajectories)
+    return _objection_to_points(points, len(names), integrated=parameters.allow_integration_in_goal_trajectories)
 
 
-def _objection_to_points(points: Sequence[Any], count: int, integrated: bool) -> str | None:
+def _objection_to_points(points: Sequence[Any], count: int, *, integrated: bool) -> str | None:
     before = 0
     for number, point in enumerate(points):
         time = nanoseconds(point.time_from_start)

@@ -132,7 +132,7 @@ class PoseReader:
         reading.values[POSITION] = pose[:3]
         reading.values[ANGLES] = rpy_from_quaternion(pose[3:])
         reading.covariance[POSE, POSE] = turned
-        return _finished(reading, (*used, *([False] * 9)), self.two_d)
+        return _finished(reading, (*used, *([False] * 9)), two_d=self.two_d)
 
     def _difference(self, before: tuple[Transform, Matrix, int], sensor: Transform, used: Used) -> Reading:
         assert self._last is not None
@@ -143,7 +143,7 @@ class PoseReader:
         reading.values[VELOCITY] = np.array(moved[:3]) / seconds
         reading.values[RATES] = np.array(rpy_from_quaternion(moved[3:])) / seconds
         reading.covariance[TWIST, TWIST] = (covariance + before[1]) * seconds
-        return _finished(reading, (*([False] * 6), *used, *([False] * 3)), self.two_d)
+        return _finished(reading, (*([False] * 6), *used, *([False] * 3)), two_d=self.two_d)
 
 
 def read_twist(
@@ -171,7 +171,7 @@ def read_twist(
     reading.values[RATES] = turn @ angular
     reading.covariance[TWIST, TWIST] = both @ covariance @ both.T
     mask = (*([False] * 6), *_turned(used, known, turn, VELOCITY), *_turned(used, known, turn, RATES), *([False] * 3))
-    return _finished(reading, mask, two_d)
+    return _finished(reading, mask, two_d=two_d)
 
 
 def read_acceleration(
@@ -191,7 +191,7 @@ def read_acceleration(
     reading = _empty()
     reading.values[ACCELERATION] = turn @ _numbers(acceleration)
     reading.covariance[ACCELERATION, ACCELERATION] = turn @ covariance @ turn.T
-    return _finished(reading, (*([False] * 12), *_turned(used, known, turn, ACCELERATION)), two_d)
+    return _finished(reading, (*([False] * 12), *_turned(used, known, turn, ACCELERATION)), two_d=two_d)
 
 
 def without_gravity(acceleration: Vector, orientation: Quaternion, gravity: float = GRAVITY) -> Vector:
@@ -210,7 +210,7 @@ def _empty() -> Reading:
     return Reading(np.zeros(SIZE), np.zeros((SIZE, SIZE)), ())
 
 
-def _finished(reading: Reading, used: Used, two_d: bool) -> Reading:
+def _finished(reading: Reading, used: Used, *, two_d: bool) -> Reading:
     if two_d:
         used = tuple(each or index in _FLAT for index, each in enumerate(used))
         for index in _FLAT:

@@ -52,8 +52,8 @@ class GenericSystem(Hardware):
         self._offset = float(description.parameters.get("position_state_following_offset") or 0.0)
         self._offset_interface = description.parameters.get("custom_interface_with_following_offset", "")
         states = {each.name: each for each in self.states}
-        self._add_mock_commands("sensor", given("mock_sensor_commands") or given("fake_sensor_commands"))
-        self._add_mock_commands("gpio", given("mock_gpio_commands") or given("fake_gpio_commands"))
+        self._add_mock_commands("sensor", wanted=given("mock_sensor_commands") or given("fake_sensor_commands"))
+        self._add_mock_commands("gpio", wanted=given("mock_gpio_commands") or given("fake_gpio_commands"))
         self._joints = {
             each.name: _Joint(each, {state.kind: state for state in self.states if state.component == each.name})
             for each in description.joints
@@ -85,7 +85,7 @@ class GenericSystem(Hardware):
         ]
         self._read: Callable[[float], None] = self._integrate if self._dynamic else self._repeat
 
-    def _add_mock_commands(self, kind: str, wanted: bool) -> None:
+    def _add_mock_commands(self, kind: str, *, wanted: bool) -> None:
         names = {each.name for each in self.commands}
         for component in self.description.components:
             if wanted and component.kind == kind:

@@ -72,7 +72,7 @@ class VoiceActivity:
             self.speaking = True
         elif self.quiet_frames >= HANGOVER:
             self.speaking = False
-        self._follow(smooth, loud)
+        self._follow(smooth, loud=loud)
         return self.speaking
 
     def end(self) -> None:
@@ -80,7 +80,7 @@ class VoiceActivity:
         self.speaking = False
         self._loud = 0
 
-    def _follow(self, smooth: NDArray[np.float64], loud: bool) -> None:
+    def _follow(self, smooth: NDArray[np.float64], *, loud: bool) -> None:
         lower = smooth < self.floor
         rate = np.where(lower, _DOWN, 0.0 if loud else max(_UP, 1.0 / self._seen))
         self.floor = self.floor + rate * (smooth - self.floor)

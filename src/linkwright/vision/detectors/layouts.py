@@ -127,7 +127,7 @@ def find_layout(
     more, task = _more_numbers(shapes, metadata)
     named = labels if labels is not None or metadata.names is None else len(metadata.names)
     first = shapes[0] if shapes else ()
-    forms = _possible(first, size, more, metadata.suppressed) if len(first) == 3 else []
+    forms = _possible(first, size, more, suppressed=metadata.suppressed) if len(first) == 3 else []
     if not forms:
         shown = " ".join(str(list(shape)) for shape in shapes)
         message = phrase(
@@ -181,7 +181,7 @@ def _more_numbers(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[
     return 0, metadata.task
 
 
-def _possible(shape: Sequence[int], size: tuple[int, int], more: int, suppressed: bool) -> list[tuple[Form, int]]:
+def _possible(shape: Sequence[int], size: tuple[int, int], more: int, *, suppressed: bool) -> list[tuple[Form, int]]:
     """The possible forms of an output of a shape, the likeliest first, with their numbers of classes."""
     batch, first, second = shape
     if batch != 1:
