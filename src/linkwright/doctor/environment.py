@@ -8,7 +8,7 @@ from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.doctor.record import Observation
 
 _HIGHEST_SAFE_DOMAIN = 101
-"""On Linux the ports of higher domains overlap with those that the system gives away."""
+"""The highest domain on Linux whose ports do not overlap with those that the system gives away."""
 
 _OVER_DDS = phrase(
     "use the same ROS_DOMAIN_ID as the nodes; for nodes on other computers set "

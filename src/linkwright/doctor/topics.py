@@ -17,7 +17,7 @@ _VELOCITIES = (TWIST, TWIST_STAMPED)
 _EVERYWHERE = frozenset({"/parameter_events", "/rosout", "/clock"})
 """Topics that nodes subscribe to whether or not somebody publishes them."""
 _MOST_DIFFERENT = 3
-"""By how many letters two names may differ in length, to be one misspelt."""
+"""The greatest difference in length of two names of which one is misspelt."""
 
 
 def examine_topics(seen: Observation) -> Iterator[Diagnostic]:

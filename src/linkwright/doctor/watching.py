@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 _TF, _JOINT_STATE = "tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"
 _TRANSFORMS = ("tf", "tf_static")
 _MODELS = "/model/"
-"""What topics of gz begin with, which are not ROS's before a bridge hands them on."""
+"""The prefix of topics of gz, which are not ROS's before a bridge carries them."""
 _STRING, _CLOCK = "std_msgs/msg/String", "rosgraph_msgs/msg/Clock"
 _ENVIRONMENT = (
     "ROS_DOMAIN_ID",

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 from linkwright.simulation.scene.scene import Scene
 
 _SERVO_SPEED = 2.0
-"""How fast a servo moves in rad/s or m/s where nothing says it."""
+"""The default speed of a servo in rad/s or m/s."""
 
 
 class Actuated(Protocol):

@@ -22,7 +22,7 @@ class Outlet(Protocol):
 
 
 _BATCHES = 4
-"""So many batches of messages may wait for the event loop; then the simulation waits for it."""
+"""The number of batches that may wait for the event loop before the simulation waits for it."""
 
 
 class Exchange:

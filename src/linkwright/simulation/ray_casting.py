@@ -10,7 +10,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.simulation.library import load_mujoco
 
 GROUPS = 6
-"""How many groups of geoms MuJoCo has."""
+"""The number of MuJoCo's groups of geoms."""
 _SOUND = 4
 """Before this version, rays that are cast together miss bodies whose centre of mass is not their origin."""
 

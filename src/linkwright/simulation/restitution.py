@@ -19,9 +19,9 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.surfaces import RESTITUTION_DATA
 
 _LEAST = 0.1
-"""What hits more slowly in m/s stays where it is, as in DART, gz's engine."""
+"""The least speed in m/s at which bodies bounce, as in DART, gz's engine."""
 _ROUNDS = 50
-"""How often impulses are fitted to each other: a box that lands flat has four."""
+"""The number of iterations over all impulses: a box that lands flat has four."""
 
 
 class Stepper:

@@ -32,7 +32,7 @@ NANOSECONDS = 1_000_000_000
 _BEYOND = 1e10
 """A position or velocity that is no less, in m, rad, m/s or rad/s, is taken for an explosion, as MuJoCo does."""
 _SURELY = _BEYOND * _BEYOND
-"""Where the sum of all squares is less, none is beyond."""
+"""A bound of the sum of squares below which no single value is beyond its bound."""
 
 
 class UnstableError(LinkwrightError):

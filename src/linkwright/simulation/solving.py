@@ -21,9 +21,9 @@ Measured with 4 to 100 mbots: an island costs 2.5 us, and 0.03 us for each motor
 _LOOK = 20
 """Steps from one look to the next: in twice as few what rests may have fallen asleep."""
 _TOGETHER = 50
-"""So many looks all are solved for together, before it is seen again what rests."""
+"""The number of checks for which all are solved for together before resting bodies are looked for again."""
 _AWAKE = -11
-"""What MuJoCo counts up from for trees of bodies until they may sleep: one more than ``mjMINAWAKE`` below zero."""
+"""The start of MuJoCo's counter for trees that may fall asleep: one more than ``mjMINAWAKE`` below zero."""
 
 
 class Solving:

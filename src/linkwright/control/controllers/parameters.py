@@ -32,7 +32,7 @@ from linkwright.messages.distribution import is_before_iron
 P = TypeVar("P")
 
 Check = Callable[[str, Any], "Phrase | None"]
-"""What is wrong with the value of a parameter of a name."""
+"""A validator: the problem of a named parameter's value, or None."""
 
 _TYPES: dict[Any, ParameterType] = {
     str: ParameterType.STRING,
@@ -47,7 +47,7 @@ _TYPES: dict[Any, ParameterType] = {
     bool | None: ParameterType.BOOL,
 }
 HUMBLE, JAZZY = "humble", "jazzy"
-"""What parameters may be of only."""
+"""Distributions to which a parameter may be limited."""
 
 _SAME = object()
 _NAMES, _TABLE, _BELOW, _ABOUT = "names", "table", "below", "about"

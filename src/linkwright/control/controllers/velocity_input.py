@@ -13,7 +13,7 @@ from linkwright.graph import QoSProfile, ReliabilityPolicy
 _NANOSECONDS = 1_000_000_000
 
 REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""What controllers ask of ``~/reference``."""
+"""The profile of controllers' subscriptions to ``~/reference``."""
 
 
 class VelocityInput:

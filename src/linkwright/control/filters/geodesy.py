@@ -33,7 +33,7 @@ _BACKWARD = (
     4397.0 * _N**4 / 161280.0,
 )
 _ROUNDS = 6
-"""So often a latitude is refined; the error shrinks by hundreds each time."""
+"""The number of iterations for the latitude; each shrinks the error by hundreds."""
 
 
 class Zone(NamedTuple):

@@ -29,7 +29,7 @@ from linkwright.control.filters.motion_model import (
 )
 
 LEAST_VARIANCE = 1e-9
-"""What a measurement that claims to be exact is taken for: no measurement is, and the arithmetic needs some."""
+"""The variance of measurements that claim to be exact, as the arithmetic needs some."""
 
 DEFAULT_NOISE = (0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025, 0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015)
 """Variances that a second adds to the state, where none are given."""

@@ -41,7 +41,7 @@ from linkwright.geometry.single import (
 
 GRAVITY = 9.80665
 _FLAT = (State.Z, State.ROLL, State.PITCH, State.VZ, State.VROLL, State.VPITCH, State.AZ)
-"""What is zero for a body on a plane."""
+"""The quantities that are zero for a body on a plane."""
 _FLAT_VARIANCE = 1e-6
 _LEAST = 1e-6
 

@@ -13,7 +13,7 @@ from linkwright.control.manager.loaded import Loaded
 from linkwright.graph.log.logger import Logger
 
 BEST_EFFORT, STRICT, AUTO, FORCE_AUTO = 1, 2, 3, 4
-"""How strict a request is, of controller_manager_msgs/srv/SwitchController."""
+"""The strictness of a request, in controller_manager_msgs/srv/SwitchController."""
 
 _MORE = (
     "Check above warnings for more details. Check the state of the controllers and their required interfaces using "

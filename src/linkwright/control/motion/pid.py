@@ -11,7 +11,7 @@ from math import inf, isfinite, sqrt
 
 NONE, CLAMPED, BACK_CALCULATION, CONDITIONAL = "none", "legacy", "back_calculation", "conditional_integration"
 STRATEGIES = (NONE, CLAMPED, BACK_CALCULATION, CONDITIONAL)
-"""What keeps the integral from growing while it does no good, by control_toolbox's names."""
+"""The strategies against integral windup, by control_toolbox's names."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 UNSPECIFIED, ERASED = 0.0, -1.0
-"""What a goal's tolerance says that leaves it to the controller, and that allows anything."""
+"""Values of a goal's tolerance: keep the controller's, and allow any error."""
 
 
 @dataclass(frozen=True, slots=True)

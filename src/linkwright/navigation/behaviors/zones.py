@@ -18,7 +18,7 @@ from linkwright.navigation.costmaps.footprints import Footprint
 from linkwright.navigation.following.follower import Velocity
 
 Points = NDArray[np.float64]
-"""Of sensors, in the frame of the robot, in metres, of shape (points, 2)."""
+"""Points of sensors in the frame of the robot, in metres, of shape (points, 2)."""
 
 
 class Action(IntEnum):

@@ -18,7 +18,7 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.rays import cells_on_lines
 
 OVERWRITE, MAXIMUM, MAXIMUM_OF_KNOWN = 0, 1, 2
-"""How costs come together with those below: instead of them, the higher one, and the higher one where any is known."""
+"""How costs are combined with those below: replaced, the maximum, or the maximum where any is known."""
 
 Cells = NDArray[np.int64]
 

@@ -19,13 +19,13 @@ from linkwright.navigation.grids.grid import Grid
 
 _CERTAIN: Final = 254.0
 _EVEN: Final = 127
-"""Of a cell of which nothing is known: it is as likely occupied as free."""
+"""The probability of an unknown cell, from 0 to 254."""
 _HIT: Final = 233
-"""Of the cell in the middle of where something was measured."""
+"""The probability of a cell at the middle of a reading, from 0 to 254."""
 _LEAST: Final = 0.02
 """Likelihoods count as no less, and no nearer to 1, so that nothing is certain for ever."""
 _BEYOND: Final = 1.2
-"""As far behind what was measured, as a factor, cells are looked at."""
+"""The distance up to which cells are updated, as a factor of the reading."""
 _NANOSECONDS = 1e9
 
 

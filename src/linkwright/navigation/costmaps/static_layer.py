@@ -20,7 +20,7 @@ MapPose = tuple[float, float, float]
 
 _SAME_PLACE: MapPose = (0.0, 0.0, 0.0)
 _ROUNDING = 1e-3
-"""By how much of a cell two grids may be apart and still lie on each other."""
+"""The tolerance, in cells, within which two grids are aligned."""
 
 
 @dataclass(frozen=True, kw_only=True)

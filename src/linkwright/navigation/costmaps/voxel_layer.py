@@ -21,7 +21,7 @@ from linkwright.navigation.grids.rays import cells_on_lines
 MOST_LEVELS: Final = 16
 _ALL: Final = (1 << MOST_LEVELS) - 1
 _BITS: Final = np.array([each.bit_count() for each in range(1 << MOST_LEVELS)], np.uint8)
-"""How many bits are set in a number."""
+"""The number of set bits of each 16-bit number."""
 
 Levels = NDArray[np.uint16]
 """A bit for each level."""

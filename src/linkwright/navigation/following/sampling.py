@@ -74,9 +74,9 @@ class SamplingParameters:
 
 
 _MOST_FOOTPRINTS = 60
-"""So many of the best velocities are tried with the footprint of the robot, which takes longer."""
+"""The number of best velocities that are checked with the footprint, which takes longer."""
 _LOOK_AHEAD = 0.35
-"""Where on the path, ahead of a motion's end, the robot should look, in metres."""
+"""The distance in metres along the path, ahead of a motion's end, that the robot should face."""
 
 
 class SamplingFollower(Follower):
@@ -198,4 +198,4 @@ def _braked(speed: float, deceleration: float, period: float) -> float:
 
 
 _NO_WAY = 0.05
-"""In metres; no direction follows from less."""
+"""The least distance in metres from which a direction follows."""

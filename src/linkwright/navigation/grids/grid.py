@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 FREE: Final = 0
 OCCUPIED: Final = 100
 UNKNOWN: Final = -1
-"""What cells of an occupancy grid say (nav_msgs/OccupancyGrid); between ``FREE`` and ``OCCUPIED`` it is per cent."""
+"""Values of an occupancy grid (nav_msgs/OccupancyGrid); between ``FREE`` and ``OCCUPIED`` it is per cent."""
 
 
 @dataclass(eq=False, kw_only=True)

@@ -13,7 +13,7 @@ from linkwright.navigation.grids.grid import Grid
 Cells = NDArray[np.int64]
 
 _OUTSIDE: Final = -1.0
-"""What the rim around a distance field holds."""
+"""The value of the border around a distance field."""
 
 
 def cells_on_lines(starts: NDArray[np.integer[Any]], ends: NDArray[np.integer[Any]]) -> tuple[Cells, Cells]:

@@ -16,7 +16,7 @@ from linkwright.whole_files import write_whole_file
 
 OCCUPIED_THRESH = 0.65
 FREE_THRESH = 0.25
-"""What nav2's map saver has where nothing else is said."""
+"""The default thresholds of nav2's map saver."""
 _FORMATS = ("bmp", "pgm", "png")
 _WITHOUT_OPACITY = ("pgm", "jpg", "jpeg", "bmp")
 

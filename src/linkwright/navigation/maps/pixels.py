@@ -11,7 +11,7 @@ from linkwright.navigation.maps.map_yaml import MapMode, MapYaml
 
 _FREE_GREY, _UNKNOWN_GREY = 254, 205
 UNKNOWN_DARKNESS = 1.0 - _UNKNOWN_GREY / 255.0
-"""Of the pixels that stand for unknown cells in the mode ``trinary``: a ``free_thresh`` above it reads them as free."""
+"""The darkness of ``trinary``'s pixels for unknown cells: a ``free_thresh`` above it reads them as free."""
 _OPAQUE = 255
 
 

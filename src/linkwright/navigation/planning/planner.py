@@ -23,9 +23,9 @@ from linkwright.navigation.planning.descent import descend
 from linkwright.navigation.planning.potential import Cell, Floats, potential, prices
 
 _ESCAPE_PRICE: Final = 2530.0
-"""Of a cell that is too near to an obstacle, for a robot that is there already: it leaves the shortest way."""
+"""The cost of a cell too near to an obstacle, for a robot that is there already: it leaves the shortest way."""
 _ESCAPE_REACH: Final = 1.0
-"""Within how many metres there must be a cell where the robot can be."""
+"""The radius in metres within which there must be a cell where the robot can be."""
 
 
 _NO_WAY: Final = 1e-9

@@ -30,7 +30,7 @@ _FACTOR: Final = 0.8
 _MOST: Final = 253.0
 """The price of crossing a cell that nobody has seen."""
 _ROUNDS_HELD: Final = 4
-"""So often, in steps of the wave, it is looked which of the expensive cells are due."""
+"""The number of steps of the wave between two looks for expensive cells that are due."""
 _SMALLEST_GAIN: Final = 1e-3 * NEUTRAL
 
 

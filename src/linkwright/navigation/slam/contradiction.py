@@ -12,7 +12,7 @@ from linkwright.navigation.slam.scan import PlanarScan
 _APART = 0.03
 """Rays whose directions differ by more than this are no neighbours, radians."""
 _BEHIND = 0.3
-"""By how much one must have seen further for that to be a contradiction, metres."""
+"""The least distance in metres behind a point of the other scan for a contradiction."""
 _FEWEST = 20
 
 

@@ -14,11 +14,11 @@ from linkwright.navigation.slam.search import Search, best_pose
 from linkwright.navigation.slam.steps import Steps
 
 LEAST_POINTS = 12
-"""With fewer points a scan is not matched."""
+"""The least number of points of a scan to be matched."""
 
 _ROUNDS = 15
 _FARTHEST, _NEAREST = 0.30, 0.10
-"""How far a point may be from what it belongs to, in the first round and in the last ones, in metres."""
+"""The greatest distance in metres of corresponding points, in the first round and in the last ones."""
 _SCALE = 0.03
 """Distances beyond this count less and less, in metres."""
 _CONVERGED = 1e-5

@@ -15,7 +15,7 @@ from linkwright.navigation.slam.poses import Floats, placed
 from linkwright.navigation.slam.scan import PlanarScan
 
 _MARGIN = 64
-"""By how many cells the counts grow besides what is needed."""
+"""The margin in cells by which the counts grow beyond what is needed."""
 
 Cells = NDArray[np.int64]
 

@@ -22,7 +22,7 @@ _PENALTY_GAIN = 0.2
 _MOST_POINTS = 180
 _BATCH = 1500
 _BLOCKS = 3
-"""How many of the largest blocks a side of the window has, about."""
+"""The approximate number of the largest blocks along a side of the window."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -36,7 +36,7 @@ _UNKNOWN_COVARIANCE = np.diag((0.25, 0.25, (np.pi / 12.0) ** 2))
 _FITS_LITTLE = 0.3
 """A share of beams near what is on the map up to which a scan does not fit."""
 _MISFITS = 5
-"""So many measurements in a row that do not fit are told."""
+"""The number of consecutive measurements that do not match after which a warning is logged."""
 
 
 class AmclNode(ManagedNode):

@@ -31,7 +31,7 @@ from linkwright.nodes.navigation.steps import Sent, Step, StepError, StepNode
 _DEPTH = 10
 _COSTMAP_TOPIC = "global_costmap/costmap_raw"
 _OUTSIDE = 255
-"""What a place outside of the map, or one that nobody has seen, costs."""
+"""The cost of an unknown place, or one outside of the map."""
 _RETRIES = 6
 """After so many recoveries a goal is given up."""
 _REPLANNING = {"pose": 1.0, "poses": 3.0}

@@ -28,7 +28,7 @@ from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
 _NO_SOURCE = "invalid source"
-"""What nav2 names as the zone when a sensor is silent."""
+"""nav2's name of the zone when a sensor is silent."""
 _DONE = {
     Action.STOP: "Robot to stop due to {}",
     Action.SLOWDOWN: "Robot to slow down due to {}",

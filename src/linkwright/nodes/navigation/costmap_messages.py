@@ -31,7 +31,7 @@ def _percentages() -> Costs:
 
 
 PERCENTAGES = _percentages()
-"""What an occupancy grid tells for each cost, as a byte: 255 is -1."""
+"""The value of an occupancy grid for each cost, as a byte: 255 is -1."""
 
 
 def raw_message(costmap: Costmap, frame: str, stamp: Any) -> Any:

@@ -38,9 +38,9 @@ from linkwright.nodes.pointcloud_to_laserscan import points_of
 
 _WAITING = 50
 _MOST_POINTS = 40_000
-"""Of a cloud; of a larger one every n-th point counts, which still are many for each cell."""
+"""The greatest number of points of a cloud; of a larger one every n-th is used, still many for each cell."""
 _LITTLE = 1e-4
-"""By which a ray that met nothing ends before the range of its sensor, in metres."""
+"""The distance in metres before the greatest range at which a ray without a hit ends."""
 
 
 class SensorTopic(ABC):

@@ -55,7 +55,7 @@ _HEALTH = {
     _State.FINALIZED: Health(Level.WARN, "Managed nodes have been shut down"),
     _State.UNKNOWN: Health(Level.ERROR, "An error has occurred during a node state transition"),
 }
-"""What ``/diagnostics`` says, in the words of Jazzy; Humble's know but active and inactive."""
+"""The diagnostics of states, in the words of Jazzy; Humble has active and inactive only."""
 
 
 class _ManagedNodeClient:

@@ -16,7 +16,7 @@ from linkwright.navigation.maps.map_files import load_map
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 
 MAP_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""Of a map that is published once, and that who comes later gets, too."""
+"""The profile of a map, which is published once, also for subscriptions that come later."""
 
 
 class MapServerNode(ManagedNode):

@@ -13,7 +13,7 @@ SECONDS_A_SLICE = 0.008
 _SECONDS_TO_WAIT = 0.02
 
 WAIT = "wait"
-"""What work yields that cannot go on before something else has happened."""
+"""Yielded by work that cannot go on before something else has happened."""
 
 
 class SlicedWork:

@@ -15,11 +15,11 @@ from linkwright.nodes.navigation.goals import GoalError, GoalServer
 from linkwright.nodes.navigation.managed import ManagedNode
 
 Step = Generator[None, None, Any]
-"""What goes on in steps, one each cycle."""
+"""A generator of work in steps, one each cycle."""
 
 _PERIOD = 0.05
 _SERVER_SECONDS = 5.0
-"""For so long an answer of another server is waited for."""
+"""Seconds to wait for a response of another server."""
 
 
 class StepError(GoalError):

@@ -17,7 +17,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.solving import wake
 
 _LOOKS = 100.0
-"""How often it is looked in a simulated second whether a model has come that is to be attached."""
+"""The rate in Hz of simulated time at which the child model is looked for."""
 _OWN = "__model__"
 
 

@@ -14,7 +14,7 @@ from linkwright.simulation.plugins.odometry import OdometryTopics, transforms_to
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 GZ_RATE = 100.0
-"""How often a drive of gz looks at its command in Hz; gz does before each step."""
+"""The rate in Hz at which drives of gz process commands; gz does before each step."""
 GZ_TORQUE = 5.0
 """The greatest torque of a wheel in N m where a plugin of gz names none: gz sets velocities whatever that takes."""
 MOTOR_GAIN = 20.0

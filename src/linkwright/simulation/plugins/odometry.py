@@ -17,7 +17,7 @@ from linkwright.messages import Transform as TransformMessage
 from linkwright.simulation.plugins.node import Output, PluginNode
 
 Variances = tuple[float, ...]
-"""Of x, y, z, roll, pitch and yaw."""
+"""Variances of x, y, z, roll, pitch and yaw."""
 
 _NONE = (0.0,) * 6
 _UNKNOWN = 1e12

@@ -32,7 +32,7 @@ _COMMON = frozenset(
         *("alwaysOn", "always_on", "rosDebugLevel", "legacyMode", "legacyModeNS", "gui"),
     )
 )
-"""What may stand in any plugin; the first three are read by who makes its node, the rest had a meaning once."""
+"""Elements that any plugin may contain; the first three describe its node, the rest had a meaning once."""
 _TRUTHS = {"true": True, "1": True, "false": False, "0": False}
 
 

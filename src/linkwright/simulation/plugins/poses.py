@@ -22,7 +22,7 @@ from linkwright.simulation.plugins.odometry import transform_stamped
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 _QUEUE = 100
-"""How many messages wait for a slow subscription: one for each part, where they are not together."""
+"""The depth of the queue: one message for each part, where they are not published together."""
 
 
 @dataclass(frozen=True, kw_only=True)

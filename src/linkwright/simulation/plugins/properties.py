@@ -23,9 +23,9 @@ from linkwright.simulation.scene.bodies import set_first
 from linkwright.simulation.simulation import NANOSECONDS
 
 _TYPES = {"revolute": 0, "continuous": 1, "prismatic": 2, "fixed": 3, "ball": 4, "universal": 5}
-"""Those of GetJointProperties."""
+"""The joint types of GetJointProperties."""
 _FAR = 1e9
-"""In rad (m): a limit that no joint reaches."""
+"""A limit in rad (m) that no joint reaches."""
 
 
 class ClassicProperties(SimulatedPlugin[NoParameters]):

@@ -32,14 +32,14 @@ _SYSTEMS = (
     *("follow-actor", "log", "log-playback", "elevator", "model-photo-shoot"),
 )
 _NONE = ("", "__default__")
-"""What files have that were written by programs, in place of the library of no plugin."""
+"""Values of ``filename`` for no library, in files that programs wrote."""
 _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in _SYSTEMS),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
     )
 )
-"""What other simulators need plugins for and is a part of this one."""
+"""Libraries of other simulators for what this one does itself."""
 
 
 def library_name(filename: str) -> str:

@@ -14,7 +14,7 @@ from linkwright.sdf.lights import Light
 from linkwright.simulation.simulation import Simulation
 
 _SUN = (-0.5, 0.1, -0.9)
-"""Where the light goes in worlds without any, as Gazebo's sun shines."""
+"""The direction of light in worlds without any, that of Gazebo's sun."""
 _REFLECTED = Light("reflected", "directional", diffuse=(0.25, 0.25, 0.25, 1.0), specular=(0.0, 0.0, 0.0, 1.0))
 
 

@@ -14,11 +14,11 @@ from linkwright.simulation.rendering.triangles import Mesh
 from linkwright.simulation.simulation import Simulation
 
 _THIN = 1e-6
-"""In m: what is on the surface of a box is in it."""
+"""A tolerance in m: a point on the surface of a box counts as inside."""
 _REST = 200_000_000
 """For how many simulated nanoseconds something has not moved at all that is taken for resting."""
 _FEW = 8
-"""Of so many things that move it is worth while to find out which pixels may show them."""
+"""Up to so many moving geoms it pays to find out which pixels may show them."""
 _BLUR = 1e-4
 """Slopes, and m: more than what directions of 32 bits are wrong."""
 

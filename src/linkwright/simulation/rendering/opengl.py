@@ -32,9 +32,9 @@ _LIBRARIES = {"cgl": ""} if sys.platform == "darwin" else {"egl": "EGL", "osmesa
 _NAMES = {"egl": "EGL", "osmesa": "OSMesa", "cgl": "CGL"}
 BACKENDS = tuple(_LIBRARIES)
 _LIGHTS = 8
-"""So many lights OpenGL knows at a time."""
+"""The greatest number of lights of OpenGL."""
 _FARTHER = 4.0
-"""How far the ground is drawn, in farthest distances of the camera: its edges are not in the picture."""
+"""The size of the ground, in far clip distances of the camera: its edges are outside of the picture."""
 _ROUNDING = 1e-6
 """The share of its size that a geom may be beside of what is seen by rounding alone."""
 _QUADS, _LIT_QUADS = 1, 4

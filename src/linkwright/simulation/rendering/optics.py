@@ -16,9 +16,9 @@ from linkwright.geometry.arrays import Array
 from linkwright.sdf.cameras import Camera, Distortion
 
 _TURNS = 20
-"""How often a distorted point is improved on the way back to the undistorted one."""
+"""The number of iterations that undistort a point."""
 _LARGEST = 2.0
-"""How many times wider than the picture what a distorted one is made of may be."""
+"""The greatest width of the pinhole's picture from which a distorted one is resampled, in widths of that."""
 
 
 @dataclass(frozen=True)

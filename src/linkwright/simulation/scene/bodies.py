@@ -31,22 +31,22 @@ from linkwright.simulation.scene.surfaces import apply_surface, grip_of
 from linkwright.xmltree import Element
 
 _FLAT = 1e-9
-"""So small a part of the largest moment of inertia makes a flat body one that MuJoCo takes for possible."""
+"""The least principal moment of inertia, as a share of the largest, that MuJoCo accepts for flat bodies."""
 COLLISION_GROUP, VISUAL_GROUP = 3, 2
 """MuJoCo's groups of shapes that touch, and of those that are seen."""
 SECOND_AXIS = "#2"
-"""What the name of a second axis of a joint ends in."""
+"""The suffix of the name of a joint's second axis."""
 
 _LEAST_MASS = 1e-6
-"""In kg: MuJoCo moves nothing that has no mass."""
+"""The least mass in kg: MuJoCo does not move bodies without mass."""
 _LEAST_INERTIA = 1e-9
-"""In kg m2."""
+"""The least inertia in kg m2."""
 _LEAST_MOMENT = 1e-12
-"""In kg m2: MuJoCo takes a moment of inertia of less than 1e-14 for none."""
+"""The least moment of inertia in kg m2: MuJoCo takes less than 1e-14 for none."""
 _USUAL_INERTIAL = Inertial()
 _GREY: Color = (0.7, 0.7, 0.7, 1.0)
 _WHITE: Color = (1.0, 1.0, 1.0, 1.0)
-"""Of what wears an image, and says nothing of its colour."""
+"""The colour of a textured visual without one."""
 _WATER = 1000.0
 """The density of what says nothing of its own, in kg/m3."""
 

@@ -12,7 +12,7 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.structure import PlacedJoint
 
 THREAD = "#thread"
-"""What the name of the joint ends in along which a screw moves while it turns."""
+"""The suffix of the name of the joint along which a screw moves while it turns."""
 _STEPS = 4.0
 """The time constant of what couples joints, in steps."""
 

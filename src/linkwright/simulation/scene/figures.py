@@ -27,7 +27,7 @@ from linkwright.xmltree.reader import parse_file
 
 T = TypeVar("T", Actor, Model)
 _OF_GZ = ("gz-sim", "ignition-gazebo")
-"""What libraries of gz are called."""
+"""Prefixes of the names of gz's libraries."""
 _INVERSE = "INV_BIND_MATRIX"
 _NUMBERS_OF_A_MATRIX = 16
 _FLAT = 1e-12

@@ -13,7 +13,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.simulation.scene.elevation import read_elevation
 
 _MOST = 1025
-"""So many heights along a side are kept; of more every second, third and so on."""
+"""The greatest number of heights along a side; of more every second, third and so on is kept."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,13 +28,13 @@ from linkwright.simulation.scene.wrapping import wrapped
 from linkwright.xmltree import Element
 
 _MOST_PIECES = 300
-"""So many convex pieces a mesh may become; each costs a little in every step."""
+"""The greatest number of a mesh's convex pieces; each costs a little in every step."""
 _MOST_TRIANGLES = 1_000_000
 """A mesh of more is left out: it would take gigabytes, and no contact or picture is the better for it."""
 _MOST_HULL_CORNERS = 64
 """The hull of what moves has no more corners."""
 _LEAST_AREA = 1e-12
-"""In m2: what has no more is not seen, and MuJoCo refuses it."""
+"""The least area in m2 of a triangle: smaller ones are not visible, and MuJoCo refuses them."""
 
 
 class MeshLibrary:

@@ -29,13 +29,13 @@ from linkwright.simulation.scene.wheels import SKIDDING_GRIP, make_omnidirection
 from linkwright.xmltree import Element
 
 _USUAL_STEP = 0.001
-"""In s, where a world says none that there can be."""
+"""The default time step in s."""
 _ANCHORS_APART = 0.1
-"""How far from each other in m the two points are that hold the axis of a hinge that closes a loop."""
+"""The distance in m of the two points that hold the axis of a hinge which closes a loop."""
 _LOOP_STEPS = 4.0
 """The time constant of what closes a loop, in steps."""
 _WHEELS_THAT_ROLL = 2
-"""With more of them on one link some slip in every turn."""
+"""The greatest number of rolling wheels on a link: with more, some slip in every turn."""
 _GREATEST_JUMP = 1.0
 """How much a motor at its greatest torque may change the speed of a wheel in the air within a step, in rad/s.
 
@@ -43,7 +43,7 @@ A wheel alone weighs so little that 5 N m would turn it 14 rad/s faster in 1 ms,
 next: it slips, leaves the ground and stays away from it. Motors with gears have rotors that weigh more than wheels.
 """
 _SERVO_TIME = 0.02
-"""How long a servo takes to bring its joint near to where it shall be, in s."""
+"""The time constant of a servo in s."""
 
 
 @dataclass(slots=True)

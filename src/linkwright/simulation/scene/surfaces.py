@@ -21,7 +21,7 @@ _SOFT = (0.05, 1.0)
 _HARD_STEPS = 4.0
 """The time constant of wheels, in steps; two are the least that is stable."""
 RESTITUTION_DATA = 2
-"""So many numbers of its own a geom of MuJoCo has that bounces: its coefficient of restitution, and its threshold."""
+"""The length of a bouncing geom's user data: its coefficient of restitution, and its threshold."""
 _HARD_IMPEDANCE = (0.99, 0.999, 0.001, 0.5, 2.0)
 
 

@@ -29,11 +29,11 @@ _SIDES = (
     ((0, 0, 1), (0, -1, 0), (1, 0, 0)),
     ((0, 0, -1), (0, -1, 0), (-1, 0, 0)),
 )
-"""Of each side of a box where it looks to, and where the right and the upper edge of its image are."""
+"""For each side of a box its normal, and the directions of the right and the upper edge of its image."""
 
 
 _LEAST_AREA = 1e-15
-"""In m2: triangles at poles that have none are left out."""
+"""The least area in m2: triangles at poles without area are left out."""
 
 
 def wrapped(shape: Shape) -> Triangles | None:

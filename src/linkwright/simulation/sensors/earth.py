@@ -23,9 +23,9 @@ _RADIUS = 6378137.0
 _FLATTENING = 1 / 298.257223563
 _E2 = _FLATTENING * (2 - _FLATTENING)
 _TURNS = 5
-"""How often the latitude is improved: each turn leaves less than a hundredth of the error."""
+"""The number of iterations for the latitude: each leaves less than a hundredth of the error."""
 _EARTH, _GRAVITY = 6356766.0, 9.80665
-"""Of the standard atmosphere: the radius of the earth in m, and gravity in m/s2."""
+"""The standard atmosphere's radius of the earth in m, and gravity in m/s2."""
 _SEA_PRESSURE, _SEA_TEMPERATURE, _LAPSE, _AIR = 101325.0, 288.15, 0.0065, 287.05287
 """Pressure in Pa and temperature in K at the sea, K lost with each m, and the gas constant of air in J/(kg K)."""
 EARTH_FIELD: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)

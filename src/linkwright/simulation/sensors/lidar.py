@@ -23,9 +23,9 @@ from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of, parts
 from linkwright.simulation.sensors.noise import NoiseSource
 
 _A_LITTLE = 1e-9
-"""In m: what a ray is moved on by in order not to hit the same surface again."""
+"""The step in m behind a surface, so that a ray does not hit it again."""
 _SURFACES = 64
-"""How many surfaces of its own robot a ray goes through before the range begins."""
+"""The greatest number of surfaces of its own robot that a ray passes before its range begins."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.noise import Noise, NoiseXyz
 
 _AHEAD = 64
-"""So many vectors of chance are drawn ahead."""
+"""The number of random vectors that are drawn at once."""
 
 
 class NoiseSource:

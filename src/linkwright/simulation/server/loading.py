@@ -21,9 +21,9 @@ from linkwright.xmltree.decoding import decoded
 from linkwright.xmltree.reader import read_bytes
 
 _OK, _NOT_FOUND, _FAILED = 1, 2, 4
-"""Of simulation_interfaces/msg/Result."""
+"""Results of simulation_interfaces/msg/Result."""
 _UNSUPPORTED_FORMAT, _NO_RESOURCE, _UNREADABLE, _MISSING_ASSETS, _UNSUPPORTED_ELEMENTS = 101, 102, 103, 104, 106
-"""Of simulation_interfaces/srv/LoadWorld."""
+"""Results of simulation_interfaces/srv/LoadWorld."""
 _RESULTS = {
     "SIM150": _NOT_FOUND,
     "SIM151": _UNSUPPORTED_FORMAT,

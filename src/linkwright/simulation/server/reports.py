@@ -26,9 +26,9 @@ _LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _CLOCK, _STATE = "rosgraph_msgs/msg/Clock", "simulation_interfaces/msg/SimulationState"
 _METRICS = "gazebo_msgs/msg/PerformanceMetrics"
 _POSES_PERIOD, _METRICS_PERIOD = 1 / 30, 0.5
-"""In real seconds."""
+"""Periods in real seconds."""
 PLAYING, PAUSED = 1, 2
-"""Of SimulationState."""
+"""States of simulation_interfaces/msg/SimulationState."""
 
 
 class Reports:

@@ -32,7 +32,7 @@ from linkwright.simulation.server.wrenches import Wrench, Wrenches
 from linkwright.simulation.simulation import NANOSECONDS
 
 _OK, _WRONG_STATE, _FAILED = 1, 3, 4
-"""Of simulation_interfaces/msg/Result."""
+"""Results of simulation_interfaces/msg/Result."""
 
 
 class Progress(Protocol):

@@ -12,7 +12,7 @@ from linkwright.xmltree import Element
 
 _NOWHERE = frozenset({"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "projector", "soft_contact"})
 _IN = frozenset({("actor", "animation"), ("geometry", "image")})
-"""What is simulated elsewhere, with the element in which it is not."""
+"""Pairs of elements: the first is simulated elsewhere, and not in the second."""
 _WITHOUT_PLUGINS = frozenset({"actor", "visual"})
 
 

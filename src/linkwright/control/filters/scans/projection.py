@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from linkwright.control.filters.scans.scan import Floats, Scan
 
 _ROUNDING = 1e-9
-"""Of a ray: one that is exactly that of a place in the scan belongs there, whatever the last digit says."""
+"""A tolerance of ray indices, so that rounding does not move a point to the neighbouring ray."""
 
 
 @dataclass(frozen=True, slots=True)

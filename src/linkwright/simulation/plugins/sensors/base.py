@@ -17,7 +17,7 @@ from linkwright.simulation.sensors.mount import Mount
 
 P = TypeVar("P")
 SENSOR_QOS = QoSProfile(depth=5)
-"""As gazebo_ros has it: of sensor data the depth, and reliable, so that every subscription fits."""
+"""gazebo_ros's profile: the depth of sensor data, and reliable, so that every subscription is compatible."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ import numpy as np
 from linkwright.messages import get_message
 
 _NUMBERS = {np.dtype(np.uint16): 4, np.dtype(np.float32): 7}
-"""Of sensor_msgs/msg/PointField, by the types that there are here."""
+"""The types of sensor_msgs/msg/PointField by those of numpy."""
 Points = np.ndarray[Any, np.dtype[Any]]
 
 
