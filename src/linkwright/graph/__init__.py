@@ -13,7 +13,7 @@ from linkwright.graph.endpoints.transport import Transport
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
 from linkwright.graph.log.console import console_line, print_to_console
 from linkwright.graph.log.levels import LogLevel
-from linkwright.graph.log.logger import Logger, run_logged
+from linkwright.graph.log.logger import Logger, log_failure, run_logged
 from linkwright.graph.log.record import LogRecord, LogSink
 from linkwright.graph.loop.entity import Entity, GuardCondition
 from linkwright.graph.loop.future import Future
@@ -173,6 +173,7 @@ __all__ = [
     "TransformListener",
     "Transport",
     "console_line",
+    "log_failure",
     "print_to_console",
     "qos_check_compatible",
     "run_logged",

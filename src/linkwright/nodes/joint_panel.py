@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from math import isfinite
 from random import Random
 from typing import Literal
 
-from linkwright.graph import Node, run_logged
+from linkwright.graph import Node, log_failure
 from linkwright.nodes.joint_positions import JointPositions
 from linkwright.nodes.joint_settings import Dependence
 from linkwright.urdf import JointType
@@ -172,4 +171,7 @@ class JointPanel:
 
     def _tell(self, change: PanelChange) -> None:
         for callback in tuple(self._subscribers):
-            run_logged(self._logger, "joint panel callback", partial(callback, change))
+            try:
+                callback(change)
+            except Exception as error:  # noqa: BLE001, PERF203 - one subscriber must not take the others with it
+                log_failure(self._logger, "joint panel callback", error)

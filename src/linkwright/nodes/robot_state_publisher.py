@@ -192,7 +192,7 @@ class RobotStatePublisher(SingleNode):
         opens_ns = self._throttle.opens_ns(group, now_ns, move=move)
         if self._ignore_timestamp or stamp_ns >= opens_ns:
             self._drop_held(group)
-            self._publish_moving(message)
+            self._publish_moving(message, stamp_ns)
             self._throttle.published(group, message.position, stamp_ns, stamp_ns)
         elif self._throttle.is_in_order(group, stamp_ns):
             if move or group in self._held:
@@ -219,8 +219,8 @@ class RobotStatePublisher(SingleNode):
             self._node.get_logger().error("Robot state publisher ignored an invalid JointState message")
         return False
 
-    def _publish_moving(self, message: JointState) -> None:
-        batch = self._transforms.recipe(message.name).batch(message.position, message.header.stamp.nanoseconds)
+    def _publish_moving(self, message: JointState, stamp_ns: int) -> None:
+        batch = self._transforms.recipe(message.name).batch(message.position, stamp_ns)
         if len(batch):
             self._tf_publisher.publish(TFMessage(batch=batch))
 
@@ -239,7 +239,7 @@ class RobotStatePublisher(SingleNode):
         message = held.message
         stamp_ns = message.header.stamp.nanoseconds
         if self._throttle.is_in_order(group, stamp_ns):
-            self._publish_moving(message)
+            self._publish_moving(message, stamp_ns)
             # Counted as published now, not at its stamp, or a source that is a little too fast would pass the limit
             # by having each message held for a moment only.
             self._throttle.published(group, message.position, stamp_ns, held.release_ns)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from linkwright.graph.faults import InterruptedWaitError
+from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError
 from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.entity import Entity, accepts
 from linkwright.graph.loop.future import Future
@@ -131,7 +131,8 @@ class Timer(Entity):
         Raises:
             InvalidHandleError: the timer was destroyed.
         """
-        self.check_alive()
+        if self.destroyed:
+            raise InvalidHandleError
         self._due = False
         self._running = True
         self._last_ns = self.clock.timer_ns()

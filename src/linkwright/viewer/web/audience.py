@@ -6,12 +6,11 @@ import asyncio
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics.translation import language as language_of_terminal
 from linkwright.diagnostics.translation import language_of
-from linkwright.graph import run_logged
+from linkwright.graph import log_failure
 from linkwright.viewer.protocol.message import (
     BadMessageError,
     PageMessage,
@@ -297,8 +296,12 @@ class Audience(PageGroup):
 
     def _hand_on(self, page: Page, message: PageMessage | SoundBlock) -> None:
         receive = self._receivers.get(type(message))
-        if receive is not None:
-            run_logged(self._logger, f"'{type(message).__name__}' of a page", partial(receive, page, message))
+        if receive is None:
+            return
+        try:
+            receive(page, message)
+        except Exception as error:  # noqa: BLE001 - one message must not take the page's others with it
+            log_failure(self._logger, f"'{type(message).__name__}' of a page", error)
 
 
 _RATE = 1000.0
