@@ -18,12 +18,17 @@ _EXECUTOR_WAITS = ("_sleep", "work.py")
 """The function, and its file, in which an executor waits for work."""
 
 
-def wait_until(condition: Callable[[], object], seconds: float = SECONDS, what: object = "") -> None:
-    """Wait in this thread until a condition holds; ``what``, or what it returns, is said when it never does."""
+def wait_until(
+    condition: Callable[[], object], seconds: float = SECONDS, what: object = "", pause: float = _PAUSE
+) -> None:
+    """Wait in this thread until a condition holds; ``what``, or what it returns, is said when it never does.
+
+    Between two looks there is a pause of some seconds: a longer one where looking is work, as in a browser.
+    """
     limit = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < limit, _said(seconds, what)
-        time.sleep(_PAUSE)
+        time.sleep(pause)
 
 
 async def eventually(condition: Callable[[], object], seconds: float = SECONDS, what: object = "") -> None:

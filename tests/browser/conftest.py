@@ -19,7 +19,7 @@ import pytest
 from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
 from tests import forked
-from tests.browser.live import LiveViewer, configuration
+from tests.browser.live import LOOK_EVERY, LiveViewer, configuration
 from tests.browser.seen import what_was_seen
 from tests.forked import ForkServer, start_process
 from tests.waiting import wait_until
@@ -213,7 +213,7 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
         page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
         page.goto(program.url)
         if wait:
-            page.wait_for_function("window.linkwright?.ready === true", polling=50)
+            page.wait_for_function("window.linkwright?.ready === true", polling=1000 * LOOK_EVERY)
         return page
 
     yield open_url
@@ -240,7 +240,9 @@ def state(page: Page, name: str) -> Any:
 def until(page: Page, condition: str) -> None:
     """Wait until a JavaScript condition over `lw` (window.linkwright) holds."""
     page.wait_for_function(
-        f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}", timeout=1000 * SECONDS, polling=50
+        f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}",
+        timeout=1000 * SECONDS,
+        polling=1000 * LOOK_EVERY,
     )
 
 
@@ -248,16 +250,16 @@ def becomes(read: Callable[[], Value], expected: Value) -> None:
     """Read again and again until it is what is expected; fails with what was read last."""
     limit = time.monotonic() + SECONDS
     while (value := read()) != expected and time.monotonic() < limit:
-        time.sleep(0.02)
+        time.sleep(LOOK_EVERY)
     assert value == expected
 
 
 def two_seconds_pass(page: Page) -> None:
     """Wait until the page's own clock, of its Time panel, has gone on."""
     elapsed = page.locator(".time-panel .figure").last
-    wait_until(elapsed.inner_text, SECONDS)
+    wait_until(elapsed.inner_text, SECONDS, pause=LOOK_EVERY)
     started = float(elapsed.inner_text())
-    wait_until(lambda: float(elapsed.inner_text()) >= started + 2, SECONDS)
+    wait_until(lambda: float(elapsed.inner_text()) >= started + 2, SECONDS, pause=LOOK_EVERY)
 
 
 def frames_drawn_meanwhile(page: Page) -> int:

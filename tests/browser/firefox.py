@@ -23,6 +23,7 @@ from typing import Any, TypeVar
 import aiohttp
 from PIL import Image
 
+from tests.browser.live import LOOK_EVERY
 from tests.waiting import SECONDS, wait_until
 
 Result = TypeVar("Result")
@@ -154,7 +155,7 @@ class Firefox:
     def until(self, condition: str) -> None:
         """Wait until a JavaScript condition over ``lw`` (window.linkwright) holds."""
         expression = f"((lw) => Boolean(lw && ({condition})))(window.linkwright)"
-        wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}")
+        wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}", pause=LOOK_EVERY)
 
     def press(self, *keys: str) -> None:
         """Press keys one after another, as WebDriver names them: a letter, or a code such as ``\\ue014`` (right)."""

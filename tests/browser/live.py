@@ -17,6 +17,9 @@ from tests.waiting import wait_until
 
 Result = TypeVar("Result")
 
+LOOK_EVERY = 0.05
+"""Seconds between two looks into a browser, which take milliseconds of four processes."""
+
 FILE = """\
 Visualization Manager:
   Displays:
@@ -108,7 +111,7 @@ class LiveViewer:
             read = "([number]) => window.linkwright?.received === number && window.linkwright.settled"
             return number is not None and page.evaluate(read, [number]) and self.run(sent) == number
 
-        wait_until(settled, 60)
+        wait_until(settled, 60, pause=LOOK_EVERY)
 
     def status(self, name: str) -> dict[str, tuple[str, str]]:
         """The status rows of a display: name -> level, text."""

@@ -13,6 +13,7 @@ import pytest
 from tests.browser import firefox
 from tests.browser.arm import write_arm
 from tests.browser.firefox import Firefox
+from tests.browser.live import LOOK_EVERY
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -63,7 +64,7 @@ def test_the_robot_is_drawn_and_moved(start, launch, tmp_path):
         reds = sum(count for count, (r, g, b) in picture.getcolors(1 << 24) if r > 80 and r > 3 * max(g, b))
         return reds / (picture.width * picture.height)
 
-    wait_until(lambda: share_of_red() > 0.05, what=share_of_red)
+    wait_until(lambda: share_of_red() > 0.05, what=share_of_red, pause=LOOK_EVERY)
     # Tabs are walked by keys.
     browser.evaluate("document.querySelector('[data-tab-panel-id=displays]').focus()")
     browser.press(RIGHT, ENTER)
@@ -125,7 +126,7 @@ def test_a_handle_is_dragged(start, launch, tmp_path):
         seen.append(browser.evaluate("window.linkwright.panels.editing.handles.z"))
         return len(seen) > 5 and seen[-1] == seen[-5]
 
-    wait_until(is_still)
+    wait_until(is_still, pause=LOOK_EVERY)
     handle = seen[-1]
     canvas = browser.evaluate("document.querySelector('.canvas-box canvas').getBoundingClientRect()")
     browser.drag(canvas["x"] + handle["x"], canvas["y"] + handle["y"], 0, -60)

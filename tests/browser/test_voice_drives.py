@@ -15,6 +15,7 @@ from playwright.sync_api import Browser, Locator, Page, Playwright
 
 from linkwright.speech.sound.wav import write_wav
 from tests.browser.conftest import Start, launched, state, until
+from tests.browser.live import LOOK_EVERY
 from tests.speech.voices import WORDS, say
 from tests.waiting import wait_until
 
@@ -124,7 +125,9 @@ def test_words_enrolled_with_the_microphone_drive_mbot_and_stop_it(
     x, y = place(page)
     speak(page, talk, microphone, "forward", seed=7, speed=0.97)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=forward")
-    wait_until(lambda: math.hypot(place(page)[0] - x, place(page)[1] - y) > 0.2, what=lambda: place(page))
+    wait_until(
+        lambda: math.hypot(place(page)[0] - x, place(page)[1] - y) > 0.2, what=lambda: place(page), pause=LOOK_EVERY
+    )
     speak(page, talk, microphone, "stop", seed=8, speed=1.03)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=stop")
     stood = [place(page)]

@@ -7,7 +7,7 @@ import pytest
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import String, TFMessage, get_message, get_service
-from tests.browser.conftest import state, until
+from tests.browser.conftest import becomes, state, until
 from tests.browser.live import configuration
 from tests.waiting import wait_until
 
@@ -227,12 +227,12 @@ def test_rays_and_frustums_are_drawn_as_the_display_chooses(live, open_page):
     scan = get_message("sensor_msgs/msg/LaserScan")(ranges=[4.0, 3.0, 2.0, float("inf"), float("-inf"), 1.0, 1.0, 1.0])
     scan.header.frame_id = "tower::top::laser"
     viewer.publish("/world_rays", scan, SENSOR_DATA_QOS)
-    wait_until(lambda: drawn(page)["rays"] == {"tower::top::laser": 8})
+    becomes(lambda: drawn(page)["rays"], {"tower::top::laser": 8})
 
     def choose(name: str, choice: str) -> None:
         viewer.run(lambda: viewer.viewer.displays[0].set_property((name,), choice))
 
     choose("Camera Frustums", "All")
-    wait_until(lambda: drawn(page)["frustums"] == ["tower::top::eye"])
+    becomes(lambda: drawn(page)["frustums"], ["tower::top::eye"])
     choose("Lidar Rays", "None")
-    wait_until(lambda: drawn(page)["rays"] == {})
+    becomes(lambda: drawn(page)["rays"], {})
