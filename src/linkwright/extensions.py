@@ -13,19 +13,17 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 _OURS = "linkwright."
 _READ = (_OURS, "launch_ros.")
 """How the groups begin that anybody asks for: ours, and those of launch_ros, which its users' packages extend too."""
 
 
-@dataclass(frozen=True, slots=True)
-class EntryPoint:
+class EntryPoint(NamedTuple):
     """An object of an installed package that is to be used by its name.
 
     Attributes:

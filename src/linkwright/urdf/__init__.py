@@ -1,10 +1,11 @@
 """The robot model: reading, writing and printing URDF."""
 
+from typing import TYPE_CHECKING
+
+from linkwright.deferred import deferred
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Pose, Quaternion
 from linkwright.geometry.vectors import Vector3
-from linkwright.urdf.gv import to_gv
-from linkwright.urdf.listing import tree_text
 from linkwright.urdf.model import (
     Calibration,
     Collision,
@@ -24,7 +25,11 @@ from linkwright.urdf.model import (
 )
 from linkwright.urdf.reader import Reading, read
 from linkwright.urdf.tree import children_of, parent_joints
-from linkwright.urdf.writer import save
+
+if TYPE_CHECKING:
+    from linkwright.urdf.gv import to_gv
+    from linkwright.urdf.listing import tree_text
+    from linkwright.urdf.writer import save
 
 __all__ = [
     "Box",
@@ -57,3 +62,6 @@ __all__ = [
     "to_gv",
     "tree_text",
 ]
+
+__getattr__ = deferred(__name__, {"gv": ("to_gv",), "listing": ("tree_text",), "writer": ("save",)})
+"""What is asked of a robot that was read."""
