@@ -13,7 +13,7 @@ from typing import BinaryIO
 
 MAGIC = b"\x89MCAP0\r\n"
 HEAD = struct.Struct("<BQ")
-"""Of a record: its kind, and how many bytes follow."""
+"""The head of a record: its kind, and the length of its content."""
 FOOTER_BODY = struct.Struct("<QQI")
 
 _HEADER, _SCHEMA = 0x01, 0x03

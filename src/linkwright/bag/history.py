@@ -19,7 +19,7 @@ _UNUSED = 1024
 """Places at the beginning of a list that are given back together."""
 
 _Kept = tuple[int, int, bytes]
-"""When a message was received, nanoseconds since the epoch, how many came before it, and its CDR bytes."""
+"""A message: time of reception in ns since the epoch, number of messages before it, CDR bytes."""
 
 
 class _Track:

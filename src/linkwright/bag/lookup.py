@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from rosbags.rosbag2.storage_mcap import ChunkInfo, McapReader
 
 _KEPT_BYTES = 64 << 20
-"""Of unpacked chunks, so that several messages of one chunk unpack it once."""
+"""The bytes of unpacked chunks that are cached, so that several messages of one chunk unpack it once."""
 
 _MOST_CHUNKS = 64
-"""Of more chunks only the first and the last are read: some nodes repeat their static transforms for ever."""
+"""The greatest number of chunks to read; of more only the first and the last: some repeat static transforms."""
 
 _CHUNK_HEAD = struct.Struct("<BQQQQI")
-"""Of a chunk: kind, length, times of first and last message, unpacked size, checksum; then its compression follows."""
+"""The head of a chunk: kind, length, times of first and last message, unpacked size, checksum; compression follows."""
 _INDEX_HEAD = struct.Struct("<BQHI")
-"""Of the index of a channel's messages in a chunk: kind, length, channel, bytes of the entries."""
+"""The head of a channel's index in a chunk: kind, length, channel, bytes of the entries."""
 _ENTRY = struct.Struct("<QQ")
 """Time and place within the chunk."""
 _MESSAGE_HEAD = struct.Struct("<BQHIQQ")

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 TRANSFORMS, STATIC_TRANSFORMS = "/tf", "/tf_static"
 TRANSFORMS_NS = 2_000_000_000
-"""How long before a moment transforms are of use: each message has only some of the frames."""
+"""The time before a moment in which transforms are used: each message has only some of the frames."""
 
 _MOST_COUNTED = 100_000
 """Messages whose times are looked up, so that they are counted in the part of the recording in which they came."""
 
 _FIRST_WINDOW_NS = 1_000_000_000
 _WIDER = 8
-"""How much farther back each look goes than the one before, in files without an index by topic."""
+"""The factor between the lengths of two looks back, in files without an index by topic."""
 
 Recorded = tuple[str, int, bytes]
 """A message: its topic, when it was received, nanoseconds since the epoch, and its CDR bytes."""

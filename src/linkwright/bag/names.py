@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
-"""Of the files of a recording, with the names of their storages."""
+"""The suffixes of the files of a recording, with the names of their storages."""
 
 ROS1 = ".bag"
-"""Of recordings of ROS 1, of which can only be said what makes them readable."""
+"""The suffix of recordings of ROS 1, which are refused with a hint on converting them."""
 
 PACKED = ".zstd"
 """Put behind the name of a file that is compressed as a whole."""

@@ -23,7 +23,7 @@ else:
     from backports import zstd
 
 _MAGIC = b"\x28\xb5\x2f\xfd"
-"""How what is compressed with zstd begins (RFC 8878); messages begin with a zero."""
+"""The first bytes of zstd's format (RFC 8878); messages begin with a zero."""
 
 
 def unpacked(path: Path, folder: Path) -> Path:

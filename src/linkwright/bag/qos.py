@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 _RECORDING_DEPTH = 1000
-"""How many messages may wait to be written. rosbag2 has 10, and a queue of its own behind it in C++."""
+"""The depth of recording subscriptions. rosbag2 has 10, and a queue of its own behind it in C++."""
 
 _PLAYING_DEPTH = 10
-"""How many messages a publisher keeps of whose recorded ones nobody knows it: as many as rosbag2's players do."""
+"""The depth of a publisher whose recorded ones are unknown: that of rosbag2's player."""
 
 _POLICIES: Mapping[str, Any] = {
     "history": HistoryPolicy,

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _OURS = "cdr"
-"""How messages of ROS 2 are written; topics that are written otherwise are left out."""
+"""The serialization of ROS 2's messages; topics with another one are left out."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
 
 _PARTS = 4800
-"""Of the time of a file."""
+"""The number of parts into which the time of a file is divided."""
 
 
 class RowLookup:

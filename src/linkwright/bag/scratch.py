@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 _ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder is made below it, under a name that nobody knows before
-"""Where the system keeps large files for a while; its ``/tmp`` may be memory (file-hierarchy(7))."""
+"""The system's folder for large temporary files; ``/tmp`` may be memory (file-hierarchy(7))."""
 
 
 def scratch_folder() -> TemporaryDirectory[str]:

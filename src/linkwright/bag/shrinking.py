@@ -17,7 +17,7 @@ _LEAST_BYTES = 16_384
 """Smaller messages stay as they are."""
 
 _WORTH = 0.8
-"""What is not smaller than this part of itself stays as it is: unpacking takes time, too."""
+"""The part of its size below which a message is kept compressed: decompression takes time, too."""
 
 _MOST_WAITING = 64_000_000
 """Bytes that wait for the thread; where more come than it can pack, the rest stays as it is."""

@@ -27,7 +27,7 @@ _SUMMARY_KINDS = frozenset({_FOOTER, _CHUNK_INDEX, _STATISTICS, 0x0D, 0x0E, _DAT
 """Records that only the end of a file has; a damaged end is left out and made anew."""
 
 _CHUNK_HEAD = struct.Struct("<QQQII")
-"""Of a chunk: times of first and last message, unpacked size, checksum, length of the compression's name."""
+"""The head of a chunk: times of first and last message, unpacked size, checksum, length of the compression's name."""
 _NUMBER, _PAIR, _ENTRY, _WORD = struct.Struct("<H"), struct.Struct("<HQ"), struct.Struct("<QQ"), struct.Struct("<I")
 _LONG = struct.Struct("<Q")
 _MESSAGE_HEAD = struct.Struct("<HIQ")

@@ -23,10 +23,10 @@ STORAGES = ("mcap", "sqlite3")
 """The file formats; the first is the default, as in ROS 2 from Iron on."""
 
 _REFUSALS = (OSError, sqlite3.Error)
-"""What a full disk brings about."""
+"""The errors of a full disk."""
 
 _VERSION: Literal[8] = 8
-"""Of the folder's metadata; Humble reads 8 and below but for fields it does not know, Jazzy writes 9."""
+"""The version of the metadata; Humble reads 8 and below but for unknown fields, Jazzy writes 9."""
 
 
 class BagWriter:

@@ -10,7 +10,7 @@ from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
 
 THICKNESS = 0.02
-"""How far a face reaches into what is behind it where it becomes a piece of its own, in m."""
+"""The thickness in m of a face that becomes a piece of its own."""
 
 _NEARLY_CONVEX = 0.95
 """A closed surface that fills so much of its hull is taken for its hull."""

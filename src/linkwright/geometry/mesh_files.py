@@ -23,7 +23,7 @@ MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
 _STL_HEADER, _STL_TRIANGLE = 84, 50
 """Bytes of a binary STL, before its triangles and for each."""
 _FACE_LINES = {".stl": b"facet normal", ".obj": b"\nf "}
-"""What stands once for each triangle, or polygon, of files of text."""
+"""The beginning of a line that stands once for each triangle, or polygon, in files of text."""
 
 
 class PlacedMesh(NamedTuple):

@@ -17,7 +17,7 @@ _LARGEST_TEXT = 1 << 24
 _FACET = b"facet normal ? ? ? outer loop vertex ? ? ? vertex ? ? ? vertex ? ? ? endloop endfacet".split()
 _WORDS = [place for place, word in enumerate(_FACET) if word != b"?"]
 _CORNERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
-"""Where in a facet words stand, and where the numbers of its corners."""
+"""The positions of a facet's words, and of the numbers of its corners."""
 
 
 @dataclass

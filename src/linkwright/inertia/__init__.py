@@ -18,4 +18,4 @@ __getattr__ = deferred(
         "mesh_library": ("MeshLibrary",),
     },
 )
-"""What reads meshes; the inertias that a description has are asked for without."""
+"""The modules that read meshes; the inertias that a description has are asked for without."""

@@ -33,7 +33,7 @@ _NAMES = {
     Standing.MISSING: phrase("missing"),
     Standing.ROUGH: phrase("rough"),
 }
-"""What verdicts that ask for a change begin with."""
+"""The words with which verdicts begin that ask for a change."""
 
 _BASES = {
     "mass": phrase("mass as given"),

@@ -19,11 +19,11 @@ from linkwright.urdf.bodies import Bodies
 
 _DOUBTFUL = 10.0
 _ROUGH = 2.0
-"""How many times larger or smaller than those of a solid of the same shapes moments are, to be called so."""
+"""The factor between moments and those of a solid of the same shapes from which they are rough."""
 
 _FAR = 0.5
 _OFF = 0.1
-"""How far a centre of mass is from that of the shapes to be doubtful, and to be rough, as a part of their diagonal."""
+"""The distances of a centre of mass from that of the shapes to be doubtful, and rough, in their diagonals."""
 
 
 class Standing(Enum):

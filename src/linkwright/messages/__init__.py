@@ -73,4 +73,4 @@ __all__ = [
 
 
 __getattr__ = deferred(__name__, {"tf_message": ("TFMessage", "TransformBatch")})
-"""Those made of numpy's arrays, whose import takes longer than all else here."""
+"""Classes made of numpy's arrays, whose import takes longer than all else here."""

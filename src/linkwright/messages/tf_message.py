@@ -22,7 +22,7 @@ from linkwright.messages.message import Message, definition_of
 from linkwright.messages.wellknown import Header, Quaternion, Time, Transform, TransformStamped, Vector3
 
 _FEW = 6
-"""So few transforms are written and read sooner one by one than by a layout."""
+"""The greatest number of transforms that are written and read faster one by one than by a layout."""
 
 _SHORT = 600
 """Bytes of a message of few transforms."""

@@ -116,7 +116,7 @@ class _Writer:
 
 
 _Step = tuple[str, str, FieldType, Callable[[Any], str] | None]
-"""Of a field: its key, its slot, its type, and what writes it if it is a plain number."""
+"""For a field its key, its slot, its type, and the function that writes it if it is a plain number."""
 
 _plans: dict[str, list[_Step]] = {}
 

@@ -17,7 +17,7 @@ from linkwright.urdf import Joint, JointType, Robot
 Array = NDArray[np.float64]
 
 _UNLIMITED_SPAN = {"revolute": 2.0 * pi, "continuous": 2.0 * pi, "prismatic": 2.0}
-"""How far a slider reaches for a joint whose limits are infinite: a turn, or two metres."""
+"""The range of a slider whose joint has infinite limits: a turn, or two metres."""
 
 
 @dataclass(frozen=True, slots=True)

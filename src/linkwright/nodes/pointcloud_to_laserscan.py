@@ -25,7 +25,7 @@ from linkwright.nodes.settings import positive, tell_unknown
 
 _QUEUE = 10
 _FORMATS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
-"""Of the constants of sensor_msgs/msg/PointField."""
+"""The formats of the types of sensor_msgs/msg/PointField."""
 _FLOAT32, _INT32 = 7, 5
 _TINY = float(np.finfo(np.float64).tiny)
 

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from linkwright.nodes.options import Factory
 
 _APART = {("rmw_zenoh_cpp", "rmw_zenohd")}
-"""What carries the messages of others, and takes no part in their graph."""
+"""Programs that carry messages of others, and take no part in their graph."""
 
 _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
-"""What ends a node: Ctrl-C, another program, the terminal that is closed."""
+"""The signals that end a node: of Ctrl-C, of another program, of a closed terminal."""
 
 
 def main(package: str, executable: str, arguments: Sequence[str]) -> int:

@@ -40,7 +40,7 @@ EMPTY_UPDATE = "Empty URDF is not allowed"
 BAD_DESCRIPTION = phrase("Unable to initialize urdf::model from robot description")
 _OVERRIDES = QoSOverridingOptions([QoSPolicyKind.DEPTH, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY])
 _TF_OVERRIDES = QoSOverridingOptions([*_OVERRIDES.policy_kinds, QoSPolicyKind.DURABILITY])
-"""What parameters ``qos_overrides.*`` may say, as with the ROS node."""
+"""The policies that parameters ``qos_overrides.*`` may set, as with the ROS node."""
 
 BAD_FREQUENCY = phrase("publish_frequency must be between 0 and 1000")
 

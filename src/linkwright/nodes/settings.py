@@ -12,7 +12,7 @@ from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.nodes.options import NodeOptions
 
 _EVERYWHERE = ("qos_overrides.", "start_type_description_service", "diagnostic_updater.")
-"""How names begin that any node may be given, whether it reads them or not."""
+"""Prefixes of parameters that any node may be given, whether it reads them or not."""
 
 
 def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> Any:

@@ -29,7 +29,7 @@ _NUMBERS: dict[type[TransformException], int] = {
     InvalidArgumentException: 4,
     TimeoutException: 5,
 }
-"""Of tf2_msgs/msg/TF2Error."""
+"""The numbers of tf2_msgs/msg/TF2Error."""
 
 
 class Tf2BufferServer(SingleNode):

@@ -18,7 +18,7 @@ from linkwright.sdf.worlds import Road
 _SKIN = "skin"
 """The link that the skin of a figure is on."""
 _THICKNESS = 0.01
-"""Of a road, in m."""
+"""The thickness of a road, in m."""
 _ASPHALT = Material(ambient=(0.2, 0.2, 0.2, 1.0), diffuse=(0.25, 0.25, 0.25, 1.0))
 
 

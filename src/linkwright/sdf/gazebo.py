@@ -66,7 +66,7 @@ _SHAPES = frozenset({"collision", "visual"})
 _NEGATED = frozenset({"turnGravityOff"})
 _TRUE, _FALSE = frozenset({"true", "yes", "1"}), frozenset({"false", "no", "0"})
 _MATERIALS = "file://media/materials/scripts/gazebo.material"
-"""Where Gazebo's own materials are."""
+"""The scripts of Gazebo's own materials."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from linkwright.xmltree.reader import read_bytes
 _DEEPEST = 64
 """Models that include models that include models ...; files go no deeper."""
 _MOST = 100_000
-"""So many models may come of a file; with models that include others twice each, few lines make more."""
+"""The greatest number of models from a file: where models include others twice each, few lines make more."""
 
 Thing = Model | Light | Actor
 

@@ -8,7 +8,7 @@ from xml.parsers import expat
 _SHORTEST = len('<link name="l"/>')
 _AROUND = frozenset({"sdf", "gazebo", "world", "model"})
 _COUNTED = frozenset({"link", "include"})
-"""What there may be too many of, and what it stands in, but for states and plugins. What is included has a link."""
+"""Elements that count, and that contain such, but for states and plugins. An included model has a link."""
 
 
 def has_more_links(data: bytes | str, most: int) -> bool:

@@ -21,7 +21,7 @@ _RENAMED = {
     ("link", "damping"): "velocity_decay",
     ("physics", "update_rate"): "real_time_update_rate",
 }
-"""What attributes and elements are called today, by the element in which they stand and their old name."""
+"""New names of attributes and elements, by the element around them and their old name."""
 _ORIGIN, _POSE = "origin", "pose"
 _VALUES = ("pose", "rgba", "xyz", "angle", "enabled", "link", "name")
 """The attributes that had the value of an element."""

@@ -22,9 +22,9 @@ from linkwright.xmltree import Element
 
 _AXES = ("linear-x", "linear-y", "linear-z")
 KINDS = ("random", "uniform", "grid", *_AXES)
-"""How the models of a population may be spread."""
+"""The kinds of distributions."""
 _MOST = 100_000
-"""So many models may come of one population."""
+"""The greatest number of models of one population."""
 _GOLDEN_ANGLE = pi * (3 - sqrt(5))
 """Points that turn on by it, one by one, fill a disc evenly."""
 

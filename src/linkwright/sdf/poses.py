@@ -12,11 +12,11 @@ from linkwright.sdf.values import TEXT, TRUTH, choice, pose_of, unwritten
 from linkwright.xmltree import Element
 
 WORLD = "world"
-"""What poses and joints call the frame of the world."""
+"""The name of the world's frame in poses and joints."""
 MODEL = "__model__"
-"""What they call the frame of the model around them."""
+"""The name of the enclosing model's frame in poses and joints."""
 SEPARATOR = "::"
-"""What stands between the name of a model and that of something in it."""
+"""The separator between the name of a model and that of something in it."""
 
 
 @dataclass(frozen=True, slots=True)

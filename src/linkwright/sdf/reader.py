@@ -22,7 +22,7 @@ from linkwright.xmltree import Document, Element
 _OLD_ROOT = "gazebo"
 """The root of SDF 1.0 to 1.2."""
 _FRAME = "frame"
-"""What whatever has a pose could have in SDF 1.5 and 1.6."""
+"""The frame that everything with a pose could have in SDF 1.5 and 1.6."""
 _VERSION = re.compile(r"1\.([0-9]{1,2})").fullmatch
 _NEWEST_FLAT_MINOR = 7
 _DEEPEST = 200

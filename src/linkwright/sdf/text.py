@@ -20,7 +20,7 @@ _UNDECLARED, _EMPTY, _NOT_TEXT = "XML205", "XML105", "XML104"
 _OUTSIDE_TAGS = re.compile(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
 _BARE_AMPERSAND = re.compile(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|[A-Za-z_][\w.-]*);)")
 _STAND_IN = "\x7f"
-"""What is read in place of an ``&`` that begins no entity; as long, and allowed."""
+"""The replacement of an ``&`` that begins no entity; as long, and allowed."""
 _LATE_DECLARATION = re.compile(r"(?:\s|<!--.*?-->)+(<\?xml\s[^>]*\?>)", re.DOTALL)
 
 

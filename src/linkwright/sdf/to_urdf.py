@@ -32,7 +32,7 @@ _TYPES: dict[str, urdf.JointType] = {
 }
 """Types of joints in SDF, and what they are in URDF; all others need a transform of their own: they float."""
 _UNBOUNDED = 1e16
-"""What stands for no bound in SDF and, as URDF knows none, there too."""
+"""SDF's number for no bound, which stands for it in URDF too, as that has none."""
 _AMBIENT, _DIFFUSE = 0.4, 0.8
 """The light of Gazebo's usual world, in which sdformat_urdf looks at a material to find the colour that it has."""
 

@@ -16,7 +16,7 @@ from linkwright.xmltree.writer import tidied
 VERSION = "1.11"
 """The version of what is written: gz Harmonic, which comes with Jazzy, reads no newer one."""
 _PREFIX = "http://gazebosim.org/schema"
-"""What prefixes stand for that a file uses without declaring them, which Gazebo's readers allow."""
+"""The namespace of prefixes that a file uses without declaring them, which Gazebo's readers allow."""
 
 
 def save(thing: Sdf | World | Model) -> str:

@@ -20,7 +20,7 @@ from linkwright.messages.definitions.interfaces import Container, Field, FieldTy
 from linkwright.messages.definitions.library import LIBRARY
 
 READ_FAULTS = (struct.error, IndexError, ValueError)
-"""What a reader raises for bad data: UnicodeDecodeError and DataFaultError are ValueErrors."""
+"""The errors of a reader on bad data: UnicodeDecodeError and DataFaultError are ValueErrors."""
 
 _SCOPE: dict[str, Any] = {
     "new": object.__new__,

@@ -64,10 +64,10 @@ PRIMITIVES: dict[str, Primitive] = {
     "string": Primitive("string", str, None, 4, 17),
     "wstring": Primitive("wstring", str, None, 4, 18),
 }
-"""By the name in ``.msg`` files."""
+"""The primitives by their names in ``.msg`` files."""
 
 EMPTY_MEMBER = "structure_needs_at_least_one_member"
-"""What rosidl puts into a structure without fields: one byte on the wire, part of the hash, invisible to users."""
+"""rosidl's filler of a structure without fields: one byte on the wire, part of the hash, invisible to users."""
 
 
 class Container(Enum):

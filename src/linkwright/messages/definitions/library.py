@@ -36,7 +36,7 @@ from linkwright.packages.active import active_finder
 from linkwright.packages.interface_files import interface_file, interface_files
 
 _FINDER_KEPT_S = 1.0
-"""For so long after a question about it the workspace is taken to be as it was."""
+"""Seconds for which the workspace is taken to be unchanged after a look."""
 
 KIND_NAMES = {"msg": "message", "srv": "service", "action": "action"}
 

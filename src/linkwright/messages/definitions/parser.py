@@ -22,7 +22,7 @@ from linkwright.messages.errors import DefinitionError
 
 SEPARATOR = "---"
 SECTIONS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
-"""What the parts of a file of each kind are called, after the interface's own name."""
+"""The suffixes of the structures in a file of each kind."""
 
 _LINE = re.compile(
     r"""(?P<base>[A-Za-z_][\w/]*) (?P<bound>[ ]*<=[ ]*(?P<string_bound>[^\s\[\]]*))?

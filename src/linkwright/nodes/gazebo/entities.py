@@ -18,7 +18,7 @@ from linkwright.nodes.options import NodeOptions, create_node, starting
 
 _DELETE, _SET_STATE = "gazebo_msgs/srv/DeleteEntity", "gazebo_msgs/srv/SetEntityState"
 _MODEL, _LINK = "6", "2"
-"""Of ros_gz_interfaces/msg/Entity: what may be named here."""
+"""Types of ros_gz_interfaces/msg/Entity that may be named here."""
 
 
 class Remove(SimulatorClient):

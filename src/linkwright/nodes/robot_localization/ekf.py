@@ -31,7 +31,7 @@ from linkwright.nodes.robot_localization.sources import Source, Surroundings
 from linkwright.nodes.settings import tell_unknown
 
 _POSE_VARIANCE = 1e-6
-"""Of what a pose that is set does not tell."""
+"""The variance of a set pose where its message has none."""
 
 
 class EkfNode(SingleNode):

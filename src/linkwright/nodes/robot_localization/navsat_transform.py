@@ -39,7 +39,7 @@ from linkwright.nodes.settings import bad_value, positive, tell_unknown
 
 _KNOWN_COVARIANCE, _GBAS_FIX, _NO_FIX = 3, 2, -1
 _ZONE_LETTERS = "CDEFGHJKLMNPQRSTUVWXX"
-"""Of the bands of latitude, 8 degrees each from -80 on."""
+"""The letters of UTM's bands of latitude, 8 degrees each from -80 on."""
 
 
 class NavsatTransformNode(SingleNode):

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 FOLDER = Path("/dev/input")
 FULL = 32767
-"""What an axis reads at its end; the other end is its negative."""
+"""The value of an axis at its end; the other end is its negative."""
 
 _EVENT = struct.Struct("=IhBB")
 _BUTTON, _AXIS, _INITIAL = 0x01, 0x02, 0x80

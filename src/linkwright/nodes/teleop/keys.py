@@ -54,7 +54,7 @@ SPEEDS = {
     "e": (1.0, 1.1),
     "c": (1.0, 0.9),
 }
-"""By which factors keys change the speed and the turning speed."""
+"""The factors of speed and turning speed by key."""
 
 
 def keys_in(text: str) -> Iterator[str]:

@@ -13,7 +13,7 @@ from linkwright.nodes.settings import bad_value, declare_required
 from linkwright.nodes.topic_tools.tool import TopicTool
 
 NO_TOPIC = "__none"
-"""What is selected when nothing is."""
+"""The name of the selected topic when none is."""
 
 
 class _Switch(TopicTool):

@@ -45,7 +45,7 @@ def yolo_message(header: Any, found: Detections) -> Any:
 
 
 MESSAGES: Mapping[str, Callable[[Any, Detections], Any]] = {VISION: vision_message, YOLO: yolo_message}
-"""What makes messages of each type."""
+"""The functions that make messages, by type."""
 
 
 def picture_message(header: Any, picture: NDArray[np.uint8]) -> Any:

@@ -76,7 +76,7 @@ _SETTINGS = ("dictionary", "least_area", "part", "colour")
 _COLOURS = "colours"
 _CLASSES = "classes"
 _RATE_SLACK = 0.9
-"""Of a period: a picture that comes a little early is not left out."""
+"""The part of a period after which a picture is taken, so that one that comes a little early is not skipped."""
 
 
 @dataclass(frozen=True, slots=True)

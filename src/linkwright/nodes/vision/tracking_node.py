@@ -19,7 +19,7 @@ from linkwright.vision.places.tracker import Tracker, TrackerSettings
 _ANY = ParameterDescriptor(dynamic_typing=True)
 _DEPTH = 10
 _PICTURES_A_SECOND = 30.0
-"""Of the pictures that ``track_buffer`` counts."""
+"""The rate of pictures in which ``track_buffer`` counts."""
 
 
 class TrackingNode(SingleNode):

@@ -25,7 +25,7 @@ AUDIO_STAMPED = "audio_common_msgs/msg/AudioDataStamped"
 AUDIO_INFO = "audio_common_msgs/msg/AudioInfo"
 
 AUDIO_DEPTH = 100
-"""Of the queues of `AUDIO` and `AUDIO_STAMPED`: 10 s. audio_capture has 10, too few where a process is busy for 1 s."""
+"""The depth of `AUDIO`'s queues: 10 s. audio_capture has 10, too few where a process is busy for 1 s."""
 
 INFO_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

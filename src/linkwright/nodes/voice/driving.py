@@ -17,7 +17,7 @@ _FRESH = 0.5
 _GAIN = 3.0
 """1/s: how much of what is left is driven in a second, near the end."""
 _SLOWEST = 0.15
-"""Of the speed, however little is left."""
+"""The least part of the speed, however little of the way is left."""
 _CLOSE = {"distance": 0.005, "angle": 0.005}
 """m and rad: less is done."""
 _PATIENCE = 3.0

@@ -17,7 +17,7 @@ _MOST_WAITING = 100
 """Blocks: an engine that is 10 s behind hears nothing new until it has caught up."""
 
 _Found: TypeAlias = Heard | Diagnostic | LinkwrightError | None
-"""What the thread tells; None: all until the end of the sound was heard."""
+"""Results of the thread; None: all sound up to the end of the utterance was processed."""
 
 _MOST_GAPS = 100
 _NEAR = 0.2  # s: engines do not know to the frame where a word begins

@@ -46,7 +46,7 @@ _MOST_LOST = 0.15
 none was taken for another one (0 of 480); of those from which 0.25 s were cut 5 of 60 were.
 """
 _NEARLY = 0.5
-"""Of the confidence that is asked for: from so much on it is worth saying what was heard. Noise has less."""
+"""The part of the confidence asked for from which a result is worth telling. Noise has less."""
 
 
 class VoiceCommander(SingleNode):

@@ -60,7 +60,7 @@ _LIGHTS: dict[LightKind, tuple[Element, ...]] = {
     ),
 }
 _THINGS = ("model", "include", "light", "actor")
-"""What a new thing comes behind."""
+"""Elements behind which a new one is inserted."""
 
 
 def add_shape(

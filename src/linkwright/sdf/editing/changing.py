@@ -36,7 +36,7 @@ from linkwright.xmltree.patches import Replacement, indentation, newline_of
 
 _NEW_MASS = 1.0
 _FIRST = ("uri", "name")
-"""What the pose of an include comes behind."""
+"""Elements behind which the pose of an include is inserted."""
 
 
 @dataclass(frozen=True, slots=True)

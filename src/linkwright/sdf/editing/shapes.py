@@ -28,7 +28,7 @@ from linkwright.xmltree import Element, Text
 ShapeKind = Literal["box", "cylinder", "sphere", "wall", "ramp"]
 
 COUNTS = {"box": 3, "cylinder": 2, "sphere": 1, "wall": 3, "ramp": 3}
-"""How many numbers the size of a shape has: x y z; radius and length; radius."""
+"""The number of sizes of a shape: x y z; radius and length; radius."""
 DIGITS = 9
 """Numbers are written to the nanometre."""
 

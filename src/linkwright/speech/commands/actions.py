@@ -151,7 +151,7 @@ class Launch:
 
 Action: TypeAlias = Drive | Stop | ScaleSpeed | SetSpeed | GoTo | SendGoal | CallService | Publish | Launch
 MOTIONS = Drive, GoTo, Launch
-"""What takes the place of another motion."""
+"""Actions that replace another motion."""
 
 
 def filled(template: Any, values: Values) -> Any:

@@ -31,7 +31,7 @@ _FRACTIONS: dict[Words, float] = {
     ("three", "quarters", "of", "a"): 0.75,
 }
 AND_FRACTION: dict[Words, float] = {("and", "a", "half"): 0.5, ("and", "a", "quarter"): 0.25, ("半",): 0.5}
-"""What may follow a number, or a number and its unit."""
+"""Fractions that may follow a number, or a number and its unit."""
 
 _DIGITS = {digit: number for number, digit in enumerate("零一二三四五六七八九")} | {"〇": 0, "两": 2}
 _POWERS = {"十": 10, "百": 100, "千": 1000}

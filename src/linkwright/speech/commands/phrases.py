@@ -15,7 +15,7 @@ from linkwright.speech.commands.quantities import SAYABLE, quantity
 from linkwright.speech.commands.words import Words, words_of
 
 Value = float | str
-"""What is said in a slot: a quantity in metres, radians, seconds or metres a second, or a name of the file."""
+"""The value of a slot: a quantity in metres, radians, seconds or metres a second, or a name of the file."""
 
 Names = Mapping[str, Mapping[Words, str]]
 """Slot of names -> how each may be said -> the name."""

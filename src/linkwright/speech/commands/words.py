@@ -6,7 +6,7 @@ import re
 import unicodedata
 
 Words = tuple[str, ...]
-"""Of a text: a number in digits, a word, or one Chinese character each."""
+"""The words of a text: a number in digits, a word, or one Chinese character each."""
 
 _HAN = "\u3007\u3400-\u4dbf\u4e00-\u9fff"
 _WORD = re.compile(rf"\d+(?:\.\d+)?|[{_HAN}]|(?:(?![{_HAN}])[^\W\d_])+(?:['’][^\W\d_]+)*|°")

@@ -25,7 +25,7 @@ from linkwright.speech.sound.samples import RATE, Samples
 from linkwright.speech.sound.spectra import HOP, MelFrames
 
 LEAST_PROBABILITY = 0.6
-"""Of a class that counts."""
+"""The least probability of a class that counts."""
 
 _BEFORE = RATE // 5  # samples kept from before somebody speaks
 _LONGEST = 10 * RATE  # of what is kept

@@ -25,7 +25,7 @@ _GRAMMAR = "phrases"
 _MODEL_FILES = ("mdef", "means", "variances", "transition_matrices")
 _FILLERS = ("<", "[", "(")  # how pocketsphinx's names of silence and noise begin, and of no word at all
 _USUAL_FIT = -8.0
-"""Of 72 phrases that were said, all that were heard right fitted better than that; of what was none, a quarter."""
+"""The score that all of 72 phrases exceeded that were recognised rightly; of other sounds a quarter did."""
 
 _LEAST = 1e-300  # of what pocketsphinx gives as a number that may be too small for one
 

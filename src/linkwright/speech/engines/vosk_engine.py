@@ -22,7 +22,7 @@ from linkwright.speech.engines.phrasing import Phrasing
 from linkwright.speech.sound.samples import RATE, Samples
 
 LEAST_CONFIDENCE = 0.6
-"""Of each word of a phrase."""
+"""The least confidence of each word of a phrase."""
 
 _NEAR = 0.3
 """Confidence from which a phrase that does not count is told as the nearest."""

@@ -27,7 +27,7 @@ from linkwright.speech.sound.spectra import BANDS, Powers
 from linkwright.whole_files import write_whole_file
 
 TAKES = 3
-"""How often a word is to be said; it is recognised from the first on, but less surely."""
+"""The number of takes of a word; it is recognised from the first on, but less surely."""
 
 MOST_TAKES = 10
 MOST_WORDS = 200

@@ -16,15 +16,15 @@ from linkwright.vision.datasets.stage import Prop, Stage
 _TRIES = 20
 _STEPS = 40
 _NEAREST, _FARTHEST = 0.3, 12.0
-"""In m: how far from the camera things are put."""
+"""The least and the greatest distance of things from the camera, in m."""
 _SMALLEST, _LARGEST = 0.045, 0.5
-"""How long things are at most in a picture, in widths of it: from 30 to 320 pixels of 640."""
+"""The least and the greatest length of a thing, in widths of the picture: 30 to 320 pixels of 640."""
 _SEEN_FROM = 30.0
-"""In m: what is farther is not drawn."""
+"""The far clip distance, in m."""
 _BEHIND = 0.15
 """The share of things that may be put behind what stays."""
 _ROOM = 0.12
-"""In m: how far a camera keeps away from everything."""
+"""The least distance of the camera from everything, in m."""
 
 
 @dataclass(frozen=True)

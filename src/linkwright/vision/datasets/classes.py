@@ -31,9 +31,9 @@ _BACKGROUND = frozenset(
 )
 """Words in the names of models that stand around things, and are none themselves."""
 _LARGEST = 4.0
-"""In m: what never moves and is wider is taken for a part of the place, unless a file of classes names it."""
+"""The width in m from which a static model is taken for surroundings, unless a file of classes names it."""
 _TOUCHING = 0.02
-"""In m: shapes no farther apart are one thing."""
+"""The distance in m up to which shapes are one thing."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from linkwright.vision.datasets.making import Taken
 
 _COLUMNS, _WIDTH = 5, 320
 MOST = 30
-"""So many pictures are on a sheet."""
+"""The number of pictures on a sheet."""
 _COLOURS = ("#ffdc00", "#00d5ff", "#ff5ec4", "#7dff5c", "#ff8a3c", "#b09bff", "#ffffff", "#4affc0")
 _IGNORED = "#808080"
 

@@ -19,7 +19,7 @@ Box = tuple[int, int, int, int]
 """Left, top, right, bottom in pixels: what is in it has left <= column < right."""
 
 _BEYOND = 1.0
-"""How far outside of a picture a thing is looked for, in widths of the picture."""
+"""The margin around a picture in which a thing is searched, in widths of the picture."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from linkwright.vision.datasets.stage import Stage
 from linkwright.vision.datasets.textures import Pixels, smooth
 
 _POOL = 1 << 21
-"""So many random numbers are drawn once; each picture takes them from another place on."""
+"""The number of random numbers that are drawn once; each picture takes them from another place on."""
 
 
 def light(stage: Stage, generator: np.random.Generator) -> None:

@@ -24,11 +24,11 @@ from linkwright.vision.datasets.options import SPLITS, Options
 from linkwright.vision.datasets.stage import Stage
 
 CHAPTER = 50
-"""So many pictures one after the other share their patterns."""
+"""The number of consecutive pictures that share their patterns."""
 _BLOCK = 20
-"""Of so many pictures one after the other the splits have their shares."""
+"""The number of consecutive pictures in which the splits have their shares."""
 _PATTERNS, _PICTURE, _SPLIT = range(3)
-"""What chance is for; each picture has its own for each."""
+"""Streams of random numbers; each picture has its own for each."""
 
 
 @dataclass(frozen=True, slots=True)

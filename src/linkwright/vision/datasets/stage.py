@@ -19,13 +19,13 @@ from linkwright.vision.datasets.classes import Thing, geom_boxes
 from linkwright.vision.datasets.textures import pattern
 
 _PATTERNS = 12
-"""So many of each kind: for things, for what stands around, for the ground."""
+"""The number of patterns of each kind: for things, for structures, for the ground."""
 _SIZES = {"thing": 64, "wall": 128, "ground": 256}
 """The sides of patterns in pixels, by what they are for."""
 _AWAY = np.array([0.0, 0.0, -1e5])
-"""In m: where things are that are in no picture."""
+"""The position in m of hidden things."""
 _LOW = 0.05
-"""In m: what is no higher is no obstacle."""
+"""The height in m up to which something is no obstacle."""
 _DISTRACTORS = ("box", "capsule", "ellipsoid", "cylinder")
 
 

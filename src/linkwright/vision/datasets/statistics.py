@@ -10,7 +10,7 @@ from typing import Any
 _SIZES = (("small", 32), ("medium", 96), ("large", 1 << 30))
 """COCO's sizes of things: the square roots of the areas in pixels that they are below."""
 _MOSTLY = 0.75
-"""Of what a smaller share is visible, something hides a good part."""
+"""The visible share below which a thing counts as occluded."""
 
 
 @dataclass

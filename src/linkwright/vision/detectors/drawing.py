@@ -12,7 +12,7 @@ from linkwright.vision.detectors.library import load_opencv
 
 _HUES = 24
 _TEXT_HEIGHT = 12
-"""In pixels of a picture with 480 rows."""
+"""The height of text in pixels, for a picture with 480 rows."""
 
 
 def colour_of(name: str) -> tuple[int, int, int]:

@@ -123,7 +123,7 @@ class QrDetector(Detector):
 _ENLARGED, _QUIET_ZONE = 340, 40
 """Pixels along a side of a code that is read once more, and around it."""
 _SMALLEST_SIDE = 8
-"""In smaller pictures OpenCV fails instead of finding nothing."""
+"""The least side of a picture: in smaller ones OpenCV fails instead of finding nothing."""
 
 
 def _grey(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:

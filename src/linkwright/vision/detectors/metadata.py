@@ -13,7 +13,7 @@ from linkwright.vision.detectors.options import LARGEST_SIZE
 
 _USUAL_STRIDE = 32
 _LARGEST_STRIDE = 256
-"""In pixels; what is said to be more counts as not said."""
+"""The greatest stride in pixels; greater ones are ignored."""
 
 
 @dataclass(frozen=True, slots=True)

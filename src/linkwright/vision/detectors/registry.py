@@ -17,7 +17,7 @@ from linkwright.vision.detectors.network import NetworkDetector
 from linkwright.vision.detectors.options import DetectorOptions
 
 DEFAULT_DETECTOR = "things"
-"""What is used when nothing is said."""
+"""The default detector."""
 
 _GROUP = "linkwright.detectors"
 _KIND = "vision"

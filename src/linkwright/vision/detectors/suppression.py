@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 MOST_CANDIDATES = 30_000
-"""So many of the most certain boxes are looked at, as with Ultralytics' ``max_nms``."""
+"""The greatest number of boxes to compare, the most certain ones, as Ultralytics' ``max_nms``."""
 
 
 def suppressed(

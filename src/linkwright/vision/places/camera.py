@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 _TURNS = 20
-"""How often a distorted point is improved on the way back to the undistorted one."""
+"""The number of iterations that undistort a point."""
 _MIDDLE = 0.5
-"""Of a pixel: CameraInfo's centre counts from the middle of pixel 0, boxes from its edge."""
+"""The offset in pixels between CameraInfo's origin, the middle of pixel 0, and that of boxes, its edge."""
 _MOST_COEFFICIENTS = 8
 _LENSES = ("", "plumb_bob", "rational_polynomial")
 

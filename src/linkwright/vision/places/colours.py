@@ -17,7 +17,7 @@ _GREY_SATURATION, _GREY_CHROMA = 0.22, 0.10
 _BLACK, _WHITE = 0.16, 0.72
 _DARK_ORANGE = 0.55
 _LEAST_SHARE = 0.35
-"""Of the middle of a box that has one colour, so that the thing is called so."""
+"""The least part of the middle of a box that has a colour, so that the object is called so."""
 _MIDDLE = 0.7
 _MOST_PIXELS = 24
 """Along a side: of larger boxes only so many pixels are looked at."""

@@ -13,7 +13,7 @@ from linkwright.vision.places.camera import CameraModel, Floats
 _INNER = 0.6
 """The share of a box's width and height, in its middle, that most likely shows the thing and not what is behind it."""
 _LEAST_SHARE = 0.25
-"""Of the depths in the middle of a box that the nearest surface there has, so that it counts as the thing."""
+"""The least part of the depths in the middle of a box that the object's surface has."""
 _LEAST_DEPTHS = 4
 _GAP_METRES, _GAP_SHARE = 0.1, 0.05
 """Two surfaces are apart where neighbouring depths differ by more than this, and by more than this share of them."""

@@ -17,11 +17,11 @@ from linkwright.vision.places.assignment import assign
 from linkwright.vision.places.camera import Floats
 
 _PLACE_NOISE = 0.05
-"""Of where a detector puts an edge, as a share of the size of the box."""
+"""The standard deviation of a box's edges, as a share of its size."""
 _SPEED_NOISE = 2.0
-"""Of how fast a new track is, in sizes of its box a second."""
+"""The standard deviation of a new track's velocity, in sizes of its box a second."""
 _ACCELERATION_NOISE = 3.0
-"""Of how much a speed changes, in sizes of the box and seconds."""
+"""The standard deviation of acceleration, in sizes of the box and seconds."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -56,7 +56,7 @@ _NUMBERS = {
 }
 _ROUND, _ABOUT_ONE = "ball", (0.75, 1.33)
 _FILLED_BY_A_CIRCLE = (0.7, 0.86)
-"""How much of its box a round patch fills: about pi / 4; one that is square fills it."""
+"""The part of its box that a round patch fills: about pi / 4; a square one fills it."""
 _AHEAD, _BESIDE = 20.0, 110.0
 """Up to how many degrees off a thing is ahead, and to the left or right; beyond it is behind."""
 
