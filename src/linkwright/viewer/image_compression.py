@@ -11,11 +11,11 @@ from msgspec.structs import replace
 from linkwright.viewer.protocol.images import ImageFrame
 
 _STEPS = ((1, 85), (1, 70), (1, 50), (2, 70), (2, 50), (3, 50), (4, 50), (6, 45), (8, 40), (12, 35), (16, 30))
-"""Of how many pixels of a row one is left, and the quality of the WebP: each is about two thirds of the one before."""
+"""The factor of scaling down and the quality of the WebP: each step has about two thirds of the bytes before."""
 
 _MOST_TRIES = 3
 _MOST_PIXELS = 1 << 26
-"""Of a file that is unpacked to be made smaller; a small file can claim any size."""
+"""The most pixels of a file that is decoded to be scaled down; a small file can claim any size."""
 
 _ROOMY = 2.5
 """With so much room left the next image may be better."""

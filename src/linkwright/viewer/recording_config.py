@@ -15,7 +15,7 @@ from linkwright.viewer.size import size_of
 
 _TRANSFORMS = (TRANSFORMS, STATIC_TRANSFORMS)
 _FIRST_NS = 2_000_000_000
-"""How much of a recording is looked at for its frames, nanoseconds."""
+"""The time of a recording that is read for its frames, nanoseconds."""
 
 _USUAL_ROOTS = ("map", "odom", "world", "base_link", "base_footprint")
 """Frames to be looked from, the best first, where several are not in any other one (REP 105)."""
@@ -23,8 +23,8 @@ _USUAL_ROOTS = ("map", "odom", "world", "base_link", "base_footprint")
 _PLACES = ("map", "odom")
 """Frames in which a robot drives about (REP 105)."""
 
-_LEAST_DISTANCE, _AWAY = 5.0, 1.5
-"""How far the camera is from a robot that drives about: metres at least, and times as far as to see all of it."""
+_LEAST_DISTANCE, _DISTANCE_FACTOR = 5.0, 1.5
+"""The least distance of the camera from a robot that drives about, metres, and a factor on that to see all of it."""
 
 _DISPLAYS = (
     ("nav_msgs/msg/OccupancyGrid", "Map", 1),
@@ -56,7 +56,7 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
     base = next((name for name in _bases(robot) if name in children), None)
     if base is not None and root in _PLACES:
         size = None if robot is None else size_of(robot)
-        config.follow(base, _LEAST_DISTANCE if size is None else max(_LEAST_DISTANCE, _AWAY * size.distance))
+        config.follow(base, _LEAST_DISTANCE if size is None else max(_LEAST_DISTANCE, _DISTANCE_FACTOR * size.distance))
     for display in list(config.displays):
         kind = display.cls.rpartition("/")[2]
         if kind == "RobotModel" and described is None:

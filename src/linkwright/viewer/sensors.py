@@ -16,7 +16,7 @@ from linkwright.viewer.protocol.worlds import CameraScene, LidarScene, RayAngles
 
 _MOST_ROWS = 16
 _MOST_RAYS = 720
-"""Of one lidar; no page draws more of what it measures."""
+"""The largest number of rays of a lidar that pages draw."""
 _FARTHEST = 10_000.0
 """In m: so far a camera is drawn to see at most."""
 _ENDLESS = 30.0

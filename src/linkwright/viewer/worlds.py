@@ -33,13 +33,13 @@ from linkwright.viewer.protocol.robot import LinkScene, Shape, Submesh, Surface
 from linkwright.viewer.web.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 
 _UNCOLOURED = [0.7, 0.7, 0.7, 1.0]
-"""What has no material is grey in Gazebo."""
+"""The colour of shapes without a material, which are grey in Gazebo."""
 _MOST_HEIGHTS = 257
-"""So many heights along a side of a ground are drawn."""
+"""The largest number of heights along a side of a ground."""
 _COLLISION = [1.0, 0.55, 0.1, 0.6]
 
-_Place = Callable[[RawPose], Transform]
-"""Where a pose of a link is in its frame."""
+_PoseInLink = Callable[[RawPose], Transform]
+"""The function that gives a link's part its pose in the link's frame."""
 
 
 @dataclass(slots=True)
@@ -100,7 +100,7 @@ class _Builder:
             )
         )
 
-    def _shapes(self, link: str, parts: Sequence[Visual | Collision], place: _Place) -> Iterator[Shape]:
+    def _shapes(self, link: str, parts: Sequence[Visual | Collision], place: _PoseInLink) -> Iterator[Shape]:
         for part in parts:
             shape = self._shape(link, part, place(part.pose))
             if shape is not None:

@@ -20,7 +20,7 @@ _LARGEST_INTENSITY = 999999.0
 """RViz's computed bounds go no further."""
 
 _RAINBOW_STEPS = 5 * 255
-"""From magenta to red by five sides of the colour cube."""
+"""Steps of the rainbow from magenta to red, along five edges of the colour cube."""
 
 _MIX_STEPS = 255
 

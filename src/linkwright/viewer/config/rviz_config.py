@@ -218,7 +218,7 @@ _MODEL_DISPLAYS: tuple[tuple[str, dict[str, str]], ...] = (
 )
 _MODEL_DISTANCE = 3.0
 _MODEL_PITCH = 0.5
-"""From a little above: a robot that stands hides less of itself than from RViz's 45 degrees."""
+"""A view from a little above: a standing robot hides less of itself than from RViz's 45 degrees."""
 
 
 @dataclass(frozen=True, slots=True)

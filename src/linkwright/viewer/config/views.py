@@ -51,7 +51,7 @@ _STEREO = PropertySpec(
         PropertySpec("Swap Stereo Eyes", "bool", False),
     ),
 )
-"""For stereo screens: RViz too hides these rows on other screens. The file keeps them."""
+"""Properties for stereo screens: RViz too hides these rows on other screens. The file keeps them."""
 _INVERT_Z = PropertySpec(
     "Invert Z Axis", "bool", False, "Turns the camera upside down, for frames whose z axis points down."
 )

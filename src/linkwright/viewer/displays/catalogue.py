@@ -40,7 +40,7 @@ class UnsupportedDisplay(ViewerDisplay):
 
 
 GROUP = "linkwright.displays"
-"""Of the entry points."""
+"""The group of the entry points."""
 
 
 def has_display(cls: str) -> bool:

@@ -22,7 +22,7 @@ KNOWN: dict[str, Color] = {
 """The classes to which vision_msgs_rviz_plugins gives colours of their own."""
 
 UNNAMED: Color = (255, 22, 80)
-"""As there, of what has no class."""
+"""The colour of detections without a class, as there."""
 
 _PALETTE: tuple[Color, ...] = (
     (230, 25, 75),

@@ -99,7 +99,7 @@ TRANSFORMER_SPECS: Schema = (
 )
 
 COLOUR_PROPERTIES = frozenset(spec.name for spec in TRANSFORMER_SPECS) - {"Color", POSITION_TRANSFORMER}
-"""What the colours of points depend on; a single colour for all is applied by the page."""
+"""The properties that the colours of points depend on; a single colour for all is applied by the page."""
 
 
 def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool | None = None) -> Schema:

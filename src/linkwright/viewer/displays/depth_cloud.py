@@ -106,7 +106,7 @@ DEPTH_SCHEMA: Schema = (
 )
 
 DEPTH_SCHEMA_UNFILTERED: Schema = tuple(replace(spec, words=()) for spec in DEPTH_SCHEMA)
-"""The same where the names of topics do not matter: ``Topic Filter`` is off."""
+"""The schema for ``Topic Filter`` off: the names of topics do not matter."""
 
 _SYNC_NS = 500_000_000
 """A colour image farther from the depths in time does not belong to them."""

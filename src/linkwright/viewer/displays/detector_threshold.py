@@ -13,7 +13,7 @@ from linkwright.viewer.parameter_answers import NoAnswerError, answer, services_
 from linkwright.viewer.protocol.displays import StatusLevel
 
 _NAMES = ["threshold", "confidence_threshold", "detection.threshold"]
-"""Of our detector and yolo_ros, of yolov5_ros, and of openrobotics_darknet_ros."""
+"""The names of the parameter in our detector and yolo_ros, yolov5_ros, and openrobotics_darknet_ros."""
 
 Told = Callable[[StatusLevel, str], None]
 """Called with a status of the display: who leaves them out, and a warning where the node would not."""

@@ -21,7 +21,7 @@ _COLORS = (_LAYER, "IntensityLayer", "ColorLayer", "FlatColor", "None")
 """The first is what RViz begins with and writes until it is changed, and does not offer; it means the second."""
 
 _MOST_CELLS = 400_000
-"""Of larger maps rows and columns are left out."""
+"""The largest number of cells drawn; of larger maps rows and columns are left out."""
 
 _SIZE = "Size"
 
@@ -151,7 +151,7 @@ class GridMapDisplay(RecentDisplay):
 _RAINBOW = np.array(
     [[255 * part for part in colorsys.hsv_to_rgb(0.8 * (1.0 - step / 255.0), 1.0, 1.0)] for step in range(256)]
 ).astype(np.uint8)
-"""From violet to red."""
+"""The colours from violet to red."""
 
 
 def _rgb(text: str) -> NDArray[np.uint8]:

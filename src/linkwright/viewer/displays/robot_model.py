@@ -144,7 +144,7 @@ _STATIC = (
 _SOURCE_NAMES = frozenset(spec.name for spec in DESCRIPTION_SPECS)
 _MOST_FINDINGS = 5
 _MANY_BOXES = 20
-"""More boxes than these are told together, as all rows anew."""
+"""When more boxes than these change, all rows are sent anew."""
 
 
 class RobotModelDisplay(ViewerDisplay):

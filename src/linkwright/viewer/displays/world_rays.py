@@ -15,7 +15,7 @@ from linkwright.viewer.protocol.worlds import WorldRays
 from linkwright.viewer.sensors import ShownLidar
 
 CHOICES = ("Visualized", "All", "None")
-"""Which sensors are drawn: those that say so themselves, all, or none."""
+"""The choices of sensors to draw: those with ``<visualize>``, all, or none."""
 _OTHERS = "/others"
 """Ends the topic of the lidars that do not say so."""
 _MOST_KEPT = 64

@@ -85,17 +85,17 @@ _ANSWERED_BY: dict[str, tuple[type, ...]] = {
         voice_words.WatchWords,
     ),
 }
-"""What pages ask each of them: by its module and class, below this package."""
+"""The messages that each feature receives, by its module and class below this package."""
 
 _WOKEN_BY = {"/simulation_state": _SIMULATION, "/world_description": _MODELLING}
 """Topics on which a publisher means that there is something to tell pages."""
 
-_WITHOUT: dict[str, ServerMessage] = {
+_WHILE_NOT_MADE: dict[str, ServerMessage] = {
     _MODELLING: modelling.NO_WORLD,
     _RECORDING: recording.NOTHING_RECORDED,
     _SIMULATION: simulation.NO_SIMULATION,
 }
-"""What pages are told while a feature is not made."""
+"""The message that stands for a feature while it is not made."""
 
 
 class OnDemandFeatures(PageFeature):
@@ -115,7 +115,7 @@ class OnDemandFeatures(PageFeature):
             self._listening = True
             self.context.graph_changes.listen(self._review)
         self._review()
-        return [told for where, told in _WITHOUT.items() if where not in self._made]
+        return [told for where, told in _WHILE_NOT_MADE.items() if where not in self._made]
 
     def receive(self, page: Page, message: Any) -> None:
         """Make the feature that takes the message, and pass it on."""

@@ -112,7 +112,7 @@ class PageFeature:
 
 
 GROUP = "linkwright.page_features"
-"""Of the entry points."""
+"""The group of the entry points."""
 
 
 def make_features(viewer: FeatureHost) -> list[PageFeature]:

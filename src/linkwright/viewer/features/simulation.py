@@ -39,10 +39,10 @@ from linkwright.viewer.web.audience import Page
 _STATE = "/simulation_state"
 _LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _PAUSED = 2
-"""Of simulation_interfaces/msg/SimulationState."""
+"""The value of simulation_interfaces/msg/SimulationState for a paused simulation."""
 _VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _PUSH_NS = 50_000_000
-"""How long a push lasts; pages repeat it while the user pulls."""
+"""The duration of a push; pages repeat it while the user pulls."""
 
 _EMPTY = "std_srvs/srv/Empty"
 _ACTIONS = {

@@ -39,8 +39,8 @@ _PARTS = 200
 _KEPT_PERIOD = 1.0
 """Seconds between two times that pages are told how much of the last minutes is kept."""
 
-_PRESENT_NS = 100_000_000
-"""So near to the present, what is played of the last minutes has caught up with it."""
+_CAUGHT_UP_NS = 100_000_000
+"""The distance from the present at which playing the last minutes has caught up with it."""
 
 _SECOND = 1_000_000_000
 
@@ -198,7 +198,7 @@ class TimelineFeature(PageFeature):
                 self._tell_jump()
         if live is not None and not live.live:
             playing = live.playback.playing
-            caught_up = live.span_ns[1] - live.playback.position_ns < _PRESENT_NS
+            caught_up = live.span_ns[1] - live.playback.position_ns < _CAUGHT_UP_NS
             if self._was_playing and not playing and caught_up:
                 live.go_live()
             self._was_playing = playing

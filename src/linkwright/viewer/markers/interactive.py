@@ -169,7 +169,7 @@ _ORIENTATIONS: tuple[OrientationMode, ...] = get_args(OrientationMode)
 
 _RING_STEPS = 36
 _RING_WIDTH = 0.3
-"""Of the inner radius, which is half the marker's scale."""
+"""The width of rings in relation to their inner radius, which is half the marker's scale."""
 
 _DARK = 0.6
 _NONE = np.empty((0, 4), dtype=np.float32)

@@ -290,7 +290,7 @@ def _ending(name: str) -> str:
 
 
 _MOST_GONE = 5000
-"""How many markers that went are remembered; a page that missed more of them is sent everything anew."""
+"""The number of removed markers that are remembered; a page that missed more is sent everything anew."""
 
 
 class MarkerStore:

@@ -70,11 +70,11 @@ Floats = NDArray[np.float32]
 """An array of any shape that pages see flat, as a Float32Array."""
 
 Bytes = NDArray[np.uint8]
-"""As a Uint8Array."""
+"""Bytes; a Uint8Array in the page."""
 
 _TYPES = {"f": ("f4", "<f4"), "u": ("u1", "u1")}
 _EMPTY: dict[str, dict[str, list[Any]]] = {kind: {"$": [name, 0, 0]} for kind, (name, _) in _TYPES.items()}
-"""What stands for empty arrays, of which simple markers have three each."""
+"""The placeholder of empty arrays, of which simple markers have three each."""
 
 
 class DisplayForgotten(ServerMessage):

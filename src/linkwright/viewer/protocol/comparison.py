@@ -7,7 +7,7 @@ from typing import Literal
 from linkwright.viewer.protocol.message import Record, ServerMessage
 
 Mark = Literal["added", "removed", "changed"]
-"""What happened to a link: by its own description or by that of the joint that moves it."""
+"""The difference of a link: in its own description or in that of the joint that moves it."""
 
 
 class ComparedRobot(Record):

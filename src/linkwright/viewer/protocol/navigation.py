@@ -7,7 +7,7 @@ from typing import Literal
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
 ManagerState = Literal["unknown", "inactive", "active"]
-"""What a lifecycle manager says of its nodes; unknown where there is none."""
+"""The state of a lifecycle manager's nodes; unknown where there is none."""
 
 GoalState = Literal["none", "active", "canceling", "succeeded", "canceled", "aborted"]
 

@@ -14,7 +14,7 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 ShapeKind = Literal[
     "box", "cylinder", "capsule", "sphere", "mesh", "ellipsoid", "cone", "plane", "polyline", "heightmap"
 ]
-"""From ``ellipsoid`` on only worlds have them."""
+"""The kinds of shapes; those from ``ellipsoid`` on are only in worlds."""
 
 
 class Submesh(Record):

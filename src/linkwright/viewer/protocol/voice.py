@@ -21,7 +21,7 @@ SOUND_RATE = 16_000
 """Samples a second."""
 
 MOST_SAMPLES = 1600
-"""Of one frame."""
+"""The largest number of samples in a frame."""
 
 MOST_LOST_SAMPLES = 5 * SOUND_RATE
 """Samples that a frame may say were lost; of more than that a page says so many."""

@@ -362,7 +362,7 @@ LINGERING = 60.0
 """Seconds that displays of a page's own outlive it: it may be reloading, or have lost its connection."""
 
 MOST_LINGERING = 8
-"""When more wait for their page, the one that has waited longest is closed."""
+"""The largest number of managers without pages; beyond it the one that has waited longest is closed."""
 
 
 class Managers:

@@ -49,7 +49,7 @@ _SECRET_OF_KEY = re.compile(r"(/mesh/[A-Za-z0-9_.-]+)~[0-9a-f]{32}(?=/)")
 _PACKAGE_URI = re.compile(r"package://([^/%]+)/")
 
 _MODEL_CONFIG = "model.config"
-"""What the folder of a Gazebo model has in it."""
+"""The file that marks the folder of a Gazebo model."""
 
 _LOOSE_DEPTH = 2
 """A mesh outside of any package and model opens its folder and the folders in that, no more."""

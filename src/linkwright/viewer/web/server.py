@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from linkwright.viewer.web.audience import Audience
 
 PAGE_FOLDER = Path(__file__).parent.parent / "page"
-"""Where ``frontend/`` is built to."""
+"""The folder into which ``frontend/`` is built."""
 
 MAXIMUM_MESSAGE = 1024 * 1024
 """Longest message taken from a page, bytes: a configuration file. A longer one ends the connection (1009)."""

@@ -29,7 +29,7 @@ _CLAMPED = {_FREE: 0.1192, _OCCUPIED: 0.971}
 """The probabilities that the binary form stands for: OctoMap's clamping thresholds."""
 
 MOST_CELLS = 1_000_000
-"""More cells than these are not drawn."""
+"""The largest number of cells drawn."""
 
 
 class BadOctreeError(ValueError):

@@ -23,10 +23,10 @@ _LOOP = "Loop Animation"
 _LEAST_WAIT = 0.005
 _MOST_WAYPOINTS = 100_000
 _MOST_IN_TRAIL = 200
-"""More states than these are not drawn at once; the steps of a trail grow until it has no more."""
+"""The largest number of states drawn at once; the steps of a trail grow until it has no more."""
 
 READ_AS = "3x"
-"""How a State Display Time that cannot be read is read."""
+"""The value used for a State Display Time that cannot be read."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -106,7 +106,7 @@ def _is_seen(cells: Cells) -> NDArray[np.bool_]:
 
 _BITS = 20
 _STEPS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
-"""From the code of a place to those of its neighbours."""
+"""The differences between the code of a place and those of its neighbours."""
 
 
 def _codes(places: NDArray[np.int64]) -> NDArray[np.int64]:

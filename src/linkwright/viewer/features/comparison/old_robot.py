@@ -26,7 +26,7 @@ from linkwright.urdf import Robot
 PREFIX = "old"
 """The TF Prefix of its frames."""
 TOPIC = "/old/robot_description"
-"""Where its text is published."""
+"""The topic of its description."""
 
 
 class OldRobot:

@@ -20,10 +20,10 @@ _XACRO = ".xacro"
 _NAMELESS = "world.sdf"
 _LONGEST_STEM = 56
 """Characters, of which a file system may count four bytes each."""
-_MOST_STEPS = 200
-"""Of undo."""
-_INSTALLED = Path(__file__).parents[3]
-"""What is in here comes with the program, and is not the user's to write."""
+_MOST_UNDO_STEPS = 200
+"""The largest number of steps of undo."""
+_PROGRAM_FOLDER = Path(__file__).parents[3]
+"""The folder of the program's own files, which users cannot overwrite."""
 
 
 class EditedWorld:
@@ -73,7 +73,7 @@ class EditedWorld:
             return cls(write(expand(str(path), packages=packages).document), path.with_suffix(""), packages)
         content = read_bytes(path)
         text = decoded(content, str(path)).text
-        return cls(text, path, packages, None if path.resolve().is_relative_to(_INSTALLED) else content)
+        return cls(text, path, packages, None if path.resolve().is_relative_to(_PROGRAM_FOLDER) else content)
 
     @classmethod
     def of_text(cls, text: str, packages: PackageFinder) -> EditedWorld:
@@ -128,7 +128,7 @@ class EditedWorld:
         """
         changed = change(self.world)
         if changed.text != self.world.text:
-            self._before = [*self._before[1 - _MOST_STEPS :], self.world.text]
+            self._before = [*self._before[1 - _MOST_UNDO_STEPS :], self.world.text]
             self._after.clear()
             self.world = changed
 

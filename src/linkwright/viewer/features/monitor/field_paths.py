@@ -154,7 +154,7 @@ def _number(value: Any) -> float:
 
 _MOST_FIELDS = 500
 _MOST_ELEMENTS = 64
-"""Of an array; others can be named by hand."""
+"""The largest number of an array's elements offered; others can be named by hand."""
 
 
 def plot_fields(message_class: type[Message], message: Message | None = None) -> list[PlotField]:

@@ -95,7 +95,7 @@ _MOST_PAST = 2048
 """Samples of a series of the time before the one that is shown: two for each column of pixels."""
 
 _MOST_PAST_BYTES = 64 << 20
-"""Of messages that are read for them."""
+"""The most bytes of messages that are read for past samples."""
 
 _QUIET = 0.1
 """Seconds without another jump of time, before the past is read: while the timeline is dragged there are many."""

@@ -53,7 +53,7 @@ class Paced:
 
 
 _DEPTH = 500
-"""How many messages may wait while the loop is busy with something else."""
+"""The number of messages that may wait while the loop is busy."""
 
 
 class TopicTap:

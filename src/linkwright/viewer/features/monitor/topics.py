@@ -30,7 +30,7 @@ _MOST_ROWS = 1500
 """In one message; what is beyond is left out."""
 _MOST_ELEMENTS = 64
 _SHOWN_ELEMENTS = 8
-"""Of an array, in the row of the array itself."""
+"""The number of an array's elements shown in its own row."""
 _LONGEST_TEXT = 400
 
 
@@ -93,8 +93,8 @@ _FIGURES_PERIOD = 1.0
 _MESSAGES_PERIOD = 0.2
 _WINDOW_MESSAGES = 2000
 _WINDOW_NS = 5_000_000_000
-_SHORTEST_NS = 500_000_000
-"""For so long a topic is watched before its figures are told: messages may come in bursts."""
+_LEAST_MEASURED_NS = 500_000_000
+"""The least time that a topic is measured before its figures are sent: messages may come in bursts."""
 
 _NANO = 1e-9
 
@@ -136,7 +136,7 @@ class _Gauge:
 
     def traffic(self) -> TopicTraffic:
         figures = self.window.traffic(time.monotonic_ns())
-        if figures is None or figures.age_ns < _SHORTEST_NS:
+        if figures is None or figures.age_ns < _LEAST_MEASURED_NS:
             return TopicTraffic(self.topic, None, None, self.tap.error)
         return TopicTraffic(self.topic, figures.messages_per_second, figures.bytes_per_second, self.tap.error)
 

@@ -10,8 +10,8 @@ from linkwright.viewer.web.audience import Page
 _LEAD = 10.0
 """Seconds of sound that may come at once, as after a line was stuck."""
 
-_DRIFT = 1.05
-"""How much faster than ours the clock of a page's microphone may be."""
+_CLOCK_TOLERANCE = 1.05
+"""The factor by which the clock of a page's microphone may be faster than ours."""
 
 
 class Floor:
@@ -62,7 +62,7 @@ class SoundBudget:
     def spend(self, sound: float, lost: float) -> bool:
         """Whether so many seconds are within the bounds."""
         now = self._clock()
-        gained = (now - self._at) * _DRIFT
+        gained = (now - self._at) * _CLOCK_TOLERANCE
         self._at = now
         self._sound = min(_LEAD, self._sound + gained) - sound
         self._lost = min(_LEAD, self._lost + gained) - lost
