@@ -22,8 +22,8 @@ export async function filesOf(transfer: DataTransfer): Promise<Dropped> {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
   const files: NamedFile[] = [];
   for (const entry of entries) {
-    if (entry.isFile) files.push(await fileOf(entry as FileSystemFileEntry));
-    else for (const inner of await entriesIn(entry as FileSystemDirectoryEntry)) if (inner.isFile) files.push(await fileOf(inner as FileSystemFileEntry));
+    const candidates = entry.isFile ? [entry] : await entriesIn(entry as FileSystemDirectoryEntry);
+    for (const file of candidates.filter(({ isFile }) => isFile)) files.push(await fileOf(file as FileSystemFileEntry));
   }
   return recordingAmong(entries[0]?.name ?? "", files);
 }

@@ -95,13 +95,10 @@ export class ToolsState {
 
   private setValue(id: string, value: PropertyValue): void {
     for (const tool of this.tools) {
-      for (const top of tool.rows.nodes) {
-        for (const node of top.walk()) {
-          if (node.id !== id || node.value === value) continue;
-          node.value = value;
-          this.valueChanged.emit(tool);
-        }
-      }
+      const node = tool.rows.nodes.flatMap((top) => [...top.walk()]).find((each) => each.id === id);
+      if (!node || node.value === value) continue;
+      node.value = value;
+      this.valueChanged.emit(tool);
     }
   }
 }

@@ -55,17 +55,17 @@ export function drawnGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph 
     if (!known) edges.set(key, { from, to, topics });
     else known.topics = [...new Set([...known.topics, ...topics])];
   };
+  const endsOf = (names: readonly string[]): string[] => [
+    ...new Set(names.map((name) => owners.get(name)?.id).filter((id) => id !== undefined)),
+  ];
   for (const topic of topicsOf(graph, options)) {
-    const ends = (names: readonly string[]): string[] => [
-      ...new Set(names.map((name) => owners.get(name)?.id).filter((id) => id !== undefined)),
-    ];
-    const [publishers, subscribers] = [ends(topic.publishers), ends(topic.subscribers)];
+    const [publishers, subscribers] = [endsOf(topic.publishers), endsOf(topic.subscribers)];
     if (options.mode !== "all" && (publishers.length === 0 || subscribers.length === 0)) continue;
-    const all = new Set([...publishers, ...subscribers]);
+    const [first, ...others] = new Set([...publishers, ...subscribers]);
     // What stays within a closed group is not to be seen.
-    if (all.size === 1 && vertices.get([...all][0] ?? "")?.kind === "group") continue;
+    if (others.length === 0 && vertices.get(first ?? "")?.kind === "group") continue;
     if (options.mode === "nodes") {
-      for (const from of publishers) for (const to of subscribers) if (from !== to) connect(from, to, [topic.name]);
+      for (const [from, to] of pairsOf(publishers, subscribers)) connect(from, to, [topic.name]);
       continue;
     }
     const id = `topic:${topic.name}`;
@@ -74,6 +74,11 @@ export function drawnGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph 
     for (const to of subscribers) connect(id, to, []);
   }
   return { vertices: [...vertices.values()], edges: [...edges.values()] };
+}
+
+/** Each publisher with each other subscriber. */
+function pairsOf(publishers: readonly string[], subscribers: readonly string[]): (readonly [string, string])[] {
+  return publishers.flatMap((from) => subscribers.filter((to) => to !== from).map((to) => [from, to] as const));
 }
 
 interface JoinedTopic extends Pick<GraphTopic, "name" | "publishers" | "subscribers"> {

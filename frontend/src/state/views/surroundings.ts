@@ -17,6 +17,10 @@ const HIGHER = 0.15;
 const ASIDE = 0.05;
 /** Places around a robot. */
 const PLACES = 8;
+/** The directions that are tried, and the most that each can score. */
+const DIRECTIONS = PITCHES.flatMap((pitch, higher) =>
+  SIDES.map((side, aside) => ({ pitch, side, most: 1 - higher * HIGHER - aside * ASIDE })),
+);
 const orbit = new OrbitController();
 
 /** Whether nothing hides a place from an eye. */
@@ -37,19 +41,17 @@ export function around(values: ViewValues, { min, max }: Span, size: ViewSize, i
   const ring = Array.from({ length: PLACES }, (_, i) => add(middle, turn([1, 0, 0], (i * 2 * Math.PI) / PLACES), span / 2 + room));
   const all = orbit.fit({ ...values, Pitch: ROBOT_PITCH }, { min: add(min, [1, 1, 1], -room), max: add(max, [1, 1, 1], room) }, size);
   const far = number(all, "Distance", 0);
+  const covered = (eye: Vector): number => ring.filter((place) => !isSeen(eye, place)).length / PLACES;
   for (const nearer of NEARER) {
     let best: { score: number; values: ViewValues } | null = null;
-    for (const [higher, more] of PITCHES.entries()) {
-      for (const [aside, side] of SIDES.entries()) {
-        const most = 1 - higher * HIGHER - aside * ASIDE;
-        if (best && most <= best.score) continue;
-        const Yaw = wrapYaw(number(values, "Yaw", 0) + side);
-        const Pitch = ROBOT_PITCH + more;
-        const eye = add(middle, direction(Yaw, Pitch), nearer * far);
-        if (!isSeen(eye, middle) || !isSeen(eye, top)) continue;
-        const score = most - ring.filter((place) => !isSeen(eye, place)).length / PLACES;
-        if (!best || score > best.score) best = { score, values: { ...all, Yaw, Pitch, Distance: nearer * far } };
-      }
+    for (const { most, pitch, side } of DIRECTIONS) {
+      if (best && most <= best.score) continue;
+      const Yaw = wrapYaw(number(values, "Yaw", 0) + side);
+      const Pitch = ROBOT_PITCH + pitch;
+      const eye = add(middle, direction(Yaw, Pitch), nearer * far);
+      if (!isSeen(eye, middle) || !isSeen(eye, top)) continue;
+      const score = most - covered(eye);
+      if (!best || score > best.score) best = { score, values: { ...all, Yaw, Pitch, Distance: nearer * far } };
     }
     if (best) return best.values;
   }
