@@ -39,24 +39,6 @@ export class TitleBar {
       menuButton(strings.sharing.share, () => share.entries()),
     ];
     walkWithArrows(menus);
-    const themes = button(
-      words.theme,
-      () =>
-        openMenu(
-          themes,
-          THEME_CHOICES.map((choice) => ({
-            label: words.themes[choice],
-            checked: theme.choice === choice,
-            run: () => theme.choose(choice),
-          })),
-        ),
-      "tool bare",
-      icon("system"),
-    );
-    themes.setAttribute("aria-haspopup", "menu");
-    const showTheme = (): void => themes.replaceChildren(icon(theme.theme === "light" ? "light" : "dark"));
-    theme.changed.on(showTheme);
-    showTheme();
     this.element = h(
       "header",
       { class: "title-bar" },
@@ -70,7 +52,7 @@ export class TitleBar {
       h("span", { class: "spacer" }),
       share.element,
       this.ownSwitch(),
-      themes,
+      themeButton(theme),
       button(
         words.languageHint,
         () => chooseLanguage(language === "en" ? "zh" : "en"),
@@ -195,4 +177,23 @@ function walkWithArrows(menus: readonly HTMLButtonElement[]): void {
 
 function shortened(path: string): string {
   return path.length <= 60 ? path : `…${path.slice(-58)}`;
+}
+
+/** The button that shows the theme, with a menu to choose one. */
+function themeButton(theme: ThemeState): HTMLButtonElement {
+  const words = strings.shell;
+  const choose = (): void => {
+    const entries = THEME_CHOICES.map((choice) => ({
+      label: words.themes[choice],
+      checked: theme.choice === choice,
+      run: () => theme.choose(choice),
+    }));
+    openMenu(element, entries);
+  };
+  const element = button(words.theme, choose, "tool bare", icon("system"));
+  element.setAttribute("aria-haspopup", "menu");
+  const show = (): void => element.replaceChildren(icon(theme.theme === "light" ? "light" : "dark"));
+  theme.changed.on(show);
+  show();
+  return element;
 }
