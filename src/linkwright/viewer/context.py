@@ -27,7 +27,7 @@ class GraphChanges:
     """The changes of a graph, for those who listen; costs nothing while nobody does.
 
     Args:
-        graph: whose changes; they may happen in any thread.
+        graph: the graph to listen to; its changes may happen in any thread.
     """
 
     def __init__(self, graph: GraphQueries) -> None:
@@ -109,7 +109,7 @@ class ViewerContext:
         library: reads descriptions, each once for the whole process.
         finder: finds packages.
         pages: every open page.
-        transforms: where frames were, to place messages by the time in their headers.
+        transforms: the history of transforms, to place messages by the time in their headers.
         graph_changes: tells that nodes or endpoints came or went.
         meshes: the folders that pages may read from.
         downloads: files that were made for a page, to be fetched once.

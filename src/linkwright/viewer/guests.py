@@ -56,7 +56,7 @@ class GuestRecordings:
         """Show a recording until a minute after its last page has gone; returns its name for pages.
 
         Args:
-            path: of its file or folder.
+            path: the path of its file or folder.
             scratch: the folder that it is in, which is removed afterwards; None for one that stays where it is.
 
         Raises:

@@ -34,13 +34,13 @@ class LiveHistory:
     Nothing is subscribed to for it. While another time is shown, what comes is kept but shown to nobody.
 
     Args:
-        context: of the viewer.
-        most_bytes: how much is kept.
+        context: the context of the viewer.
+        most_bytes: the most bytes that are kept.
         failed: called with an error of the playback.
 
     Attributes:
         live: whether the present is shown.
-        begin_anew: has whoever shows something forget it, because time has gone back.
+        begin_anew: called when time goes back, so that displays forget what they show.
         changed: called when `live` has changed.
     """
 

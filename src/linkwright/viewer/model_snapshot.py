@@ -33,10 +33,10 @@ def snapshot_of_model(
 
     Args:
         text: the description.
-        robot: what it says.
+        robot: the robot of the text.
         library: knows where its parts were written.
         finder: finds its meshes.
-        old: what it is compared with; None for nothing.
+        old: the description to compare with; None for none.
     """
     return asyncio.run(_take(text, robot, library, finder, old))
 

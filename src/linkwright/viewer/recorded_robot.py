@@ -71,7 +71,7 @@ class PlacedRobot:
         recording: publishes what was recorded.
         node: publishes the transforms.
         bag: the recording.
-        robot: which has no transforms in it.
+        robot: the robot, which has no transforms in the recording.
     """
 
     def __init__(self, recording: PublishedRecording, node: Node, bag: BagReader, robot: Robot) -> None:
@@ -124,7 +124,7 @@ def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecor
     Args:
         bag: the recording.
         node: publishes.
-        robot: of `robot_of`.
+        robot: the robot of `robot_of`.
     """
     namespace = namespace_of_transforms(bag)
     recording = PublishedRecording(node, bag, namespace)

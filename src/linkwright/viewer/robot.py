@@ -65,7 +65,7 @@ class DescriptionSource:
 
     Args:
         context: of the viewer; its library is told of files read, so that the robot knows its places in them.
-        properties: of the display, with `DESCRIPTION_SPECS`.
+        properties: the display's properties, with `DESCRIPTION_SPECS`.
         on_text: called with each description.
         on_refusal: called with what is wrong when there is none to be had.
     """

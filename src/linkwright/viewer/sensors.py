@@ -28,7 +28,7 @@ class ShownLidar:
     """A lidar as pages draw it.
 
     Attributes:
-        scene: what pages are told of it.
+        scene: the message about it for pages.
         measured: rows and columns of what it measures.
         every: every how many of the rows and of the columns are drawn.
     """

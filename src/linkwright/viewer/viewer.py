@@ -48,15 +48,15 @@ class Viewer:
     `config.save` does.
 
     Args:
-        graph: what it is a node of.
+        graph: the graph that it is a node of.
         library: reads descriptions, each once for the whole process.
         finder: finds packages, and so meshes.
         config: displays, options and view.
-        host: what to listen on; anything but this machine's loopback address lets others in who know the token.
+        host: the address to listen on; any but this machine's loopback address lets others in who know the token.
         port: 0 for any; None for 7448 or the next free one.
-        title: of the page.
-        options: of the node: its name, remappings, parameters and ROS arguments.
-        history: how many bytes of what comes are kept, for pages to go back to the last minutes; 0 for none.
+        title: the title of the page.
+        options: the node's name, remappings, parameters and ROS arguments.
+        history: the bytes of received messages that are kept, for pages to go back to the last minutes; 0 for none.
         beside: another viewer, on whose server this one's pages are; None for a server of its own.
 
     Attributes:
@@ -229,7 +229,7 @@ class Viewer:
 
         Args:
             cls: its class.
-            receives: what messages of pages it takes beside those that its class names.
+            receives: classes of messages that it receives beside those that its class names.
         """
         found = next((each for each in self._features if type(each) is cls), None)
         if found is None:

@@ -48,7 +48,7 @@ class WorldContent:
 
     Attributes:
         links: all links that draw something or move, named as in the poses of the simulation: ``robot::arm::tip``.
-        poses: where each of them stands in the world at first.
+        poses: the first pose of each in the world.
         problems: link -> what is wrong with files that it names.
     """
 

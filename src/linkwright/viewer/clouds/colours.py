@@ -34,13 +34,13 @@ class ColourSettings:
 
     Attributes:
         transformer: one of `TRANSFORMERS`.
-        channel: of ``Intensity``.
+        channel: the channel of ``Intensity``.
         rainbow: whether ``Intensity`` goes through the rainbow instead of from `darkest` to `brightest`.
         inverted: whether that rainbow begins with the other end.
         darkest: colour of the least intensity.
         brightest: colour of the largest intensity.
         intensities: least and largest intensity, or None to take those of the cloud.
-        axis: of ``AxisColor``, an index of `AXES`.
+        axis: the axis of ``AxisColor``, an index of `AXES`.
         values: least and largest coordinate, or None to take those of the cloud.
         in_fixed_frame: whether ``AxisColor`` looks at coordinates in the Fixed Frame.
     """
@@ -78,7 +78,7 @@ def coloured(
     Args:
         points: the points.
         settings: with a transformer that the points support.
-        pose: of their frame in the Fixed Frame, x y z qx qy qz qw; None where they are in it.
+        pose: the pose of their frame in the Fixed Frame, x y z qx qy qz qw; None where they are in it.
     """
     if settings.transformer == INTENSITY:
         return _by_intensity(points, settings)

@@ -89,8 +89,8 @@ class DepthCloudBuilder:
 
         Args:
             depth: sensor_msgs/msg/Image, 16UC1 or mono16 in millimetres or 32FC1 in metres.
-            camera: of the size of the image.
-            colour: of the same size; None for white points.
+            camera: a camera of the image's size.
+            colour: an image of the same size; None for white points.
             keep_covered: seconds that covered points stay, in half their colour; None for not at all.
             now: the time, seconds.
 

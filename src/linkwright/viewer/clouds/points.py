@@ -209,7 +209,7 @@ def swept(points: Points, parts: NDArray[Any], first: NDArray[np.float64], last:
 
     Args:
         points: in the moving frame.
-        parts: of the way, 0 to 1, on which each point was seen; shape (N,).
+        parts: the part of the way, 0 to 1, at which each point was seen; shape (N,).
         first: pose at the beginning, x y z qx qy qz qw.
         last: pose at the end.
     """

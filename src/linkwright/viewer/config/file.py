@@ -20,7 +20,7 @@ class FileForm:
 
     Attributes:
         mark: whether it begins with a byte order mark.
-        newline: what ends its lines.
+        newline: the line ending.
     """
 
     mark: bool = False

@@ -42,7 +42,7 @@ def configuration_path(text: str, folder: Path) -> Path:
 
     Args:
         text: absolute, from ``~``, or from the folder.
-        folder: of the open file.
+        folder: the folder of the open file.
 
     Raises:
         LinkwrightError: RVIZ105, its name, or that of the file it is a link to, does not end in ``.rviz``.
@@ -65,7 +65,7 @@ def list_folder(text: str | None, folder: Path) -> Folder:
 
     Args:
         text: absolute, from ``~``, or from the folder of the open file; None for that one.
-        folder: of the open file.
+        folder: the folder of the open file.
 
     Raises:
         LinkwrightError: RVIZ106, it cannot be read.
@@ -204,8 +204,8 @@ def forget_unsaved(former: Path | None, config: RvizConfig, recent: RecentFiles)
 
     Args:
         former: the file that it had before: a recovery file that now is saved elsewhere has done its work.
-        config: has the file that it was saved to.
-        recent: where the files are listed that were removed.
+        config: the configuration, with the file that it was saved to.
+        recent: the list from which removed files go.
     """
     done = {recovery_file(config)}
     if former is not None and _whole(former).parent == _whole(recovery_folder()):

@@ -15,7 +15,7 @@ class ModelSize:
     """Lengths of a robot, m.
 
     Attributes:
-        diagonal: of the box around it.
+        diagonal: the diagonal of its bounding box.
         spacing: from a link's frame to that of its parent, for most links.
     """
 

@@ -161,7 +161,7 @@ def is_shown(state: str, name: str) -> bool | None:
 
     Args:
         state: the hexadecimal digits.
-        name: of the dock, which is that of its panel.
+        name: the name of the dock, which is that of its panel.
     """
     content = _bytes(state)
     at = _flags(content, name)

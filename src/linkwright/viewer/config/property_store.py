@@ -290,8 +290,8 @@ def qos_of(properties: PropertyStore, name: str = "Topic", *, lasting: bool | No
     """The quality of service that a Topic property asks for.
 
     Args:
-        properties: of the display.
-        name: of the property.
+        properties: the display's properties.
+        name: the name of the property.
         lasting: whether messages published before count too, whatever the property says.
     """
     get = properties.text

@@ -113,7 +113,7 @@ class DisplayConfig:
 
     Attributes:
         cls: RViz 2's name of its class, also where the file says it as RViz 1 did.
-        displays: what a group holds.
+        displays: the displays of a group.
         identity: its id in pages; empty until it has one.
     """
 
@@ -243,8 +243,8 @@ class RvizConfig:
         options: the Global Options.
         views: the current view and the saved ones.
         tools: the tools.
-        panels: which panels are open.
-        warnings: what the file says that cannot be used.
+        panels: the open panels.
+        warnings: findings on parts of the file that cannot be used.
     """
 
     def __init__(self, document: Section, path: Path | None = None, form: FileForm | None = None) -> None:
@@ -310,9 +310,9 @@ class RvizConfig:
 
         Args:
             fixed_frame: the Fixed Frame, usually the robot's root link.
-            size: of the robot, by which grid and axes are made; None leaves them as RViz has them.
+            size: the size of the robot, for grid and axes; None leaves them as RViz has them.
             frames: whether TF is switched on; it covers a robot that has visuals.
-            name: of the model's file, by which edits that are not saved are kept.
+            name: the name of the model's file, under which unsaved edits are kept.
         """
         config = cls.parse(_DEFAULT, name)
         for name, values in _MODEL_DISPLAYS:
@@ -344,8 +344,8 @@ class RvizConfig:
         """Make the view follow a frame, with grid and axes of RViz's size: for a robot that drives about.
 
         Args:
-            frame: of the robot.
-            distance: of the camera, m.
+            frame: the robot's frame.
+            distance: the camera's distance, m.
         """
         view = self.views.current
         view.values |= {"Target Frame": frame, "Distance": distance}
@@ -374,8 +374,8 @@ class RvizConfig:
         Only once, and only what nobody has changed since.
 
         Args:
-            diagonal: of the box around the robot, m.
-            ground: how high the ground is that it stands on, in the Fixed Frame, m.
+            diagonal: the diagonal of the robot's bounding box, m.
+            ground: the height of the ground that it stands on, in the Fixed Frame, m.
         """
         proposed, self._proposed = self._proposed, None
         if proposed is None or not isfinite(diagonal + ground) or diagonal <= 0:

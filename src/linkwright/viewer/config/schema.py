@@ -37,10 +37,10 @@ class PropertySpec:
 
     Attributes:
         name: as RViz shows it and as the file spells its key.
-        kind: what values it takes; a ``group`` takes none.
+        kind: the kind of its values; a ``group`` has none.
         default: RViz's default.
         description: the tooltip.
-        options: of an ``enum``.
+        options: the values of an ``enum``.
         minimum: of an ``int`` or ``float``, inclusive.
         maximum: of an ``int`` or ``float``, inclusive.
         messages: of a ``topic``, the types of those offered; none for those of the display.
@@ -52,7 +52,7 @@ class PropertySpec:
         nested: whether the file keeps its value under ``Value``, because it has parts there.
         hidden: whether it has a value in the file but no row, as properties that RViz hides.
         read_only: whether only the program sets it; the file does not have it.
-        details: what the row stands for, if pages show more of it in read-only rows of their own, see `Property`.
+        details: the subject of read-only rows that pages add below it, see `Property`.
     """
 
     name: str
@@ -282,7 +282,7 @@ def topic_spec(
     """The property with its parts.
 
     Args:
-        name: of the property.
+        name: the name of the property.
         default: topic.
         description: the tooltip.
         depth: RViz's default for how many messages may wait.

@@ -196,9 +196,9 @@ def insert_section(parent: Section, key: str, section: Section, before: Section 
     """Put a mapping into the sequence under a key, which is made where it is missing.
 
     Args:
-        parent: has the key.
-        key: of the sequence.
-        section: what is put there.
+        parent: the mapping with the key.
+        key: the key of the sequence.
+        section: the mapping to insert.
         before: the item it goes in front of; None or one that is not there for the end.
     """
     sequence = _child(parent.node, key)
@@ -254,9 +254,9 @@ class Made:
 
     Attributes:
         holder: the mapping that has it.
-        memory: what the holder said before.
+        memory: the holder's value before.
         section: the mapping itself.
-        keys: what it had at once.
+        keys: the keys that it had at first.
     """
 
     holder: Section

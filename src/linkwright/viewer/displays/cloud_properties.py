@@ -106,7 +106,7 @@ def scalar_specs(channel: str, least: float, largest: float, *, inverted: bool |
     """The properties of a display that shows one number as a point: RViz hides those that have no choice.
 
     Args:
-        channel: that has the number.
+        channel: the channel with the number.
         least: default of ``Min Intensity``.
         largest: default of ``Max Intensity``.
         inverted: value of ``Invert Rainbow``, which is hidden then; None where the user may choose.

@@ -24,7 +24,7 @@ class DetectorThreshold:
 
     Args:
         node: asks.
-        told: is called with what has come of a wish.
+        told: called with the outcome of a request.
     """
 
     def __init__(self, node: Node, told: Told) -> None:

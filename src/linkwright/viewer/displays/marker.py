@@ -266,7 +266,7 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
         """The markers of a message; they replace those of the message before.
 
         Args:
-            message: of the type `MESSAGE`; it must not be changed.
+            message: a message of the type `MESSAGE`; it must not be changed.
 
         Returns:
             visualization_msgs/msg/Marker, each with a namespace and a number of its own. One without a frame is in that

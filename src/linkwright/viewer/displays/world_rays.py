@@ -26,7 +26,7 @@ class LidarRays:
     """Listens to measured rays, and only while some of them are drawn.
 
     Args:
-        host: of the display.
+        host: the display's host.
         show: called with the rays of a lidar that are drawn.
         hide: called with the name of a lidar whose rays are drawn no more.
     """
@@ -56,8 +56,8 @@ class LidarRays:
         """Subscribe to the topics of the lidars whose rays are drawn, and to no others.
 
         Args:
-            topic: of the rays; empty for none.
-            choice: which of the lidars are drawn, see `CHOICES`.
+            topic: the topic of the rays; empty for none.
+            choice: the lidars to draw, see `CHOICES`.
 
         Returns:
             RViz's words for what is wrong with the topic, or None.

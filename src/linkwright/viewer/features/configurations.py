@@ -69,7 +69,7 @@ class ConfigurationFeature(PageFeature):
     Nothing unsaved is lost unless the page says that it may be.
 
     Args:
-        viewer: that it belongs to.
+        viewer: the viewer that it belongs to.
         recent: the files opened or saved before.
     """
 

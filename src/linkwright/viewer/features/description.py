@@ -43,10 +43,10 @@ class KnownDescription:
     Args:
         display: the RobotModel display.
         revision: counts the descriptions of the display.
-        robot: what was read.
-        text: what it was read from.
+        robot: the robot.
+        text: the text that it was read from.
         prefix: the display's TF Prefix.
-        files: what it was made from, as far as that is known.
+        files: the files that the text was made from, as far as they are known.
     """
 
     def __init__(

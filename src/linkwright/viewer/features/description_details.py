@@ -96,7 +96,7 @@ def account(robot: Robot, text: str, files: list[str], *, display: str, revision
     Args:
         robot: read from the text.
         text: the description, expanded.
-        files: what it was made from.
+        files: the files that the text was made from.
         display: the RobotModel display that shows it.
         revision: counts the descriptions of the display.
         prefix: the display's TF Prefix.

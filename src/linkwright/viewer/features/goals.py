@@ -14,7 +14,7 @@ class GoalSender:
 
     Args:
         node: to send with.
-        name: of the action.
+        name: the name of the action.
         kind: its type.
     """
 

@@ -26,8 +26,8 @@ class FeatureHost(Protocol):
     """The viewer, as its features see it.
 
     Attributes:
-        context: what all of the viewer works with.
-        managers: what pages see: one configuration that they share, and those of single pages.
+        context: the viewer's node, files and pages.
+        managers: the configurations that pages see: one that they share, and those of single pages.
         live: keeps what came in the last minutes; None where nothing does.
     """
 
@@ -40,7 +40,7 @@ class FeatureHost(Protocol):
 
         Args:
             cls: its class.
-            receives: what messages of pages it takes beside those that its class names.
+            receives: classes of messages that it receives beside those that its class names.
         """
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
@@ -57,7 +57,7 @@ class PageFeature:
     `page_gone`.
 
     Args:
-        viewer: that it belongs to.
+        viewer: the viewer that it belongs to.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = ()

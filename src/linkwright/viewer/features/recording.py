@@ -49,7 +49,7 @@ class RecordingFeature(PageFeature):
     """Records topics for pages. It goes on when its page is closed, and ends well when the program does.
 
     Attributes:
-        folder: where recordings go.
+        folder: the folder for recordings.
         left_free: bytes of the disk that are left to others.
     """
 

@@ -18,7 +18,7 @@ class SimulationServices:
     """Clients of services, each made when it is first needed.
 
     Args:
-        context: of the viewer, whose node asks.
+        context: the context of the viewer, whose node calls.
     """
 
     def __init__(self, context: ViewerContext) -> None:
@@ -37,12 +37,12 @@ class SimulationServices:
         """Call a service; the page is told when there is none, or when it refuses.
 
         Args:
-            page: that wants it.
+            page: the page that requests it.
             kind: the service's type.
             name: its name.
-            fields: of the request.
-            answered: is given the response; None where there is no such service.
-            refused: what the page is told where the response says no more.
+            fields: the fields of the request.
+            answered: called with the response; None where there is no such service.
+            refused: the text for the page where the response gives no reason.
         """
         client = self._clients.get(name)
         if client is None:

@@ -150,9 +150,9 @@ class TimelineFeature(PageFeature):
         """The messages of some topics of so many seconds up to the time that is shown, where they are known.
 
         Args:
-            topics: which; of what came in the last minutes, those that the viewer is subscribed to are known.
-            seconds: how much time.
-            most_bytes: of messages that are larger together there are none.
+            topics: the topics; of the last minutes, only those are known that the viewer is subscribed to.
+            seconds: the length of time.
+            most_bytes: the limit; none are returned where they are larger together.
         """
         if self._live is None and self._recorded is None:
             return []

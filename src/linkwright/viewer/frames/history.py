@@ -25,9 +25,9 @@ class OwnFrame:
     """A frame that tf does not know, and that a display places all the same.
 
     Attributes:
-        name: of the frame.
+        name: the name of the frame.
         parent: a frame of tf; None while none is known to be connected with it.
-        pose: of that frame in this one: x, y, z, qx, qy, qz, qw.
+        pose: the pose of that frame in this one: x, y, z, qx, qy, qz, qw.
     """
 
     name: str

@@ -192,9 +192,9 @@ class FrameStream:
 
     Args:
         node: to subscribe with.
-        pages: those that see the result.
+        pages: the pages that see the result.
         time: whether frames stay where they are, and the time at which they are shown.
-        history: where frames were, for a time other than the latest.
+        history: the history of transforms, for a time other than the latest.
         on_frames: called when frames came or went, or can be placed now or no more.
         fade_time: gives the shortest Frame Timeout of the displays, seconds; None when no display shows ages.
         own_frames: gives the frames that robots have links for, which tf may not know.

@@ -49,8 +49,8 @@ class ClientEvents:
     Attributes:
         everything: its markers, at the beginning and when updates were lost.
         update: a visualization_msgs/msg/InteractiveMarkerUpdate.
-        gone: it has no markers now, or is there no more.
-        status: how it stands, for the display's status.
+        gone: the server has no markers now, or has gone.
+        status: the state of the connection, for the display's status.
     """
 
     everything: Callable[[list[Any]], None]
@@ -64,8 +64,8 @@ class InteractiveMarkerClient:
 
     Args:
         node: to subscribe with.
-        namespace: of the server.
-        events: what is told.
+        namespace: the server's namespace.
+        events: the callbacks.
 
     Raises:
         LinkwrightError: the namespace makes no name of a topic.

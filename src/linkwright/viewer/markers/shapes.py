@@ -39,7 +39,7 @@ class MarkerReading:
     Attributes:
         shape: with the pose in the message's frame, until it is placed.
         pose: in the message's frame.
-        warning: what may not have been meant, or None.
+        warning: a probable mistake in the message, or None.
     """
 
     shape: MarkerShape
@@ -65,11 +65,11 @@ def made_marker(
     Args:
         namespace: with the name, what it is known by.
         name: within the namespace.
-        kind: of its shape.
+        kind: the kind of its shape.
         pose: x, y, z, qx, qy, qz, qw in `frame`.
         scale: x, y, z, as visualization_msgs/msg/Marker has it for the kind.
         color: red, green, blue, alpha, from 0 to 1.
-        frame: that it follows; the Fixed Frame where empty.
+        frame: the frame that it follows; the Fixed Frame where empty.
         points: shape (N, 3), metres.
         colors: one for each point, shape (N, 4); or none.
         mesh: the file of a ``mesh``.

@@ -38,7 +38,7 @@ def pack_transforms(revision: int, stamp: float, poses: NDArray[Any], ages: NDAr
     (seconds since each frame was last heard of; 0 for static frames).
 
     Args:
-        revision: of the `FrameTable` that names the rows.
+        revision: the revision of the `FrameTable` that names the rows.
         stamp: time of the newest transform in it, seconds.
         poses: array, shape (N, 7).
         ages: array, shape (N,).
@@ -100,11 +100,11 @@ def pack_data(
     Args:
         display: its id.
         content: a dataclass of `DataContent`.
-        key: which of several contents of the display this is; a newer one with the key replaces it.
+        key: the key of this content among several of the display; a newer one with the key replaces it.
         frame: the frame that the content is in; empty for the Fixed Frame.
         pose: x, y, z, qx, qy, qz, qw of that frame in the Fixed Frame when the content was true; None when it is to
             follow the frame wherever it goes.
-        stamp: of the content, seconds.
+        stamp: the time of the content, seconds.
     """
     arrays = _Arrays()
     header = {
@@ -179,7 +179,7 @@ def pack_piece(frame: bytes, number: int, offset: int, size: int) -> bytes:
     Args:
         frame: the whole.
         number: the same for all pieces of the frame, and another for those of the next.
-        offset: where the piece begins, bytes.
-        size: of the piece at most, bytes.
+        offset: the offset of the piece, bytes.
+        size: the largest size of the piece, bytes.
     """
     return _HEADER.pack(PIECE_KIND, number, offset, len(frame)) + frame[offset : offset + size]

@@ -22,11 +22,11 @@ class Configuration(ServerMessage):
     """The configuration that the page sees.
 
     Attributes:
-        path: of its file on the server; None when it has none yet.
+        path: the path of its file on the server; None when it has none yet.
         opened: counts the configurations opened so far; when it grows, all that was known is of another file.
         unsaved: whether the file lacks something that was edited.
-        undo: what undo would take back; None for nothing.
-        redo: what redo would do again; None for nothing.
+        undo: the edit that undo would revert; None for none.
+        redo: the edit that redo would repeat; None for none.
         own: whether the page has displays of its own.
         recent: files opened or saved before, newest first.
     """

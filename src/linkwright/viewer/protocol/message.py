@@ -67,8 +67,8 @@ def encode(message: ServerMessage, language: str | None = None) -> str:
     """A message as JSON. Half characters, as names of files may have that are not in UTF-8, become question marks.
 
     Args:
-        message: what is sent.
-        language: what its phrases are said in; None leaves them as they are.
+        message: the message.
+        language: the language of its phrases; None leaves them as they are.
     """
     try:
         return _encoder(language).encode(message).decode()

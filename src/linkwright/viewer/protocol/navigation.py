@@ -31,12 +31,12 @@ class NavigationState(ServerMessage):
 
     Attributes:
         navigation: the nodes of lifecycle_manager_navigation.
-        localization: those of lifecycle_manager_localization.
-        goal: of ``navigate_to_pose``, the one that was sent last.
+        localization: the state of lifecycle_manager_localization.
+        goal: the last goal of ``navigate_to_pose``.
         eta: seconds that it will take from now; None without feedback, as all below.
         distance: metres that remain.
         taken: seconds that it took till now.
-        recoveries: how often something had to be tried to get on.
+        recoveries: the number of recoveries so far.
         busy: a command is under way.
         problem: why the last command was not done; empty where it was.
     """

@@ -87,8 +87,8 @@ class VoiceState(ServerMessage):
     Attributes:
         talking: whose sound is published. One page talks at a time: the first that holds its button, else the first
             that listens all the time.
-        sound_listeners: how many subscribe to sound.
-        text_listeners: how many take commands as text.
+        sound_listeners: the number of subscribers to sound.
+        text_listeners: the number of subscribers to commands as text.
         cut: the page sent more sound than time has passed, or says that more was lost, and has to begin anew.
     """
 

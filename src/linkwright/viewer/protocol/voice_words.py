@@ -64,8 +64,8 @@ class VoiceWords(ServerMessage):
 
     Attributes:
         words: in the order in which they were enrolled.
-        enough: how often a word is to be said.
-        file: where they are kept.
+        enough: the number of takes that a word needs.
+        file: the file in which they are kept.
         problem: why the file cannot be read or written, or something was not done.
     """
 
@@ -81,10 +81,10 @@ class TakeJudged(ServerMessage):
     Attributes:
         number: counts the recordings.
         name: the word.
-        code: of the finding for which it was not taken; None when it was.
-        text: that finding.
+        code: the code of the finding for which it was refused; None when it was accepted.
+        text: the text of that finding.
         peak: the loudest sample, 0 to 1.
-        seconds: how long the recording is.
+        seconds: the length of the recording.
     """
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)

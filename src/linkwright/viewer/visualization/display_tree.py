@@ -26,10 +26,10 @@ class DisplayTree:
     and its part of the file takes its place.
 
     Args:
-        config: has the entries.
+        config: the configuration with the entries.
         host: the visualization that they are part of.
-        history: of edits.
-        rearranged: told when displays came, went, moved or have another name, before new ones start.
+        history: the history of edits.
+        rearranged: called when displays were added, removed, moved or renamed, before new ones start.
 
     Attributes:
         displays: every display, each group before what is in it.

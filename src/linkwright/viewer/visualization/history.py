@@ -21,7 +21,7 @@ class Edit(Generic[State]):
     """An edit of a configuration that can be undone and redone.
 
     Args:
-        name: what was done, for menus.
+        name: the name of the edit, for menus.
         swap: brings a state about, and returns the one that was there.
         before: the state before.
         subject: edits of one subject that follow each other quickly are one, see `History.is_at`; None for none such.

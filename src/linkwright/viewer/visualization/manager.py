@@ -61,21 +61,21 @@ class VisualizationManager:
     """A configuration, its displays and their frames, for the pages that see them.
 
     Args:
-        context: what all of the viewer works with.
+        context: the viewer's node, files and pages.
         config: displays, options and view.
-        owner: told of what happens.
+        owner: the owner, which is told of events.
 
     Attributes:
-        context: what all of the viewer works with.
-        pages: those that see it.
-        view: where the camera of a page that opens is, wherever others have gone.
+        context: the viewer's node, files and pages.
+        pages: the pages that see it.
+        view: the first view of a page that opens, whichever others have now.
         shows_whole_robot: nobody put it there: pages move it so that all of the robot is seen.
         config: the configuration now.
         opened: counts the configurations that it has had.
         frames: the frames now.
         time: whether time stands still, and what leads it.
         tree: the displays, and what is done to them.
-        history: what was edited.
+        history: the edits.
     """
 
     def __init__(self, context: ViewerContext, config: RvizConfig, owner: ManagerOwner) -> None:
@@ -369,9 +369,9 @@ class Managers:
     """The manager that all share, and those of single pages, which begin with a copy of the shared configuration.
 
     Args:
-        context: what all of the viewer works with.
-        config: of every page that does not ask for its own.
-        owner: told of what happens to them.
+        context: the viewer's node, files and pages.
+        config: the configuration of every page that does not ask for its own.
+        owner: the owner, which is told of their events.
     """
 
     def __init__(self, context: ViewerContext, config: RvizConfig, owner: ManagerOwner) -> None:

@@ -27,7 +27,7 @@ class Gate:
     """Checks requests.
 
     Args:
-        host: what the server is bound to; that name is good too.
+        host: the name that the server is bound to, which is allowed too.
     """
 
     def __init__(self, host: str) -> None:
@@ -119,7 +119,7 @@ class Admission:
     a thousand at once keep anybody out for long, and those that are let in notice nothing.
 
     Args:
-        make: makes what serves a connection.
+        make: makes the protocol of a connection.
     """
 
     def __init__(self, make: Callable[[], asyncio.Protocol]) -> None:

@@ -47,10 +47,10 @@ class Page:
     """An open page: its socket and its outbox.
 
     Args:
-        socket: of the page.
+        socket: the page's socket.
         own: the name that the page has for displays of its own; empty for a page that shares the common ones.
         is_here: whether it is open on this machine, or came through a tunnel to it.
-        language: what its user reads, one of `LANGUAGES`; None leaves texts as they are.
+        language: the language of its user, one of `LANGUAGES`; None leaves texts as they are.
     """
 
     def __init__(
@@ -207,10 +207,10 @@ class Audience(PageGroup):
     """All open pages.
 
     Args:
-        opening: what a page is sent first, the whole state as it is.
-        receivers: what takes the messages of pages, by their classes; others are passed over.
+        opening: the first messages for a page, the whole present state.
+        receivers: the receivers of pages' messages, by class; others are ignored.
         gone: called when a page has closed.
-        logger: told of messages outside of the protocol.
+        logger: logs messages outside of the protocol.
     """
 
     def __init__(

@@ -181,7 +181,7 @@ class MeshFolders:
         """The real path of a file asked for.
 
         Args:
-            key: of a folder.
+            key: the key of a folder.
             relative: the path below it, percent-decoded.
 
         Raises:

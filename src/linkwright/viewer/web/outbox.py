@@ -28,11 +28,11 @@ class ScaledData:
     Args:
         key: under which it waits in outboxes.
         content: all of it.
-        shrink: makes less of it.
+        shrink: reduces it to a number of bytes.
         pack: makes the binary frame.
 
     Attributes:
-        gone: it was replaced or taken away, and is not to be sent again.
+        gone: whether it was replaced or removed, and is not to be sent again.
     """
 
     def __init__(self, key: str, content: DataContent, shrink: Shrink, pack: Pack) -> None:
@@ -67,7 +67,7 @@ class InPieces:
     Args:
         payload: the content.
         number: unlike that of those before it.
-        size: says how many bytes the next piece may have.
+        size: returns the bytes that the next piece may have.
     """
 
     def __init__(self, payload: ScaledData, number: int, size: Callable[[], int]) -> None:
@@ -113,7 +113,7 @@ class Changes(Protocol):
         """The message or binary frame for a page.
 
         Args:
-            seen: what this returned when the page was sent the last one; 0 for a page that has nothing.
+            seen: the number that this returned for the page's last one; 0 for a page that has nothing.
 
         Returns:
             The frame, or None when the page has everything; and what the page will have seen then.

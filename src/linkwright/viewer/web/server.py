@@ -97,7 +97,7 @@ class WebServer:
     """Serves one viewer.
 
     Args:
-        gate: who may come in.
+        gate: checks requests.
         audience: takes the WebSockets.
         meshes: the folders that may be read.
         downloads: files that were made for pages.

@@ -116,8 +116,8 @@ class Uploads:
         """Add the routes of uploads.
 
         Args:
-            router: of the server.
-            shielded: has a handler asked only by those who show the token.
+            router: the server's router.
+            shielded: wraps a handler so that it refuses requests without the token.
         """
         router.add_post("/recordings", shielded(self._announce))
         router.add_put("/recordings/{key}/{number:[0-9]{1,4}}", shielded(self._take))

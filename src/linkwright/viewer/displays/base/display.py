@@ -34,8 +34,8 @@ class DisplayHost(Protocol):
     """A visualization, as its displays see it.
 
     Attributes:
-        context: what all of the viewer works with.
-        pages: those that see the display.
+        context: the viewer's node, files and pages.
+        pages: the pages that see the display.
         frames: the frames now.
         time: whether time stands still, and what leads it.
     """

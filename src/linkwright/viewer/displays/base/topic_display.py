@@ -28,8 +28,8 @@ class SideTopic:
     """Listens to a topic that goes along with the display's own. While time is paused its messages wait.
 
     Args:
-        host: of the display.
-        message_type: of its messages.
+        host: the display's host.
+        message_type: the type of its messages.
         on_message: called with each of them.
     """
 
@@ -149,8 +149,8 @@ class TopicDisplay(DataDisplay, ABC):
         """A message to show.
 
         Args:
-            message: of the type `MESSAGE`; it must not be changed.
-            pose: of the frame in its header, at its time; None when the display is not `TRANSFORMED`.
+            message: a message of the type `MESSAGE`; it must not be changed.
+            pose: the pose of the frame in its header, at its time; None when the display is not `TRANSFORMED`.
         """
 
     def reset(self) -> None:

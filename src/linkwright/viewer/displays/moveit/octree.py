@@ -43,7 +43,7 @@ class Cells:
     Attributes:
         centers: metres, shape (N, 3).
         sizes: edge lengths, metres, shape (N,).
-        probabilities: that they are occupied, shape (N,).
+        probabilities: the probabilities that they are occupied, shape (N,).
     """
 
     centers: NDArray[np.float64]
@@ -59,7 +59,7 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
     """The leaves of an octomap_msgs/msg/Octomap, free ones too.
 
     Args:
-        data: of the message.
+        data: the data of the message.
         binary: whether it is in the binary form.
         kind: the class of the tree; its `id` in the message.
         resolution: metres.

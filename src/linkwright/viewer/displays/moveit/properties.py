@@ -152,9 +152,9 @@ def look(
     """The look of a robot by the properties below a path.
 
     Args:
-        properties: of the display.
-        robot: whose links have boxes.
-        namespace: of the markers.
+        properties: the display's properties.
+        robot: the robot whose links have boxes.
+        namespace: the markers' namespace.
         above: the path of the group that has the properties.
         color: the colour of all links, such as ``#963296``; None for their own.
     """

@@ -31,7 +31,7 @@ class JointPositions:
     Attributes:
         values: rad or m, by joint.
         root_in_frame: the pose of the robot's root link in `frame`.
-        frame: that of the root link where empty.
+        frame: the frame of `root_in_frame`; that of the root link where empty.
     """
 
     values: dict[str, float] = field(default_factory=dict)
@@ -48,7 +48,7 @@ class Look:
     """Colours and opacity of a robot, and which links and shapes are drawn.
 
     Attributes:
-        namespace: of the markers.
+        namespace: the markers' namespace.
         visual: draw what it looks like.
         collision: draw the shapes that contacts are worked out with.
         alpha: opacity of all links.

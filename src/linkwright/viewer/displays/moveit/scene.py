@@ -76,11 +76,11 @@ class Scene:
     """The objects around a robot, those that it holds, and its joint positions.
 
     Attributes:
-        name: that the scene was given.
+        name: the name of the scene.
         is_whole: whether all of it is known, and not only what changed since somebody listened.
-        state: of the robot.
+        state: the robot's state.
         octomap: its cells, if there is one.
-        problems: what is wrong, by what it is about.
+        problems: the problems, by their subject.
     """
 
     def __init__(self) -> None:

@@ -39,9 +39,9 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
 
     Args:
         message: the object. A pose that was not given is no translation and no rotation.
-        namespace: of the markers.
-        color: of all its shapes.
-        frame: that the markers follow.
+        namespace: the markers' namespace.
+        color: the colour of all its shapes.
+        frame: the frame that the markers follow.
         base: the pose of the frame in the message's header in `frame`.
 
     Raises:

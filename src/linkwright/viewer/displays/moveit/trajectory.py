@@ -36,7 +36,7 @@ class Motion:
     Attributes:
         states: the first of them is that of the start.
         durations: seconds from each state to the next.
-        joints: those that move.
+        joints: the joints that move.
         unknown: joints that the robot does not have.
     """
 
@@ -108,7 +108,7 @@ class MotionPlayer:
     """Shows the states of a motion one after the other.
 
     Args:
-        display: whose properties say how.
+        display: the display with the properties.
         above: the path of the group that has these properties.
         show: called when another state is to be drawn, or none.
     """

@@ -44,8 +44,8 @@ def octomap_markers(
 
     Args:
         cells: in the frame of the tree.
-        namespace: of the markers.
-        frame: that they follow.
+        namespace: the markers' namespace.
+        frame: the frame that they follow.
         base: the pose of the tree in it.
         alpha: opacity of all.
         by_probability: colours tell how probable it is that a cell is occupied, and not how high it is.

@@ -37,7 +37,7 @@ class OldRobot:
 
     Args:
         node: publishes; it need not be seen by other programs, whose robot this is not.
-        listener: is told the other one's joint states.
+        listener: the node that receives the other robot's joint states.
     """
 
     def __init__(self, node: Node, listener: Node) -> None:
@@ -59,9 +59,9 @@ class OldRobot:
         """Publish the poses of the links.
 
         Args:
-            old: what the text says.
+            old: the robot of the text.
             new: the robot that joint states are about.
-            comparison: which links and joints of the two are the same.
+            comparison: the links and joints that correspond.
         """
         now = self._listener.get_clock().now_ns()
         self._transforms = RobotTransforms(old, f"{PREFIX}/")

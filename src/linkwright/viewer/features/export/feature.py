@@ -23,7 +23,7 @@ class Format:
 
     Attributes:
         content_type: its MIME type.
-        write: makes it.
+        write: makes a file.
     """
 
     content_type: str

@@ -180,14 +180,14 @@ class Snapshot:
     """A robot, and all messages that pages draw it from.
 
     Attributes:
-        name: of the robot.
+        name: the name of the robot.
         robot: its description.
         scene: its links as pages draw them.
         positions: joint -> rad or m.
-        messages: what a page must be told, the frame table last.
+        messages: the messages that a page needs, the frame table last.
         frames: binary frames, the transforms first.
         meshes: finds the files that `scene` names.
-        problems: what of the robot cannot be drawn.
+        problems: the findings on shapes that cannot be drawn.
         marker_meshes: addresses of the meshes that markers show.
         outside: the files in no package, nor below the folder of the description, whose contents are part of it.
         awaits_size: whether grid and axes are to have the size of the robot, which a page that draws it knows.
@@ -212,8 +212,8 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
     """A snapshot of a configuration as it is seen now.
 
     Args:
-        viewer: that shows it.
-        manager: what is seen.
+        viewer: the viewer that shows it.
+        manager: the configuration that is seen.
         view: the camera; None for where a page that opens has it.
 
     Raises:
@@ -243,7 +243,7 @@ def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) 
     Includes, ``load_yaml`` and ``file://`` reach any file of the machine, as under ROS.
 
     Args:
-        read: what the text was made from, the main file first.
+        read: the files that the text was made from, the main file first.
         scene: names the meshes and textures.
         meshes: the folders that these may be read from.
 

@@ -30,10 +30,10 @@ class EditedWorld:
     """A world that is edited.
 
     Args:
-        text: of the world.
+        text: the text of the world.
         path: the file from whose folder its addresses start; it need not be there.
-        packages: where packages are, and so models.
-        content: what is in the file that it is saved into, `path`; None for a world without one.
+        packages: the finder of packages, and so of models.
+        content: the content of the file that it is saved into, `path`; None for a world without one.
 
     Attributes:
         world: the world now.

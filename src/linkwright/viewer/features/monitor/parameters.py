@@ -124,7 +124,7 @@ class RemoteNode:
     """Reads and sets the parameters of a node, and follows them while it is watched.
 
     Args:
-        node: makes the clients.
+        node: the node that makes the clients.
         name: full name of the node whose parameters these are.
         tell: called with all parameters when they are known, and on every change.
     """

@@ -24,7 +24,7 @@ class Paced:
     """Work that is requested more often than it is done.
 
     Args:
-        work: what is done.
+        work: the work.
         period: least time between two turns, seconds.
     """
 
@@ -63,7 +63,7 @@ class TopicTap:
     publishers offer; should one come later that offers less, it subscribes anew.
 
     Args:
-        context: whose node subscribes. Its remappings do not apply: the topic is meant by its name in the graph.
+        context: the context of the subscribing node, whose remappings do not apply: topics are named as in the graph.
         topic: absolute name.
         take: called with each message, or its bytes, and what is known of it.
         raw: whether `take` gets CDR bytes.
