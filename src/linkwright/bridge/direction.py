@@ -24,8 +24,11 @@ _MOST_EARLY = 1000
 _SHOWN_WITHIN = 1.0
 """Seconds within which a subscription is shown that hears no publisher there is."""
 
-_QUIET = 3
-"""How many times in a row nothing waits of what publishers said that have left, before their mirrors leave."""
+_QUIET = 25
+"""How many times in a row nothing came or waits of what publishers said that have left, before their mirrors leave.
+
+Every 20 ms: on a busy machine the thread that takes messages from DDS may stand still for a tenth of a second.
+"""
 
 
 class Early(NamedTuple):
@@ -73,7 +76,7 @@ class Direction:
         self._early: deque[Early] = deque(maxlen=_MOST_EARLY)
         self._aliases: dict[bytes, bytes] = {}
         self._leaving: dict[bytes, int] = {}
-        """Publishers that have left, and how many times nothing of theirs waited since."""
+        """Publishers that have left, and how many times in a row nothing of theirs came or waited."""
         self._wanted_nodes: dict[str, NodeIdentity] = {}
         self._wanted_publishers: dict[bytes, EndpointInfo] = {}
         self._wanted_services: dict[tuple[str, str, str], EndpointInfo] = {}
@@ -264,6 +267,8 @@ class Direction:
             if publisher.stream == tap.stream:
                 self._say_early()
                 publisher.say(data)
+                if publisher.info.gid in self._leaving:
+                    self._leaving[publisher.info.gid] = 0
         elif info.publisher_gid not in self._source.seen.by_bridges:
             self._early.append(Early(time.monotonic() + _KNOWN_WITHIN, tap, info.publisher_gid, data))
 
