@@ -20,8 +20,8 @@ from pathlib import Path
 from benchmarks import peers
 from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show, side_by_side
 from benchmarks.robots import SHIPPED, Model, models
-from linkwright.xacro import expand, expression, literals, macros, sources, template
-from linkwright.xacro.expressions import yamldata, yamlnodes
+from linkwright.xacro import expand, macros, sources
+from linkwright.xacro.expressions import expression, literals, template, yamldata, yamlnodes
 
 SMALL = SHIPPED / "urdf" / "mbot_base.xacro"
 PASSES = 7

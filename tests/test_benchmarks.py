@@ -1,0 +1,18 @@
+"""Benchmarks run by hand only: whether what they import is there is found here."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+
+import benchmarks
+import pytest
+
+NODES = {"soak_parts"}
+"""Programs that run where ROS 2's names can be imported."""
+MODULES = {each.name for each in pkgutil.iter_modules(benchmarks.__path__)} - NODES - {"__main__"}
+
+
+@pytest.mark.parametrize("name", sorted(MODULES))
+def test_what_a_benchmark_imports_is_there(name: str) -> None:
+    importlib.import_module(f"benchmarks.{name}")
