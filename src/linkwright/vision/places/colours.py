@@ -64,8 +64,19 @@ def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
     most, least = values.max(axis=0), values.min(axis=0)
     chroma = most - least
     saturation = chroma / np.maximum(most, 1e-9)
+    grey = (saturation < _GREY_SATURATION) | (chroma < _GREY_CHROMA)
+    found = np.full(len(pixels), COLOURS.index("grey"), np.intp)
+    found[grey & (most >= _WHITE)] = COLOURS.index("white")
+    coloured = np.flatnonzero(~grey & (most >= _BLACK))  # few pixels of most pictures have a hue that counts
+    found[coloured] = _named_hues(values[:, coloured], most[coloured], chroma[coloured], saturation[coloured])
+    found[(grey & (most < 0.3)) | (most < _BLACK)] = COLOURS.index("black")
+    return found
+
+
+def _named_hues(values: Floats, most: Floats, chroma: Floats, saturation: Floats) -> NDArray[np.intp]:
+    """The places in `COLOURS` of pixels that are neither grey, white nor black."""
     hue = _hue(values, most, chroma)
-    found = np.full(len(pixels), COLOURS.index("red"), np.intp)
+    found = np.full(len(hue), COLOURS.index("red"), np.intp)
     for limit, name in reversed(_HUES):
         found[hue < limit] = COLOURS.index(name)
     found[(hue >= _PINK_HUES[0]) & (hue < _PINK_HUES[1])] = COLOURS.index("pink")
@@ -73,10 +84,6 @@ def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
     pale_red = (found == COLOURS.index("red")) & (saturation < 0.55) & (most > 0.7)
     found[pale_red] = COLOURS.index("pink")
     found[(found == COLOURS.index("orange")) & (most < _DARK_ORANGE)] = COLOURS.index("brown")
-    grey = (saturation < _GREY_SATURATION) | (chroma < _GREY_CHROMA)
-    found[grey] = COLOURS.index("grey")
-    found[grey & (most >= _WHITE)] = COLOURS.index("white")
-    found[(grey & (most < 0.3)) | (most < _BLACK)] = COLOURS.index("black")
     return found
 
 
