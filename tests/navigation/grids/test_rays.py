@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.grids.marking import mark
+from linkwright.navigation.grids.marking import mark, ray_counts
 from linkwright.navigation.grids.rays import cells_on_lines, ranges
 
 _CELL = st.tuples(st.integers(-40, 40), st.integers(-40, 40))
@@ -77,6 +77,14 @@ def test_no_ray_goes_through_a_wall(seed: int) -> None:
     assert (measured < 20.0).all()
     assert ((ends >= -1e-9) & (ends <= 6.0 + 1e-9)).all()
     assert (measured <= exact + 0.1 / np.abs(along).max(axis=1)).all()
+
+
+def test_rays_are_counted_where_they_end_and_where_they_pass() -> None:
+    hit, passed = ray_counts(
+        (1, 5), np.array([0, 0]), np.array([[0, 3], [0, 4], [0, 9]]), np.array([True, False, True])
+    )
+    assert hit.tolist() == [[0, 0, 0, 1, 0]]
+    assert passed.tolist() == [[3, 3, 3, 2, 2]]
 
 
 def test_points_are_marked_and_those_outside_passed_over() -> None:

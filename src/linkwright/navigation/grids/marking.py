@@ -1,11 +1,16 @@
-"""Marking the cells that contain points."""
+"""Marking cells of points, and counting the rays that end in each cell or pass through it."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.rays import cells_on_lines
+
+Counts = NDArray[np.int64]
 
 
 def mark(grid: Grid, points: NDArray[np.float64], value: int) -> None:
@@ -19,3 +24,33 @@ def mark(grid: Grid, points: NDArray[np.float64], value: int) -> None:
     cells = grid.cells_of(points)
     cells = cells[grid.has(cells)]
     grid.cells[cells[:, 0], cells[:, 1]] = value
+
+
+def ray_counts(
+    shape: tuple[int, int],
+    start: NDArray[np.integer[Any]],
+    ends: NDArray[np.integer[Any]],
+    hits: NDArray[np.bool_] | None = None,
+) -> tuple[Counts, Counts]:
+    """Count the rays from a cell that end in each cell, and those that pass through it.
+
+    Args:
+        shape: rows and columns of the grid; what lies outside is passed over.
+        start: row and column, of shape (2,), or those of each ray, of shape (rays, 2).
+        ends: of shape (rays, 2).
+        hits: which rays met something, of shape (rays,); None for all. The others pass through their last cell too.
+
+    Returns:
+        Counts of hits and of passes, each of the given shape.
+    """
+    cells, ray = cells_on_lines(start, ends)
+    met = np.ones(len(ends), np.bool_) if hits is None else hits
+    ended = np.zeros(len(cells), np.bool_)
+    if len(cells):
+        ended[np.flatnonzero(np.diff(ray, append=len(ends)))] = met
+    inside = (cells[:, 0] >= 0) & (cells[:, 0] < shape[0]) & (cells[:, 1] >= 0) & (cells[:, 1] < shape[1])
+    flat = cells[:, 0] * shape[1] + cells[:, 1]
+    size = shape[0] * shape[1]
+    hit: Counts = np.bincount(flat[inside & ended], minlength=size).reshape(shape)
+    passed: Counts = np.bincount(flat[inside & ~ended], minlength=size).reshape(shape)
+    return hit, passed
