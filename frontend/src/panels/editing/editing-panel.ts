@@ -59,7 +59,7 @@ export class EditingPanel implements Panel {
     for (const signal of [editing.changed, editing.draftChanged, editing.snapping.changed]) signal.on(update);
     angles.changed.on(() => {
       this.shown = null;
-      update();
+      this.update(); // at once: what is typed next is meant in the new unit
     });
     follow();
     this.update();
