@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from linkwright.navigation.grids.marking import ray_counts
+from linkwright.navigation.grids.ray_counts import ray_counts
 from linkwright.navigation.maps.map_files import SavedAs, save_map
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.grids.marking import mark, ray_counts
+from linkwright.navigation.grids.ray_counts import ray_counts
 from linkwright.navigation.grids.rays import cells_on_lines, ranges
 
 _CELL = st.tuples(st.integers(-40, 40), st.integers(-40, 40))
@@ -85,12 +85,6 @@ def test_rays_are_counted_where_they_end_and_where_they_pass() -> None:
     )
     assert hit.tolist() == [[0, 0, 0, 1, 0]]
     assert passed.tolist() == [[3, 3, 3, 2, 2]]
-
-
-def test_points_are_marked_and_those_outside_passed_over() -> None:
-    grid = Grid(cells=np.zeros((3, 4), np.int8), resolution=0.5, x=-1.0)
-    mark(grid, np.array([[-0.9, 0.1], [0.9, 1.4], [5.0, 5.0], [-1.1, 0.1]]), 100)
-    assert np.argwhere(grid.cells).tolist() == [[0, 0], [2, 3]]
 
 
 def test_distances_are_metres_to_the_nearest_marked_cell() -> None:

@@ -1,4 +1,4 @@
-"""Marking cells of points, and counting the rays that end in each cell or pass through it."""
+"""Counting the rays that end in each cell of a grid or pass through it."""
 
 from __future__ import annotations
 
@@ -7,23 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.rays import cells_on_lines
 
 Counts = NDArray[np.int64]
-
-
-def mark(grid: Grid, points: NDArray[np.float64], value: int) -> None:
-    """Set the cells that contain points to a value; points outside of the grid are ignored.
-
-    Args:
-        grid: what is written on.
-        points: of shape (..., 2), x and y in the frame of the grid, in metres.
-        value: of the cells.
-    """
-    cells = grid.cells_of(points)
-    cells = cells[grid.has(cells)]
-    grid.cells[cells[:, 0], cells[:, 1]] = value
 
 
 def ray_counts(
