@@ -42,6 +42,9 @@ PYTEST = $(BIN)/$(if $(AGAIN),python tools/pytest_again.py,pytest)
 # Files in the order of their names: those with few tests, which take longest, would else come last, one beside an idle core.
 WORKERS = -n 2 --dist loadfile --no-loadscope-reorder
 
+# All packages at once, so that no command waits for it; .ci/run leaves it to the modules that are used.
+COMPILE ?= --compile-bytecode
+
 MBOT := robots/my_robot_description/urdf/mbot_gazebo.xacro
 LOCKED := .build/constraints.txt
 RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
@@ -191,11 +194,11 @@ $(LOCKED): uv.lock tools/lock.py
 # The program alone, installed so that changes to the sources count at once; the build makes the page.
 $(VENV)/.ready: pyproject.toml hatch_build.py $(LOCKED) $(PAGE_SOURCES) | $(UV)
 	test -x $(BIN)/python || $(UV) venv --quiet --python $(or $(VERSION),$(PYTHON)) $(VENV)
-	$(UV) pip install --quiet --compile-bytecode --python $(BIN)/python --constraints $(LOCKED) \
+	$(UV) pip install --quiet $(COMPILE) --python $(BIN)/python --constraints $(LOCKED) \
 		--reinstall-package linkwright --editable '.[all]'
 	$(BIN)/python -m compileall -q src
 	touch $@
 
 $(VENV)/.dev: $(VENV)/.ready
-	$(UV) pip install --quiet --compile-bytecode --python $(BIN)/python --constraints $(LOCKED) --group dev
+	$(UV) pip install --quiet $(COMPILE) --python $(BIN)/python --constraints $(LOCKED) --group dev
 	touch $@
