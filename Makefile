@@ -50,14 +50,20 @@ LOCKED := .build/constraints.txt
 RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
+.PHONY: demo test test-page test-program test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
 	@trap : INT; $(BIN)/linkwright sim playground $(MBOT) laser:=true camera:=true $(ARGS) || [ $$? = 130 ]
 
-test: $(VENV)/.dev page
+test: test-page test-program
+
+# The unit tests of the page.
+test-page: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test
+
+# All others.
+test-program: $(VENV)/.dev page
 	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(PYTEST) $(WORKERS) $(ARGS)
 
 test-quick: $(VENV)/.dev
