@@ -34,6 +34,17 @@ def test_the_names_it_has_not_are_missing_as_ever():
         assert told(f"print(hasattr(aiohttp, '{name}'))") == ["False"]
 
 
+def test_a_server_that_needs_the_whole_package_gets_it(tmp_path):
+    package = tmp_path / "aiohttp"
+    package.mkdir()
+    (package / "__init__.py").write_text("X = 1\nfrom .web import A\n")
+    (package / "web.py").write_text("from . import X\nA = X + 1\n")
+    (package / "http_exceptions.py").write_text("HttpProcessingError = ValueError\n")
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from linkwright.http_server import web; print(web.A)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["2"]
+
+
 def test_what_was_loaded_before_stays():
     code = "import aiohttp.web; given = aiohttp.web; from linkwright.http_server import web; print(web is given)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

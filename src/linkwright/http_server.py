@@ -37,10 +37,21 @@ def _enter_package() -> None:
     sys.modules["aiohttp"] = package
 
 
+def _leave_package() -> None:
+    """Take all of aiohttp from among the loaded modules, so that it is loaded from the beginning."""
+    for name in [each for each in sys.modules if each == "aiohttp" or each.startswith("aiohttp.")]:
+        del sys.modules[name]
+
+
 if "aiohttp" not in sys.modules:
     _enter_package()
 
-from aiohttp import web  # noqa: E402 - after the package is entered
-from aiohttp.http_exceptions import HttpProcessingError  # noqa: E402 - as above
+try:
+    from aiohttp import web
+    from aiohttp.http_exceptions import HttpProcessingError
+except (AttributeError, ImportError):  # a later aiohttp, whose server needs what `__init__` does
+    _leave_package()
+    from aiohttp import web
+    from aiohttp.http_exceptions import HttpProcessingError
 
 __all__ = ["HttpProcessingError", "web"]
