@@ -12,6 +12,7 @@ from linkwright.graph import Graph, LogLevel, LogRecord
 from linkwright.messages import get_message
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.simulation.exchange import Exchange
+from linkwright.simulation.plugins.calls import logged_calls
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import parameter, parameters_from
 from linkwright.simulation.plugins.registry import is_of_gz, library_name, needs_nothing
@@ -139,7 +140,11 @@ async def test_a_message_of_values_is_made_once_and_only_when_it_is_handed_over(
     graph, exchange, made = Graph(), Exchange(), []
     node = graph.create_node("robot")
     topics = ("/model/robot/where", "/where")
-    output = Output(exchange, [node.create_publisher("std_msgs/msg/String", topic, 10) for topic in topics])
+    output = Output(
+        exchange,
+        [node.create_publisher("std_msgs/msg/String", topic, 10) for topic in topics],
+        logged_calls(node.get_logger(), "robot"),
+    )
     recordings = [Recording(graph, node, topic) for topic in topics]
 
     def text(number: int, word: str):

@@ -101,7 +101,8 @@ class Simulator(SingleNode):
             simulation = Simulation(loaded.world, loaded.finder, step=said["step"] or None)
             how = ServerOptions(said["seed"], said["usual_names"], said["gazebo_mistakes"])
             self.server = SimulationServer(simulation, self._node, how)
-            self._reports = Reports(self.server, self._node, said["publish_rate"])
+            own = PluginNode(self._node, self.server.exchange, owned=False, qos={}, usual=None)
+            self._reports = Reports(self.server, own, said["publish_rate"])
             self.runner = Runner(
                 self.server,
                 factor=said["real_time_factor"] if said["real_time_factor"] >= 0 else inf,
@@ -111,7 +112,6 @@ class Simulator(SingleNode):
                 on_state=self._tell_state,
                 on_end=partial(_call_on, loop, self._finish),
             )
-            own = PluginNode(self._node, self.server.exchange, owned=False, qos={}, usual=None)
             self.services = Services(self.server, self.runner, own, loaded, options.library)
             self.server.start()
             if said[_DESCRIPTION]:

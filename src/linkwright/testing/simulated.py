@@ -104,6 +104,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         node = self.graph.create_node(_NODE)
         self._clock_topic = node.create_publisher(get_message(_CLOCK), "/clock", CLOCK_QOS)
         self._server = SimulationServer(simulation, node, self._options)
+        self._server.on_failure.append(self.errors.append)
         own = PluginNode(node, self._server.exchange, owned=False, qos={}, usual=None)
         self._progress = _Progress(simulation)
         Services(self._server, self._progress, own, self._loaded, DescriptionLibrary())

@@ -22,10 +22,6 @@ class ControllerNode(PluginNode):
     def __init__(self, node: Node, exchange: Exchange) -> None:
         super().__init__(node, exchange, owned=True, qos={}, usual=None)
 
-    def post(self, command: Callable[[], object]) -> None:
-        """Queue a function for the thread of the updates, to be called before the next one; from any thread."""
-        self._exchange.post(command)
-
     def call_on_loop(self, call: Callable[[], object]) -> None:
         """Queue a function for the event loop, to be called after what was published before it."""
         self._exchange.send(_Call(call), None)

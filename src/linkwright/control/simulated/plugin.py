@@ -75,7 +75,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             automatically_declare_parameters_from_overrides=True,
         )
         node.graph.makers[node.get_logger().name] = self.node.logger.name
-        self._manager_node = PluginNode(node, self.node.exchange, owned=True, qos={}, usual=None)
+        self._manager_node = PluginNode(node, self.node.exchange, owned=True, qos={}, usual=None, calls=self.node.calls)
         rate = values.get("update_rate", _DEFAULT_RATE)
         self._manager = ControllerManager(
             node,

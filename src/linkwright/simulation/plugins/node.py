@@ -15,10 +15,12 @@ from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.subscription import Subscription
+from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import get_service
 from linkwright.simulation.exchange import Exchange
 from linkwright.simulation.plugins.bridged import BridgedTopics, gz_side
+from linkwright.simulation.plugins.calls import Calls, logged_calls
 from linkwright.simulation.plugins.entities import has_numbers
 from linkwright.simulation.plugins.ros_element import overridden
 from linkwright.xmltree import Element
@@ -28,41 +30,69 @@ _WARN_SECONDS = 1.0
 _FIRST_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
 
 
-class _Making:
-    """An outlet that makes a message of the values that it is sent."""
+class _Outlet:
+    """The publishers of a topic, as what the exchange hands messages to; an error ends the plugin, not the others.
 
-    __slots__ = ("_make", "_publishers")
+    Args:
+        output: the topic.
+        make: makes a message of the values that are sent; None where messages themselves are.
+    """
 
-    def __init__(self, publishers: list[Publisher[Any]], make: Callable[..., Any]) -> None:
-        self._publishers = publishers
+    __slots__ = ("_make", "_output")
+
+    def __init__(self, output: Output, make: Callable[..., Any] | None = None) -> None:
+        self._output = output
         self._make = make
 
-    def publish(self, message: tuple[Any, ...]) -> None:
-        """Make a message of values, and publish it."""
-        made = self._make(*message)
-        for publisher in self._publishers:
-            publisher.publish(made)
+    def publish(self, message: Any) -> None:
+        """Publish a message, or the one that is made of values."""
+        output, make = self._output, self._make
+        try:
+            made = message if make is None else make(*message)
+            for publisher in output.publishers:
+                publisher.publish(made)
+        except InvalidHandleError:
+            raise  # its model is gone
+        except Exception as error:  # noqa: BLE001 - of a message that a plugin made
+            output.exchange.post(partial(output.calls.fail, error))
 
 
 class Output:
-    """A topic that a plugin publishes, under one name or two."""
+    """A topic that a plugin publishes, under one name or two.
 
-    def __init__(self, exchange: Exchange, publishers: list[Publisher[Any]]) -> None:
-        self._exchange = exchange
-        self._publishers = publishers
+    Args:
+        exchange: that of the simulation.
+        publishers: one for each name.
+        calls: those of the plugin.
+    """
+
+    def __init__(self, exchange: Exchange, publishers: list[Publisher[Any]], calls: Calls) -> None:
+        self.exchange = exchange
+        self.publishers = publishers
+        self.calls = calls
+        self._outlet = _Outlet(self)
+        self._asked, self._is_wanted = 0, False
 
     @property
     def is_wanted(self) -> bool:
-        """Whether anybody subscribes: a message that is costly to make need not be made otherwise."""
-        for each in self._publishers:  # noqa: SIM110 - `any` takes twice as long, and this is asked all the time
+        """Whether anybody subscribes: a message that is costly to make need not be made otherwise.
+
+        Subscriptions come and go at any time, on another thread; within one call of a plugin the answer stays the same.
+        """
+        number = self.calls.number
+        if not number or number != self._asked:
+            self._asked, self._is_wanted = number, self._has_readers()
+        return self._is_wanted
+
+    def _has_readers(self) -> bool:
+        for each in self.publishers:  # noqa: SIM110 - `any` takes twice as long, and this is asked all the time
             if each.get_subscription_count():
                 return True
         return False
 
     def publish(self, message: Any) -> None:
         """Publish a message, which nobody may change any more."""
-        for publisher in self._publishers:
-            self._exchange.send(publisher, message)
+        self.exchange.send(self._outlet, message)
 
     def making(self, make: Callable[..., Any]) -> Callable[..., None]:
         """A function that publishes the message which another one makes of its arguments.
@@ -72,10 +102,10 @@ class Output:
         Args:
             make: makes a message of values that nobody changes any more.
         """
-        outlet = _Making(self._publishers, make)
+        outlet = _Outlet(self, make)
 
         def send(*values: Any) -> None:
-            self._exchange.send(outlet, values)
+            self.exchange.send(outlet, values)
 
         return send
 
@@ -94,6 +124,10 @@ class PluginNode:
         usual: the usual names of topics that are still to be had; None where topics have their own names only.
         bridged: for plugins of gz, what tells which of their topics a bridge has under another type.
         now_ns: the time that what it moves goes by, in nanoseconds; that of the node's clock when left out.
+        calls: how its callbacks are called; when left out, an error of one is logged.
+
+    Attributes:
+        calls: how its callbacks are called.
     """
 
     def __init__(
@@ -106,8 +140,10 @@ class PluginNode:
         usual: set[str] | None,
         bridged: BridgedTopics | None = None,
         now_ns: Callable[[], int] | None = None,
+        calls: Calls | None = None,
     ) -> None:
         self._node = node
+        self.calls = calls or logged_calls(node.get_logger(), node.get_fully_qualified_name())
         self._now_ns = now_ns or node.get_clock().now_ns
         self._exchange = exchange
         self._owned = owned
@@ -153,7 +189,7 @@ class PluginNode:
             profile = self._profile(name, "publisher", qos)
             publishers.append(self._node.create_publisher(msg_type, name, profile))
         self._endpoints += publishers
-        return Output(self._exchange, publishers)
+        return Output(self._exchange, publishers, self.calls)
 
     def subscribe(
         self,
@@ -199,7 +235,7 @@ class PluginNode:
         """
 
         def lost(publisher: EndpointInfo) -> None:
-            self._exchange.post(partial(self._rest, rest, publisher))
+            self.post(partial(self._rest, rest, publisher))
 
         return Commander(lost, DriverWatch(self.logger, self._node.graph, self._now_ns))
 
@@ -208,9 +244,13 @@ class PluginNode:
         response = get_service(srv_type).Response
 
         def asked(request: Any, reply: Callable[[Any], None]) -> None:
-            self._exchange.post(lambda: reply(callback(request, response())))
+            self.post(lambda: reply(callback(request, response())))
 
         self._endpoints.append(self._node.create_service(srv_type, name, asked, replying=True))
+
+    def post(self, command: Callable[[], object]) -> None:
+        """Queue a function for the simulation's thread, to be called between two chunks of time; from any thread."""
+        self._exchange.post(partial(self.calls.make, command))
 
     def parameter(self, name: str, default: Any) -> Any:
         """The value of a parameter of the node, which is declared with a default."""
@@ -276,4 +316,4 @@ class PluginNode:
         self.logger.warning(told, throttle_duration_sec=_WARN_SECONDS)
 
     def _received(self, callback: Callable[[Any], object], message: Any) -> None:
-        self._exchange.post(partial(callback, message))
+        self.post(partial(callback, message))

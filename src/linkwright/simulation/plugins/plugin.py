@@ -22,12 +22,14 @@ bits. What is costly is made only where ``output.is_wanted``.
 Everything is called in the simulation's thread: `start` after the model has come, what was passed to `every` at its
 simulated times, callbacks of topics and services between two chunks of time, `reset` after time has begun anew, `stop`
 before the model goes. A model whose file was saved comes anew where it is; `go_on` takes over what has to go on.
+What one throws, wherever it is called, is logged and ends that plugin or sensor; everything else goes on (`calls`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
@@ -197,7 +199,7 @@ class SimulatedPlugin(Generic[P]):
     def every(self, rate: float, function: Callable[[], None]) -> None:
         """Register a function to be called a number of times a simulated second; 0 for after each step."""
         period = round(NANOSECONDS / rate) if rate > 0 else 0
-        self._tasks.append(self.simulation.call_every(period, function))
+        self._tasks.append(self.simulation.call_every(period, partial(self.node.calls.make, function)))
 
     def stamp(self) -> Time:
         """The simulated time, for headers."""
@@ -232,14 +234,12 @@ class SimulatedPlugin(Generic[P]):
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
-    def close(self) -> None:
-        """Remove it: `stop`, and all that it made."""
+    def close(self, tell: Callable[[Exception], object]) -> None:
+        """Remove it: `stop`, and all that it made; an error of `stop` is told."""
         for task in self._tasks:
             task.cancelled = True
-        try:
-            self.stop()
-        finally:
-            self.node.close()
+        self.node.calls.close(self.stop, tell)
+        self.node.close()
 
     def _found(self, name: str, known: Collection[str], code: str) -> str:
         """A name as it stands, below the model, or below one of the models in it."""

@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.descriptions.conversion import with_addresses
-from linkwright.graph import CLOCK_QOS, DurabilityPolicy, Node, QoSProfile
+from linkwright.graph import CLOCK_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import Header, String, Time, get_message
 from linkwright.messages.tf_message import TFMessage, TransformBatch
 from linkwright.sdf.frames import pose_of
 from linkwright.sdf.poses import WORLD, RawPose
 from linkwright.sdf.resources import Missing
 from linkwright.sdf.writer import save
-from linkwright.simulation.plugins.node import Output
+from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.simulation import NANOSECONDS
 
@@ -36,17 +36,17 @@ class Reports:
 
     Args:
         server: the simulation.
-        node: the node of the simulator.
+        topics: on the node of the simulator.
         clock_rate: how often a simulated second the time is told.
     """
 
-    def __init__(self, server: SimulationServer, node: Node, clock_rate: float) -> None:
+    def __init__(self, server: SimulationServer, topics: PluginNode, clock_rate: float) -> None:
         self._server = server
-        self._clock = self._output(node, _CLOCK, "/clock", CLOCK_QOS)
-        self._state = self._output(node, _STATE, "/simulation_state", _LATCHED)
-        self._description = self._output(node, "std_msgs/msg/String", "/world_description", _LATCHED)
-        self._poses = self._output(node, "tf2_msgs/msg/TFMessage", "/world_poses", 10)
-        self._metrics = self._output(node, _METRICS, "/performance_metrics", 10)
+        self._clock = topics.publisher(_CLOCK, "/clock", CLOCK_QOS)
+        self._state = topics.publisher(_STATE, "/simulation_state", _LATCHED)
+        self._description = topics.publisher("std_msgs/msg/String", "/world_description", _LATCHED)
+        self._poses = topics.publisher("tf2_msgs/msg/TFMessage", "/world_poses", 10)
+        self._metrics = topics.publisher(_METRICS, "/performance_metrics", 10)
         self._names: tuple[str, ...] = ()
         self._bodies: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
         self._revision = -1
@@ -101,9 +101,6 @@ class Reports:
         poses = np.hstack([data.xpos[bodies], data.xquat[bodies][:, [1, 2, 3, 0]]])
         batch = TransformBatch((WORLD,) * len(bodies), self._names, simulation.time, poses)
         self._poses.publish(TFMessage(batch=batch))
-
-    def _output(self, node: Node, kind: str, topic: str, qos: QoSProfile | int) -> Output:
-        return Output(self._server.exchange, [node.create_publisher(get_message(kind), topic, qos)])
 
     def _tell_time(self) -> None:
         self._clock.publish(get_message(_CLOCK)(clock=Time.from_nanoseconds(self._server.simulation.time)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 from zlib import crc32
 
@@ -20,6 +21,7 @@ from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World
 from linkwright.simulation.exchange import Exchange
 from linkwright.simulation.plugins.bridged import BridgedTopics
+from linkwright.simulation.plugins.calls import Calls, findings_of
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
 from linkwright.simulation.plugins.places import of_model, of_world
@@ -77,6 +79,7 @@ class SimulationServer:
         on_change: called after models have come or gone.
         on_reset: called after a reset.
         on_findings: called after `findings` are others.
+        on_failure: called with what the code of a plugin raised, after it was logged.
         left: what plugins leave for those that come in their places.
     """
 
@@ -87,6 +90,7 @@ class SimulationServer:
         self.on_change: list[Callable[[], None]] = []
         self.on_reset: list[Callable[[], None]] = []
         self.on_findings: list[Callable[[], object]] = []
+        self.on_failure: list[Callable[[Exception], object]] = []
         self._options = options or ServerOptions()
         self._usual: set[str] | None = set() if self._options.usual_names else None
         self._bridged = BridgedTopics(node, self.exchange)
@@ -243,7 +247,7 @@ class SimulationServer:
         """Restart: initial poses, time 0, and the same random numbers again."""
         self.simulation.reset()
         for plugin in self._running():
-            plugin.reset()
+            plugin.node.calls.make(plugin.reset)
         for function in self.on_reset:
             function()
 
@@ -273,9 +277,12 @@ class SimulationServer:
 
     def _end(self, plugins: list[SimulatedPlugin[object]]) -> None:
         for plugin in reversed(plugins):
-            if not is_shared(plugin.place):
-                self._node_names.discard(plugin.node.name)
-            plugin.close()
+            self._forget_node(plugin.place, plugin.node)
+            plugin.close(partial(self._tell_failure, plugin.place))
+
+    def _forget_node(self, place: PluginPlace, node: PluginNode) -> None:
+        if not is_shared(place):
+            self._node_names.discard(node.name)
 
     def _changed(self) -> None:
         for function in self.on_change:
@@ -291,19 +298,15 @@ class SimulationServer:
         before: Sequence[SimulatedPlugin[object]] = (),
     ) -> None:
         """Start the plugins and sensors of a model or world; those that ran before keep their state."""
-        running = self._plugins[owner] = []
+        self._plugins[owner] = []
         unknown: dict[str, None] = {}
         for place in places:
-            with self._telling():
+            with self._telling(place):
                 found = self._class(place)
                 if found is None:
                     unknown |= dict.fromkeys(_kinds(place))
                 else:
-                    plugin = self._started(found, place, namespace)
-                    running.append(plugin)
-                    same = next((each for each in before if plugin.is_like(each)), None)
-                    if same is not None:
-                        plugin.go_on(same)
+                    self._begin(owner, found, place, namespace, before)
         new = [each for each in unknown if each not in self._told]
         self._told.update(new)
         if new:
@@ -324,23 +327,52 @@ class SimulationServer:
             self.node.get_logger().info(copied)
         return found
 
-    def _started(self, kind: PluginClass, place: PluginPlace, namespace: str) -> SimulatedPlugin[object]:
-        parameters, findings = parameters_from(
-            kind.PARAMETERS, place.plugin.element if place.plugin else None, kind.IGNORED
-        )
-        self.tell(findings)
-        node = self._node(place, namespace)
-        name = node.name
-        plugin = kind(place, node, parameters, self)
-        try:
-            plugin.start()
-        except BaseException:
-            plugin.close()
-            self._node_names.discard(name)
-            raise
-        return plugin
+    def _begin(
+        self,
+        owner: str,
+        kind: PluginClass,
+        place: PluginPlace,
+        namespace: str,
+        before: Sequence[SimulatedPlugin[object]],
+    ) -> None:
+        """Start a plugin or sensor, which goes on with the state of the one before it."""
+        calls = Calls(lambda error: self._failed(owner, place, error))
+        node = self._node(place, namespace, calls)
+        made: list[SimulatedPlugin[object]] = []
 
-    def _node(self, place: PluginPlace, namespace: str) -> PluginNode:
+        def start() -> None:
+            parameters, findings = parameters_from(
+                kind.PARAMETERS, place.plugin.element if place.plugin else None, kind.IGNORED
+            )
+            self.tell(findings)
+            plugin = kind(place, node, parameters, self)
+            made.append(plugin)
+            self._plugins[owner].append(plugin)
+            plugin.start()
+            same = next((each for each in before if plugin.is_like(each)), None)
+            if same is not None:
+                plugin.go_on(same)
+
+        calls.make(start)
+        if not made:
+            self._forget_node(place, node)
+            node.close()
+
+    def _failed(self, owner: str, place: PluginPlace, error: Exception) -> None:
+        """End a plugin or sensor that raised an error; everything else goes on."""
+        self._tell_failure(place, error)
+        running = self._plugins.get(owner, [])
+        ended = [each for each in running if each.place is place]
+        running[:] = [each for each in running if each.place is not place]
+        self._end(ended)
+
+    def _tell_failure(self, place: PluginPlace, error: Exception) -> None:
+        self.tell(findings_of(error, place.name, place.element))
+        if not isinstance(error, LinkwrightError):
+            for function in self.on_failure:
+                function(error)
+
+    def _node(self, place: PluginPlace, namespace: str, calls: Calls) -> PluginNode:
         """The node of a plugin: the simulator's for those of gz and for sensors without a plugin, else its own."""
         if is_shared(place):
             return PluginNode(
@@ -351,6 +383,7 @@ class SimulationServer:
                 usual=self._usual,
                 bridged=self._bridged,
                 now_ns=self._now_ns,
+                calls=calls,
             )
         described = node_of(place.name, place.element, namespace)
         full_name = described.full_name
@@ -370,7 +403,9 @@ class SimulationServer:
         )
         self._node_names.add(full_name)
         node.graph.makers[node.get_logger().name] = self.node.get_logger().name
-        return PluginNode(node, self.exchange, owned=True, qos=described.qos, usual=None, now_ns=self._now_ns)
+        return PluginNode(
+            node, self.exchange, owned=True, qos=described.qos, usual=None, now_ns=self._now_ns, calls=calls
+        )
 
     def _now_ns(self) -> int:
         return self.simulation.time
@@ -382,12 +417,12 @@ class SimulationServer:
             self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(new)))
 
     @contextmanager
-    def _telling(self) -> Iterator[None]:
+    def _telling(self, place: PluginPlace) -> Iterator[None]:
         """Log the errors of one plugin, so that the others go on."""
         try:
             yield
-        except LinkwrightError as error:
-            self.tell(error.diagnostics)
+        except Exception as error:  # noqa: BLE001 - whatever stands in a world or is installed beside us
+            self._tell_failure(place, error)
 
     def tell(self, findings: Iterable[Diagnostic], model: str = _WORLD) -> None:
         """Log a finding once; one on a model is among the `findings` until the model is removed."""

@@ -1,0 +1,88 @@
+"""The one way in which a simulation calls a plugin: what a plugin throws ends that plugin and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from traceback import extract_tb
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.graph import Logger, log_failure
+from linkwright.xmltree import Element
+
+Failure = Callable[[Exception], object]
+
+
+class Calls:
+    """Calls the functions of a plugin, a sensor or a controller.
+
+    Args:
+        failed: called with what a function raised; it may `close` these calls.
+
+    Attributes:
+        number: the number of the call that is being made, from 1; 0 between two calls. What may change at any time,
+            such as who subscribes to a topic, is asked once in a call (`Output.is_wanted`).
+        is_closed: whether nothing is called any more.
+    """
+
+    __slots__ = ("_count", "_failed", "is_closed", "number")
+
+    def __init__(self, failed: Failure) -> None:
+        self.number = 0
+        self.is_closed = False
+        self._count = 0
+        self._failed = failed
+
+    def make(self, function: Callable[[], object]) -> None:
+        """Call a function; what it raises goes to `failed`."""
+        if self.is_closed:
+            return
+        outer, self._count = self.number, self._count + 1
+        self.number = self._count
+        try:
+            function()
+        except Exception as error:  # noqa: BLE001 - whatever a plugin throws must not end the others
+            self.fail(error)
+        finally:
+            self.number = outer
+
+    def fail(self, error: Exception) -> None:
+        """Tell of an error that came up elsewhere, in the simulation's thread."""
+        if not self.is_closed:
+            self._failed(error)
+
+    def close(self, function: Callable[[], object], tell: Failure) -> None:
+        """Call a last function, and no other one afterwards; what it raises is only told."""
+        if self.is_closed:
+            return
+        self.is_closed = True
+        try:
+            function()
+        except Exception as error:  # noqa: BLE001 - as above
+            tell(error)
+
+
+def logged_calls(logger: Logger, name: str) -> Calls:
+    """Calls after which everything goes on: an error of a function is logged."""
+    return Calls(partial(log_failure, logger, f"a callback of '{name}'"))
+
+
+def findings_of(error: Exception, name: str, element: Element | None) -> list[Diagnostic]:
+    """The findings for an error of a plugin.
+
+    Args:
+        error: what it raised: a `LinkwrightError` speaks for itself, all else is a fault of its code (SIM138).
+        name: the plugin's or sensor's.
+        element: where it is declared, if anywhere.
+    """
+    if isinstance(error, LinkwrightError):
+        return list(error.diagnostics)
+    said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    message = phrase("'{plugin}' has ended, as its code failed: {error}", plugin=name, error=foreign(said))
+    hint = phrase("everything else goes on without it")
+    if places := extract_tb(error.__traceback__):
+        where = f"{Path(places[-1].filename).name}:{places[-1].lineno}"
+        hint = phrase("it failed in {place}; everything else goes on without it", place=where)
+    span, source = (None, None) if element is None else (element.span(), element.source)
+    return [Diagnostic("SIM138", message, span, hint=hint, source=source)]

@@ -1,0 +1,189 @@
+"""A plugin or sensor whose code fails: it ends, with one line in the log, and everything else goes on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from random import Random
+
+import pytest
+
+from linkwright.extensions import extensions
+from linkwright.graph import LogLevel
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.messages import get_message, get_service
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.plugins.registry import SENSORS
+from linkwright.simulation.server import server as server_module
+from linkwright.testing import Recording, SteppedSimulation
+from tests.outside import Outside, Stranger
+from tests.simulation.sensors.rooms import block
+from tests.simulation.sensors.test_topics import EYE, RAYS, carrier, plugin, sensor
+from tests.simulation.test_plugins import SECOND, joint_states, robot, served
+from tests.simulation.worlds import GROUND
+
+STRING, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"
+TASK, CALLBACK, SERVICE, LOST = "a task", "a callback", "a service", "the loss of who commands it"
+MAKING, PUBLISHING, STOP = "making a message", "publishing what is no message", "stop"
+HOOKS = (
+    *("its parameters", "the constructor", "start", TASK, CALLBACK, SERVICE, LOST, "reset", "going on"),
+    *("comparing", STOP, MAKING, PUBLISHING),
+)
+
+
+class FaultError(Exception):
+    """What the plugin raises."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Parameters:
+    where: str = ""
+
+    def __post_init__(self) -> None:
+        self.reach("its parameters")
+
+    def __eq__(self, other: object) -> bool:
+        self.reach("comparing")
+        return True
+
+    __hash__ = None
+
+    def reach(self, place: str) -> None:
+        """Fail where the plugin is to fail."""
+        if self.where == place:
+            raise FaultError(place)
+
+
+class _Failing(SimulatedPlugin[_Parameters]):
+    """A plugin that fails at the place that its parameter says."""
+
+    PARAMETERS = _Parameters
+
+    def __init__(self, place, node, parameters, environment) -> None:
+        super().__init__(place, node, parameters, environment)
+        parameters.reach("the constructor")
+
+    def start(self) -> None:
+        reach = self.parameters.reach
+        reach("start")
+        output = self.node.publisher(STRING, "said")
+        make = output.making(lambda: reach(MAKING) or get_message(STRING)())
+        self.every(100.0, lambda: reach(TASK))
+        self.every(100.0, make)
+        self.every(100.0, lambda: output.publish(3 if self.parameters.where == PUBLISHING else get_message(STRING)()))
+        commander = self.node.commander(lambda: reach(LOST) or False)
+        self.node.subscribe(STRING, "/told", lambda _: reach(CALLBACK), commander=commander)
+        self.node.service(TRIGGER, "/asked", lambda _, response: reach(SERVICE) or response)
+
+    def reset(self) -> None:
+        self.parameters.reach("reset")
+
+    def go_on(self, before) -> None:
+        self.parameters.reach("going on")
+
+    def stop(self) -> None:
+        self.parameters.reach(STOP)
+
+
+@pytest.fixture(autouse=True)
+def _failing(monkeypatch) -> None:
+    """Let worlds name the plugin above as a library."""
+    known = server_module.plugin_class
+    monkeypatch.setattr(server_module, "plugin_class", lambda name: _Failing if name == "failing" else known(name))
+
+
+def failing(where: str) -> str:
+    return f'<plugin name="faulty" filename="libfailing.so"><where>{where}</where></plugin>'
+
+
+@pytest.mark.parametrize("where", HOOKS)
+async def test_a_plugin_that_fails_anywhere_ends_and_nothing_else_does(where):
+    text = robot(joint_states("before"), failing(where), joint_states("after"))
+    async with served(GROUND, text) as (server, graph, log):
+        recordings = [
+            Recording(graph, server.node, "/joint_states"),
+            Recording(graph, server.node, "/said", STRING),
+        ]
+        outside = Outside(graph)
+        commander = Stranger(outside, "/told", msg_type=STRING)
+        commander.send(get_message(STRING)())
+        asked = server.node.create_client(get_service(TRIGGER), "/asked")
+        if asked.service_is_ready():
+            asked.call_async(get_service(TRIGGER).Request())
+        await _pass(server, graph)
+        if outside.lose is not None:
+            commander.be_lost()
+        await _pass(server, graph)
+        server.reset()
+        nodes = [name for name, _ in graph.get_node_names_and_namespaces()]
+        assert ("faulty" in nodes) is (where in ("comparing", "going on", STOP))
+        server.renew(server.simulation.scene.models["mbot"].model, "mbot")
+        recordings[0].clear()
+        await _pass(server, graph)
+        assert len(recordings[0]) == 20  # both plugins beside it
+        server.delete("mbot")
+        errors = [each.text for each in log if each.level >= LogLevel.ERROR]
+        expected = "TypeError" if where == PUBLISHING else f"FaultError: {where}"
+        assert [expected in each for each in errors] == [True], errors
+        assert errors[0].startswith("test.world:14:"), "where it is declared"
+        assert "'faulty' has ended, as its code failed" in errors[0]
+        assert "test_failing_plugins.py" in errors[0] or where == PUBLISHING
+
+
+async def _pass(server, graph) -> None:
+    """A second, in pieces: commands come in between."""
+    for _ in range(10):
+        await graph.settle()
+        server.advance(SECOND // 10)
+        await graph.settle()
+
+
+async def test_a_command_that_waits_for_a_plugin_which_has_ended_is_not_given_to_it():
+    async with served(GROUND, robot(failing(""))) as (server, graph, log):
+        heard: list = []
+        (faulty,) = server.plugins("mbot")
+        faulty.node.post(lambda: heard.append(1))
+        server.delete("mbot")
+        await _pass(server, graph)
+        assert not heard
+        assert not log
+
+
+def test_the_test_of_a_plugin_fails_where_the_plugin_does(tmp_path):
+    world = tmp_path / "a.world"
+    world.write_text(f'<sdf version="1.7"><world name="test">{robot(failing(TASK))}</world></sdf>')
+    with SteppedSimulation(world) as test, pytest.raises(FaultError, match=TASK):
+        test.advance(1.0)
+
+
+# --- subscriptions that come and go at any moment ---------------------------------------------------------------------
+
+LEFT_EYE = EYE.replace("<camera>", '<camera name="left">')
+_PICTURES = ("camera", "depth", "rgbd", "segmentation", "boundingbox")
+CLASSIC = {
+    "classic ray": sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so"), "a"),
+    "classic block laser": sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_block_laser.so"), "a"),
+    "classic camera": sensor("camera", EYE + plugin("libgazebo_ros_camera.so"), "a"),
+    "classic depth camera": sensor("depth", EYE + plugin("libgazebo_ros_camera.so"), "a"),
+    "classic multicamera": sensor(
+        "multicamera", EYE.replace("<camera>", '<camera name="left">') + plugin("libgazebo_ros_camera.so"), "a"
+    ),
+    "classic imu": sensor("imu", plugin("libgazebo_ros_imu_sensor.so"), "a"),
+    "classic gps": sensor("gps", plugin("libgazebo_ros_gps_sensor.so"), "a"),
+}
+OF_GZ = {kind: sensor(kind, EYE if kind.startswith(_PICTURES) else "", "a") for kind in extensions(SENSORS)}
+
+
+@pytest.mark.parametrize("text", (CLASSIC | OF_GZ).values(), ids=(CLASSIC | OF_GZ).keys())
+async def test_a_sensor_measures_while_subscriptions_come_and_go(text, monkeypatch):
+    chance = Random(7)
+    if 'type="force_torque"' in text:
+        joint = '<joint name="wrist" type="continuous"><parent>head</parent><child>arm</child>{}</joint>'
+        robot = carrier(more=f'<link name="arm"/>{joint.format(text)}').replace("<static>true</static>", "")
+    else:
+        robot = carrier(text)
+    async with served(block("wall", "2.5 0 0 0 0 0", "1 20 20"), robot) as (server, _, log):
+        assert len(server.plugins("robot")) == 1
+        monkeypatch.setattr(Publisher, "get_subscription_count", lambda _: chance.randrange(2))
+        server.advance(4 * SECOND)
+        assert len(server.plugins("robot")) == 1
+        assert not [each.text for each in log if each.level >= LogLevel.ERROR]
