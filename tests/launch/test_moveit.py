@@ -80,6 +80,22 @@ class TestBuilder:
         given = MoveItConfigsBuilder("arm").robot_description(mappings={"tool": "given"}).to_moveit_configs()
         assert '<link name="tool_given"/>' in given.robot_description["robot_description"]
 
+    def test_noted_arguments_are_for_the_model_of_the_configuration_too(self, write: Any) -> None:
+        write("src/arm_moveit_config/config/arm.urdf.xacro", URDF)
+        urdf = "{package: arm_description, relative_path: urdf/arm.urdf.xacro, xacro_args: 'tool:=noted'}"
+        write("src/arm_moveit_config/.setup_assistant", f"moveit_setup_assistant_config:\n  urdf: {urdf}\n")
+        noted = MoveItConfigsBuilder("arm").to_moveit_configs().robot_description["robot_description"]
+        assert '<link name="tool_noted"/>' in noted
+
+    def test_without_a_model_it_warns_and_goes_on(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        (tmp_path / "src/arm_description/urdf/arm.urdf.xacro").unlink()
+        configs = MoveItConfigsBuilder("arm").to_moveit_configs()
+        assert configs.robot_description == {}
+        assert 'name="v"' in configs.robot_description_semantic["robot_description_semantic"]
+        warning = capsys.readouterr().err
+        assert "warning[LAUNCH153]: parameter file " in warning
+        assert "taken from the topic /robot_description" in warning
+
     def test_what_it_is_told(self) -> None:
         configs = (
             MoveItConfigsBuilder("arm", robot_description="model", package_name="arm_moveit_config")

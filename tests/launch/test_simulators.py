@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from linkwright.messages import get_service
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import SingleNode, create_node
 from linkwright.packages import PackageFinder, is_substitute
+from linkwright.packages.share_layout import source_of
 from tests.places import GAZEBO_PACKAGE
 from tests.waiting import eventually
 
@@ -95,6 +97,44 @@ def test_a_package_that_is_there_comes_before_ours(package: str, write: Write, t
     write(f"ws/src/{package}/package.xml", f"<package><name>{package}</name></package>")
     finder = PackageFinder(start=tmp_path / "ws", environment={})
     assert finder.share(package) == finder.packages()[package] == tmp_path / "ws" / "src" / package
+
+
+COMPILED = """
+project(ros_gz_sim)
+add_executable(create src/create.cpp)
+install(TARGETS create DESTINATION lib/${PROJECT_NAME})
+configure_file(launch/gz_sim.launch.py.in launch/gz_sim.launch.py.configured @ONLY)
+file(GENERATE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/launch/gz_sim.launch.py"
+  INPUT "${CMAKE_CURRENT_BINARY_DIR}/launch/gz_sim.launch.py.configured")
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/launch/gz_sim.launch.py" DESTINATION share/${PROJECT_NAME}/launch)
+install(FILES launch/gz_spawn_model.launch.py DESTINATION share/${PROJECT_NAME}/launch)
+ament_package()
+"""
+
+
+async def test_launch_files_that_unbuilt_sources_lack_are_ours(
+    launch: Callable[..., Any],
+    simulators: Simulators,
+    write: Write,
+    tmp_path: Path,
+) -> None:
+    """As beside a clone of ros_gz, whose gz_sim.launch.py its build makes; what the clone has stays the clone's."""
+    folder = write("ws/src/ros_gz/ros_gz_sim/package.xml", "<package><name>ros_gz_sim</name></package>").parent
+    write("ws/src/ros_gz/ros_gz_sim/CMakeLists.txt", COMPILED)
+    write("ws/src/ros_gz/ros_gz_sim/launch/gz_sim.launch.py.in", "@GZ_SIM_VER@")
+    edited = write("ws/src/ros_gz/ros_gz_sim/launch/gz_spawn_model.launch.py", "# edited")
+    finder = PackageFinder(start=tmp_path / "ws", environment={})
+    found = finder.share("ros_gz_sim")
+    assert source_of(str(found / "launch" / "gz_spawn_model.launch.py")) == str(edited)
+    assert (found / "launch" / "gz_server.launch.py").is_file()
+    path = str(found / "launch" / "gz_sim.launch.py")
+    launched = await launch(
+        IncludeLaunchDescription(path, launch_arguments={"gz_args": f"-r -s {WORLD}"}.items()), finder=finder
+    )
+    assert launched.succeeded, launched.err
+    assert [package for package, _, _ in simulators.started] == ["ros_gz_sim"]
+    (folder / "CMakeLists.txt").write_text("project(ros_gz_sim)\nament_package()\n")
+    assert PackageFinder(start=tmp_path / "ws", environment={}).share("ros_gz_sim") == folder
 
 
 async def test_gazebo_launch_py(launch: Callable[..., Any], simulators: Simulators) -> None:
@@ -217,6 +257,21 @@ async def test_a_window_of_gazebo_is_a_page_with_the_world(
     launched = await launch(*entities, OpaqueFunction(function=look))
     assert launched.succeeded, launched.err
     assert launched.out.count("Viewer: ") == pages
+
+
+async def test_a_page_whose_port_is_taken_ends_a_launch_of_gazebo_with_one_error(
+    launch: Callable[..., Any], simulators: Simulators
+) -> None:
+    simulators.spawned = []
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        options = {"port": other.getsockname()[1]}
+        launched = await launch(include("gazebo_ros", "gazebo.launch.py", gui="true"), session_options=options)
+    assert not launched.succeeded
+    assert [line for line in launched.err.splitlines() if line.startswith("error")] == [
+        f"error[VIEW101]: port {options['port']} of '127.0.0.1' is in use"
+    ]
 
 
 async def test_other_commands_of_gz_are_processes(launch: Callable[..., Any], simulators: Simulators) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import subprocess
 import threading
 
 import pytest
@@ -21,6 +22,7 @@ from tf2_msgs.msg import TF2Error
 from tf2_ros import Buffer, StaticTransformBroadcaster, TransformBroadcaster, TransformListener
 from tf_transformations import euler_from_quaternion, quaternion_from_euler
 
+from linkwright.standins import process
 from tests.waiting import wait_until
 
 
@@ -266,3 +268,22 @@ class TestClient:
         client.destroy()
         with pytest.raises(InvalidHandle):
             client.can_transform("a", "b", Time())
+
+
+@pytest.mark.parametrize(
+    ("package", "type_name"),
+    [
+        ("tf2_geometry_msgs", "geometry_msgs.msg.PointStamped"),
+        ("tf2_geometry_msgs.tf2_geometry_msgs", "geometry_msgs.msg.WrenchStamped"),
+        ("tf2_sensor_msgs", "sensor_msgs.msg.PointCloud2"),
+    ],
+)
+def test_importing_a_package_of_conversions_is_enough(package, type_name):
+    """Nothing of it has to be used: its import alone registers the types with every buffer."""
+    module, _, name = type_name.rpartition(".")
+    program = (
+        f"import {package}, tf2_ros\nfrom {module} import {name}\nprint(tf2_ros.TransformRegistration().get({name}))"
+    )
+    command = process.python_command(["-c", program])
+    done = subprocess.run(command, env=process.environment(), capture_output=True, text=True, check=True)
+    assert "do_transform_" in done.stdout

@@ -120,8 +120,10 @@ class NodeHost:
                     await self._start_viewer(plan, with_world=with_world)
                 else:
                     if plan.opens_gazebo_window and not self._viewers.shows_world:
-                        self._windows[plan.process_name] = window = plan.gazebo_window
-                        await self._start_viewer(window)
+                        window = plan.gazebo_window
+                        if not await self._start_viewer(window):
+                            break
+                        self._windows[plan.process_name] = window
                     self._start_node(plan)
                     await asyncio.sleep(0)
         if not self._closing:
@@ -278,7 +280,8 @@ class NodeHost:
 
     # --- viewers --------------------------------------------------------------------------------------------
 
-    async def _start_viewer(self, plan: HostedPlan, *, with_world: bool = False) -> None:
+    async def _start_viewer(self, plan: HostedPlan, *, with_world: bool = False) -> bool:
+        """Start it; where it cannot start, tell why, end the launch, and return False."""
         session = self._session
         nodes = [running for _, running in self._running.values()]
         try:
@@ -287,13 +290,15 @@ class NodeHost:
         except LinkwrightError as error:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)
-            session.node_ended(plan, 1)
+            if plan.owner is not None:
+                session.node_ended(plan, 1)
             session.shut_down("the viewer has not started")
-            return
+            return False
         logger = ".".join([*plan.namespace.strip("/").split("/"), plan.node_name or plan.executable]).lstrip(".")
         self._process_of_logger[logger] = plan.process_name
         if plan.owner is not None:
             session.node_started(plan)
+        return True
 
     async def _stop_viewer(self, plan: HostedPlan, viewer: Viewer) -> None:
         await self._viewers.stop(plan, viewer)

@@ -44,7 +44,9 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
     take_any_text()
     try:
         factory = _factory(package, executable)
-        logging = set_up(parse(arguments), executable)
+        ros = parse(arguments)
+        print_diagnostics([finding for _, finding in ros.parameters.left_out], sys.stderr)
+        logging = set_up(ros, executable)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return 1

@@ -14,8 +14,7 @@ from linkwright.packages.errors import PackageNotFoundError
 from linkwright.packages.manifest import enclosing_package
 from linkwright.packages.share_layout import share_of_sources
 from linkwright.packages.sources import SourceScan
-
-_SUBSTITUTES = Path(__file__).parent / "substitutes"
+from linkwright.packages.substituted import SUBSTITUTES
 
 START_VARIABLE = "LINKWRIGHT_START"
 """The environment variable by which a launcher tells its processes where its own search for packages began."""
@@ -33,7 +32,7 @@ class PackageFinder:
     4. source trees: the package a start folder lies in and the packages beside that one, the packages below
        a start folder, and those below ``src`` of the folders above it;
     5. the packages shipped with Linkwright;
-    6. our own in the place of packages of ROS that launch files include, see `is_substitute`.
+    6. our own in the place of packages of ROS that launch files include, see `linkwright.packages.substituted`.
 
     Nothing is read from the disk before it is needed, and a search through source trees stops where it meets
     the package.
@@ -143,7 +142,7 @@ class PackageFinder:
         for root in self._source_roots():
             yield _share_of(name, self._scan(root).find(name))
         yield self._shipped().get(name)
-        yield ament.share_in_prefix(_SUBSTITUTES, name)
+        yield ament.share_in_prefix(SUBSTITUTES, name)
 
     def _all(self) -> Iterator[tuple[str, Path]]:
         for prefix in self._prefixes():
@@ -156,7 +155,7 @@ class PackageFinder:
         for root in self._source_roots():
             yield from self._scan(root).packages().items()
         yield from self._shipped().items()
-        yield from ament.packages_in_prefix(_SUBSTITUTES)
+        yield from ament.packages_in_prefix(SUBSTITUTES)
 
     def _upwards(self) -> Iterator[Path]:
         seen: set[Path] = set()
@@ -242,14 +241,6 @@ def shipped_folder() -> Path | None:
         if folder.is_dir():
             return folder
     return None
-
-
-def is_substitute(share: Path) -> bool:
-    """Whether a share folder is one of ours that stands in for a package of ROS which is not here, such as gazebo_ros.
-
-    It has the launch files that others include, and not everything else of that package.
-    """
-    return install_prefix(share) == _SUBSTITUTES
 
 
 def _share_of(name: str, folder: Path | None) -> Path | None:

@@ -4,7 +4,8 @@ Most packages keep their files in the sources as they install them, and their so
 Some do not: ``install(DIRECTORY description/urdf DESTINATION share/${PROJECT_NAME})``, ``glob('cfg/*')`` to ``config``.
 For these a folder of links is made in the user's cache, which holds what they install where they install it, and beside
 it everything else of the sources. So whoever asks for the share folder, a launch file with ``os.path.join`` too, finds
-what would be there after a build.
+what would be there after a build. Files that only compiling would make are ours where we have them, see
+`linkwright.packages.substituted`.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.packages.cache import SHARES
+from linkwright.packages.substituted import substituted_files
 
 if TYPE_CHECKING:
     from linkwright.packages.readers.installed_file import InstalledFile
@@ -35,6 +37,7 @@ def share_of_sources(name: str, folder: Path) -> Path:
     if _MARK in str(folder):  # it is one already: that of a launch file which was found here
         return folder
     moved = {path: file for path, file in _shared(name, folder) if path != file.source}
+    moved |= substituted_files(name, folder)
     if not moved:
         return folder
     from linkwright.packages.link_folder import link_folder

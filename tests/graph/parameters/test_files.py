@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from linkwright.diagnostics import LinkwrightError, SourceText
+from linkwright.diagnostics import LinkwrightError, Severity, SourceText
 from linkwright.graph.parameters.files import parse_parameters, parse_value, read_parameter_file
 
 
@@ -120,6 +120,25 @@ def test_patterns_count_in_the_order_in_which_they_came_up():
     assert other.for_node("/node") == {"a": 3}
 
 
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ("[[1], [2]]", "the list of parameter 'a.b' has a list in it"),
+        ("[{c: 1}, 2]", "the list of parameter 'a.b' has a mapping in it"),
+        ("[1, {c: [{d: 1}, [2]]}, 3]", "the list of parameter 'a.b' has a mapping in it"),
+        ("[1, [], 3]", "the list of parameter 'a.b' has a list in it"),
+    ],
+)
+def test_a_parameter_whose_list_has_more_than_values_is_left_out_and_the_rest_is_read(value, message):
+    """As in the example of gpio_controllers: lists of mappings, which rcl has no type for."""
+    any_node = f"/**:\n  ros__parameters:\n    first: 1\n    a:\n      b: {value}\n      c: [2]\n"
+    rules = read(f"{any_node}x:\n  ros__parameters: {{y: 3}}\n")
+    assert rules.for_node("/x") == {"first": 1, "a.c": [2], "y": 3}
+    (finding,) = rules.left_out_for("/x")
+    assert (finding.message, finding.severity) == (message, Severity.WARNING)
+    assert str(finding.span).startswith("params.yaml:5:")
+
+
 @pytest.mark.parametrize("text", ["", "# only a comment\n", "node:\n  ros__parameters:\n"])
 def test_files_may_say_nothing(text):
     assert read(text).for_node("/node") == {}
@@ -145,18 +164,6 @@ def test_files_may_say_nothing(text):
             "3:12",
             "the list of parameter 'a' begins with a value of type string and has one of type integer",
             'write "2"',
-        ),
-        (
-            "node:\n  ros__parameters:\n    a: [[1], [2]]",
-            "3:9",
-            "the list of parameter 'a' has a list in it",
-            "lists hold plain values only",
-        ),
-        (
-            "node:\n  ros__parameters:\n    a: [{b: 1}]",
-            "3:9",
-            "the list of parameter 'a' has a mapping in it",
-            "lists hold plain values only",
         ),
         ("node:\n  ros__parameters:\n    a:", "3:7", "parameter 'a' has no value", 'an empty text is ""'),
         (

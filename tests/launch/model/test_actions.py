@@ -4,6 +4,7 @@ import asyncio
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from launch.actions import (
@@ -275,6 +276,15 @@ class TestIncludeLaunchDescription:
     async def test_other_sources(self, launch, write: Write, source: Callable[[str], object]) -> None:
         inner = write("inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
         assert (await launch(IncludeLaunchDescription(source(str(inner))))).messages[0].startswith("inner 1")
+
+    async def test_a_value_that_is_no_text_fails_when_the_include_runs(self, launch, write: Write) -> None:
+        inner = write("inner.launch.py", INNER.replace("{default}", ""))
+        pairs: Any = {"speed": None}.items()
+        never = IncludeLaunchDescription(str(inner), launch_arguments=pairs, condition=IfCondition("false"))
+        done = await launch(never, say("before"), IncludeLaunchDescription(str(inner), launch_arguments=pairs))
+        assert done.messages == ["before"]
+        assert "error[LAUNCH114]: argument 'speed' is given None, which is no text" in done.err
+        assert not done.succeeded
 
     async def test_a_missing_argument_is_told_before_anything_runs(self, launch, write: Write) -> None:
         inner = write("inner.launch.py", INNER.replace("{default}", ""))

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterFile
 
 from tests.control.robots import joint, robot
 from tests.launch.ending import ends_when, printed
@@ -24,6 +25,11 @@ arm:
     open_lop_control: true
 """
 
+ARM = """arm:
+  ros__parameters:
+    type: joint_trajectory_controller/JointTrajectoryController
+    gpios: [{interfaces: [a, b]}]"""
+
 
 async def test_what_a_controller_says_is_said_by_the_node_that_runs_it(launch: Any, write: Callable[[str, str], Path]):
     parameters = [str(write("controllers.yaml", FILE)), {"robot_description": robot(joint("hip") + joint("knee"))}]
@@ -36,3 +42,30 @@ async def test_what_a_controller_says_is_said_by_the_node_that_runs_it(launch: A
     (line,) = [each for each in done.err.splitlines() if "open_lop_control" in each]
     assert re.match(r"\[ros2_control_node-1\] \[WARN\] \[[0-9.]+\] \[arm\]: ", line)
     assert line.endswith("'open_lop_control' is no parameter of this controller; did you mean 'open_loop_control'?")
+
+
+async def test_a_spawner_hands_on_the_parameter_files_that_its_action_has(
+    launch: Any, write: Callable[[str, str], Path]
+):
+    """As in the first example of ros2_control_demos: the file has substitutions, and the manager was given none."""
+    controller = (
+        FILE[FILE.index("arm:\n  ros") :]
+        .replace("arm:\n  ros__parameters:", ARM)
+        .replace("[hip, knee]", "[hip, $(var joint)]")
+    )
+    file = ParameterFile(str(write("controllers.yaml", controller)), allow_substs=True)
+    description = {"robot_description": robot(joint("hip") + joint("knee"))}
+    done = await launch(
+        Node(package="controller_manager", executable="ros2_control_node", parameters=[description]),
+        Node(
+            package="controller_manager",
+            executable="spawner",
+            parameters=[{"joint": "knee"}, file],
+            arguments=["arm"],
+        ),
+        ends_when(printed("Configured and activated arm")),
+        joint="knee",
+    )
+    assert done.succeeded, done.err
+    assert "left out" in done.err
+    assert "LAUNCH149" not in done.err

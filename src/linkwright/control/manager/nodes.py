@@ -44,8 +44,13 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
     if manager.has_parameter("use_sim_time"):
         values["use_sim_time"] = manager.get_parameter("use_sim_time").value
     values |= process.parameters.for_node(full_name)
+    left_out = process.parameters.left_out_for(full_name)
     for path in words_of(manager, f"{name}.params_file"):
-        values |= read_parameter_file(path).for_node(full_name)
+        rules = read_parameter_file(path)
+        values |= rules.for_node(full_name)
+        left_out += rules.left_out_for(full_name)
+    for message in dict.fromkeys(str(finding.message) for finding in left_out):
+        manager.get_logger().warning(f"{name}: {message}; the parameter is left out")
     ros = parse(
         ["--ros-args", *(each for each in words_of(manager, f"{name}.node_options_args") if each != "--ros-args")]
     )

@@ -1,14 +1,16 @@
 """Parameter files: YAML that names nodes, and below ``ros__parameters`` the values of their parameters.
 
 Read as rcl_yaml_param_parser reads it: nested names of namespaces and nodes, nested parameter names, its own idea of
-scalars (see `scalar_value`), lists of one type, neither anchors nor lists in lists. What it would refuse is
-refused here, with the place. `parameter_file_text` writes one, as ``ros2 param dump`` does.
+scalars (see `scalar_value`), lists of one type, no anchors. What it would refuse is refused here, with the place; only
+a parameter whose list has lists or mappings in it is left out, since files of real robots have such lists.
+`parameter_file_text` writes a file, as ``ros2 param dump`` does.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -16,7 +18,9 @@ from typing import Any
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
+    Note,
     Phrase,
+    Severity,
     SourceText,
     did_you_mean,
     display_path,
@@ -57,11 +61,15 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
                 phrase("parameter file '{shown}' cannot be read: {reason}", shown=shown, reason=foreign(reason)),
             )
         ) from error
-    return parse_parameters(SourceText(str(path), text))
+    rules = parse_parameters(SourceText(str(path), text))
+    rules.files.append(str(path))
+    return rules
 
 
 def parse_parameters(source: SourceText) -> ParameterRules:
     """Read the text of a parameter file.
+
+    A parameter whose list has lists or mappings in it is left out, with a finding in `ParameterRules.left_out`.
 
     Raises:
         LinkwrightError: GRAPH212, what is wrong with it and where.
@@ -80,6 +88,10 @@ def parse_value(text: str, name: str) -> Any:
         LinkwrightError: GRAPH212, it is neither.
     """
     return _Reader(SourceText(f"<{name}>", text)).read_value(name)
+
+
+class _NestedListError(LinkwrightError):
+    """A list has lists or mappings in it."""
 
 
 class _Reader:
@@ -109,7 +121,9 @@ class _Reader:
             raise self._error(
                 phrase("the value of parameter '{name}' is a mapping", name=name), phrase("give its entries one by one")
             )
-        return self._read_value(name)
+        if self._is("SequenceStart"):
+            return self._read_list(name)
+        return self._read_scalar(name)
 
     def _parsed(self) -> Iterator[Any]:
         import yaml
@@ -140,10 +154,11 @@ class _Reader:
                         phrase("there are no node names before '{parameters_key}'", parameters_key=PARAMETERS_KEY),
                         _FORM,
                     )
-                section = self._rules.section("/" + "/".join(above))
+                pattern = "/" + "/".join(above)
+                self._rules.section(pattern)
                 self._advance()
                 if self._is("MappingStart"):
-                    self._read_parameters("", section)
+                    self._read_parameters("", pattern)
                 elif not (self._is("Scalar") and not self._event.value):
                     raise self._error(
                         phrase("'{parameters_key}' must be a mapping of names to values", parameters_key=PARAMETERS_KEY)
@@ -160,17 +175,38 @@ class _Reader:
                 self._read_names((*above, *parts))
             self._advance()
 
-    def _read_parameters(self, prefix: str, section: dict[str, Any]) -> None:
+    def _read_parameters(self, prefix: str, pattern: str) -> None:
         """Read a mapping of parameter names; the current event is its start."""
         self._advance()
         while not self._is("MappingEnd"):
             name = prefix + self._read_key()
             self._advance()
             if self._is("MappingStart"):
-                self._read_parameters(f"{name}.", section)
+                self._read_parameters(f"{name}.", pattern)
+            elif self._is("SequenceStart"):
+                self._take_list(name, pattern)
             else:
-                section[name] = self._read_value(name)
+                self._rules.set(pattern, name, self._read_scalar(name))
             self._advance()
+
+    def _take_list(self, name: str, pattern: str) -> None:
+        """Read a list and set the parameter; leave it out where there are lists or mappings in the list."""
+        try:
+            self._rules.set(pattern, name, self._read_list(name))
+        except _NestedListError as error:
+            (finding,) = error.diagnostics
+            note = Note(phrase("the parameter is left out"))
+            warning = replace(finding, severity=Severity.WARNING, notes=(note,))
+            self._rules.left_out.append((pattern, warning))
+            self._pass_rest_of_list()
+
+    def _pass_rest_of_list(self) -> None:
+        """Go on to the end of a list; the current event is the start of a list or mapping in it."""
+        depth = 2
+        while depth:
+            self._advance()
+            depth += self._is("SequenceStart") + self._is("MappingStart")
+            depth -= self._is("SequenceEnd") + self._is("MappingEnd")
 
     def _read_key(self) -> str:
         if not self._is("Scalar"):
@@ -179,11 +215,6 @@ class _Reader:
         if not key:
             raise self._error(phrase("a name must not be empty"))
         return key
-
-    def _read_value(self, name: str) -> Any:
-        if self._is("SequenceStart"):
-            return self._read_list(name)
-        return self._read_scalar(name)
 
     def _read_scalar(self, name: str) -> Any:
         event = self._event
@@ -197,12 +228,13 @@ class _Reader:
         self._advance()
         while not self._is("SequenceEnd"):
             if not self._is("Scalar"):
-                raise self._error(
+                message = (
                     phrase("the list of parameter '{name}' has a list in it", name=name)
                     if self._is("SequenceStart")
-                    else phrase("the list of parameter '{name}' has a mapping in it", name=name),
-                    phrase("lists hold plain values only"),
+                    else phrase("the list of parameter '{name}' has a mapping in it", name=name)
                 )
+                error = self._error(message, phrase("lists hold plain values only"))
+                raise _NestedListError(*error.diagnostics)
             value = self._read_scalar(name)
             if values and type(value) is not type(values[0]):
                 first, other = _KINDS[type(values[0])], _KINDS[type(value)]

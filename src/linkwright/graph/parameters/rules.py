@@ -5,7 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from linkwright.diagnostics import Diagnostic
 
 ANY_NODE = "/**"
 
@@ -15,10 +18,16 @@ class ParameterRules:
 
     A pattern is a node's full name, in which ``*`` stands for one part and ``**`` for any number of parts. As in rcl
     the patterns count in the order in which they came up first, and for a node the later of two that fit it wins.
+
+    Attributes:
+        files: the paths of the files that they were read from.
+        left_out: patterns, each with a finding about a parameter whose value no parameter can have.
     """
 
     def __init__(self) -> None:
         self._values: dict[str, dict[str, Any]] = {}
+        self.files: list[str] = []
+        self.left_out: list[tuple[str, Diagnostic]] = []
 
     def __bool__(self) -> bool:
         return bool(self._values)
@@ -39,6 +48,8 @@ class ParameterRules:
         """Add rules that come after these."""
         for pattern, values in other:
             self.section(pattern).update(values)
+        self.files += other.files
+        self.left_out += other.left_out
 
     @property
     def patterns(self) -> list[str]:
@@ -65,6 +76,10 @@ class ParameterRules:
             if _expression(pattern).fullmatch(full_name):
                 found.update(values)
         return found
+
+    def left_out_for(self, full_name: str) -> list[Diagnostic]:
+        """The findings about parameters that were left out for a node."""
+        return [finding for pattern, finding in self.left_out if _expression(pattern).fullmatch(full_name)]
 
 
 @lru_cache(maxsize=256)

@@ -27,12 +27,17 @@ from linkwright.launch.model.actions.configurations import (
 )
 from linkwright.launch.model.actions.environment import PopEnvironment, PushEnvironment
 from linkwright.launch.model.actions.functions import OpaqueFunction
-from linkwright.launch.model.actions.named import Pairs, normalize_pairs
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.entity import LaunchDescriptionEntity
 from linkwright.launch.model.markup.entity import Entity
 from linkwright.launch.model.markup.expose import expose_action
-from linkwright.launch.model.substitution import SomeSubstitutionsType, TextSubstitution, perform_substitutions
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    TextSubstitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
 from linkwright.packages import is_substitute
 
 if TYPE_CHECKING:
@@ -65,7 +70,10 @@ class IncludeLaunchDescription(Action):
         if not isinstance(launch_description_source, LaunchDescriptionSource):
             launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
         self._source = launch_description_source
-        self._arguments = normalize_pairs(launch_arguments or ())
+        # As in ROS, a value that is no text, such as None, is an error of the run only: the file may never be included.
+        self._arguments = [
+            (normalize_to_list_of_substitutions(name), _normalized(value)) for name, value in launch_arguments or ()
+        ]
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
@@ -88,8 +96,8 @@ class IncludeLaunchDescription(Action):
         return self._source
 
     @property
-    def launch_arguments(self) -> Pairs:
-        """Names and values of the arguments, as substitutions."""
+    def launch_arguments(self) -> list[tuple[list[Substitution], Any]]:
+        """Names and values of the arguments, as substitutions; a value that cannot be one as it was given."""
         return self._arguments
 
     def describe(self) -> str:
@@ -115,6 +123,7 @@ class IncludeLaunchDescription(Action):
 
         Raises:
             RuntimeError: LAUNCH114, an argument that it requires is not given.
+            TypeError: LAUNCH114, the value of an argument is no text.
             LinkwrightError: what its source raises.
         """
         try:
@@ -125,6 +134,7 @@ class IncludeLaunchDescription(Action):
             raise
         given = [perform_substitutions(context, name) for name, _ in self._arguments]
         self._check_required(description.get_launch_arguments(), given)
+        self._check_values(given)
         outer = context.get_locals_as_dict()
         before = {name: outer[name] for name in (_FILE, _FOLDER) if name in outer}
         context.extend_locals(self._file_values())
@@ -191,6 +201,14 @@ class IncludeLaunchDescription(Action):
             )
             raise error_at(self.place, "LAUNCH114", message, hint, ros_error=RuntimeError(text))
 
+    def _check_values(self, names: list[str]) -> None:
+        for name, (_, value) in zip(names, self._arguments, strict=True):
+            if not isinstance(value, list):
+                message = phrase("argument '{name}' is given {value}, which is no text", name=name, value=repr(value))
+                hint = phrase("give a text or a substitution, or leave the argument out")
+                ros_error = TypeError(f"Failed to normalize given item of type '{type(value)}'")
+                raise error_at(self.place, "LAUNCH114", message, hint, ros_error=ros_error)
+
     def _how_to_give(self, name: str) -> Phrase:
         """How an argument is given, in the language of the including file."""
         if not isinstance(self.place, MarkupPlace):
@@ -198,6 +216,13 @@ class IncludeLaunchDescription(Action):
         if self.place.text.text.lstrip().startswith("<"):
             return phrase('write <arg name="{name}" value="VALUE"/> inside <include>', name=name)
         return phrase("write 'arg: [{{name: {name}, value: VALUE}}]' below 'include'", name=name)
+
+
+def _normalized(value: Any) -> Any:
+    try:
+        return normalize_to_list_of_substitutions(value)
+    except TypeError:
+        return value
 
 
 class IncludeScopedLaunchDescription(IncludeLaunchDescription):

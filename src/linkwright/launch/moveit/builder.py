@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import display_path, joined, phrase
+from linkwright.diagnostics import Note, Severity, display_path, joined, phrase, print_diagnostics
 from linkwright.launch.errors.places import Place, error_at
 from linkwright.launch.moveit.configs import MoveItConfigs, Parameters
-from linkwright.launch.moveit.files import ParameterValueType, Xacro, load_file, load_xacro, load_yaml
+from linkwright.launch.moveit.files import (
+    ParameterBuilderFileNotFoundError,
+    ParameterValueType,
+    Xacro,
+    load_file,
+    load_xacro,
+    load_yaml,
+)
 from linkwright.packages import current_finder
 
 if TYPE_CHECKING:
@@ -90,13 +99,17 @@ class MoveItConfigsBuilder(ParameterBuilder):
         self.__name = robot_name
         self.__parameter = robot_description
         self.__moveit_configs = MoveItConfigs(package_path=self._package_path)
-        self.__urdf_arguments: dict[str, str] = {}
         self.__urdf, self.__srdf = self.__models()
 
     def robot_description(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
-        """Read the URDF."""
+        """Read the URDF; warn where there is no such file: nodes then take it from ``/robot_description``."""
         path = self.__urdf if file_path is None else self._package_path / file_path
-        self.__moveit_configs.robot_description = {self.__parameter: _model(path, mappings or self.__urdf_arguments)}
+        try:
+            model = _model(path, mappings or self.__urdf_arguments)
+        except ParameterBuilderFileNotFoundError as error:
+            _warn_without_model(error)
+        else:
+            self.__moveit_configs.robot_description = {self.__parameter: model}
         return self
 
     def robot_description_semantic(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
@@ -259,9 +272,8 @@ class MoveItConfigsBuilder(ParameterBuilder):
             urdf = self._package_path / _FOLDER / f"{self.__name}.urdf"
             if urdf_noted.get("package") and urdf_noted.get("relative_path"):
                 urdf = current_finder().share(urdf_noted["package"]) / urdf_noted["relative_path"]
-                words = str(urdf_noted.get("xacro_args") or "").split()
-                parts = (word.partition(":=") for word in words)
-                self.__urdf_arguments = {name: value for name, is_pair, value in parts if is_pair}
+        parts = (word.partition(":=") for word in str(urdf_noted.get("xacro_args") or "").split())
+        self.__urdf_arguments = {name: value for name, is_pair, value in parts if is_pair}
         srdf = self._package_path / srdf_noted.get("relative_path", _FOLDER / f"{self.__name}.srdf")
         return urdf, srdf
 
@@ -281,6 +293,13 @@ class MoveItConfigsBuilder(ParameterBuilder):
                 hint = phrase("say which: .trajectory_execution(file_path='config/NAME_controllers.yaml')")
                 raise error_at(Place.of_caller(), "LAUNCH154", message, hint, ros_error=RuntimeError(text))
         return folder / (names[0] + _CONTROLLERS) if names else None
+
+
+def _warn_without_model(error: LookupError) -> None:
+    message = phrase("MoveIt's parameters have no URDF; it is taken from the topic /robot_description")
+    for found in getattr(error, "diagnostics", ()):
+        warning = replace(found, severity=Severity.WARNING, notes=(*found.notes, Note(message)))
+        print_diagnostics([warning], sys.stderr)
 
 
 def _model(path: Path, mappings: _Mappings) -> Any:

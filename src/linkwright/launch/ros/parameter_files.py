@@ -102,6 +102,7 @@ class ParameterFile(Placed):
             source = self._source or _read(path, self.place)
             try:
                 self._rules = parse_parameters(source)
+                self._rules.files.append(str(path))
             except LinkwrightError as error:
                 raise located(error, self.place) from error
         return self._rules

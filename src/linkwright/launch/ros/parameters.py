@@ -66,7 +66,8 @@ class NodeParameters:
         """Read the files before the node does.
 
         Args:
-            context: of the launch; it is told (LAUNCH149) of files that have nothing for the node.
+            context: of the launch; it is told (LAUNCH149) of files that have nothing for the node, and (GRAPH212) of
+                parameters that are left out.
             node: the node's full name; None where that is not known.
             place: where the node was written.
 
@@ -77,6 +78,8 @@ class NodeParameters:
             if not isinstance(source, FileSource):
                 continue
             rules = source.file.rules(context)
+            for finding in rules.left_out_for(node) if node else [each for _, each in rules.left_out]:
+                context.warn(finding)
             if node is None or not rules or rules.fit(node):
                 continue
             names = rules.patterns

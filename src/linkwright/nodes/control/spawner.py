@@ -1,5 +1,7 @@
 """spawner and unspawner of controller_manager: load, configure and activate controllers, and unload them.
 
+Parameter files of its own process are for the controllers too, as since Jazzy.
+
 Source: controller_manager of ros2_control, options of Humble and Jazzy, and their texts.
 """
 
@@ -13,7 +15,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import Graph
-from linkwright.graph.command_line.ros_arguments import remove_ros_arguments
+from linkwright.graph.command_line.ros_arguments import parse, remove_ros_arguments
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.messages import get_service
@@ -36,8 +38,10 @@ class Spawner(ManagerProgram):
         wanted = parsed(_parser(), remove_ros_arguments(options.arguments))
         self._node, _ = create_node(graph, options, f"spawner_{wanted.controller_names[0]}")
         self._wanted = wanted
+        of_process = [*options.for_others.files, *parse(options.arguments).parameters.files]
+        self._files = list(dict.fromkeys([*(wanted.param_file or ()), *of_process]))
         with starting(self._node):
-            for path in wanted.param_file or ():
+            for path in self._files:
                 if not Path(path).is_file():
                     message = phrase("parameter file '{path}' does not exist", path=path)
                     raise LinkwrightError(Diagnostic("NODE832", message))
@@ -110,10 +114,10 @@ class Spawner(ManagerProgram):
             found["node_options_args"] = [word for each in wanted.controller_ros_args for word in each.split()]
         if wanted.fallback_controllers:
             found["fallback_controllers"] = wanted.fallback_controllers
-        if wanted.param_file:
-            found["params_file"] = wanted.param_file
+        if self._files:
+            found["params_file"] = self._files
             full_name = join(self._node.get_namespace(), name)
-            for path in wanted.param_file:
+            for path in self._files:
                 said = read_parameter_file(path).for_node(full_name)
                 found |= {each: said[each] for each in _TAKEN if each in said}
         return found

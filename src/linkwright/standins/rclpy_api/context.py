@@ -13,7 +13,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, print_diagnostics
 from linkwright.graph import Graph
 from linkwright.graph.command_line.log_setup import Logging, set_up
 from linkwright.graph.command_line.ros_arguments import RosArguments, parse
@@ -95,6 +95,7 @@ class Context:
             if self._initialized:
                 raise RuntimeError("Context.init() must only be called once")
             self.ros_arguments = read_ros_arguments(sys.argv if args is None else args)
+            print_diagnostics([finding for _, finding in self.ros_arguments.parameters.left_out], sys.stderr)
             self._domain_id = domain_id
             if initialize_logging and not logging.is_configured():
                 self._logging = set_up(self.ros_arguments, Path(sys.argv[0]).stem or "python3", logging.LEVELS)

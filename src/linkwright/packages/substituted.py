@@ -1,0 +1,58 @@
+"""Our own packages in the place of packages of ROS that launch files include, such as those of Gazebo and nav2.
+
+They lie in the folder ``substitutes``, laid out as installed packages. They have the launch files of those packages and
+what these need, and start nodes of ours.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.packages.ament import install_prefix, share_in_prefix
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.installed_file import InstalledFile
+
+SUBSTITUTES = Path(__file__).parent / "substitutes"
+"""The prefix that they are installed to."""
+
+
+def is_substitute(share: Path) -> bool:
+    """Whether a share folder is one of ours that stands in for a package of ROS which is not here, such as gazebo_ros.
+
+    It has the launch files that others include, and not everything else of that package.
+    """
+    return install_prefix(share) == SUBSTITUTES
+
+
+def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
+    """The files of ours that unbuilt sources of a package lack: path in the share folder -> file.
+
+    A launch file that a build would make, such as ros_gz_sim's ``gz_sim.launch.py``, names programs of that build; ours
+    start our nodes. What the sources have as it is stays theirs: its nodes are ours by their names, and the user may
+    have edited it.
+
+    Args:
+        name: the package.
+        folder: its source folder.
+    """
+    share = share_in_prefix(SUBSTITUTES, name)
+    if share is None or not _compiles(folder):
+        return {}
+    ours = {file.relative_to(share).as_posix(): file for file in sorted(share.rglob("*")) if file.is_file()}
+    return {
+        path: InstalledFile(str(file), f"share/{name}/{path}")
+        for path, file in ours.items()
+        if path != MANIFEST and file.suffix != ".pyc" and not (folder / path).is_file()
+    }
+
+
+def _compiles(folder: Path) -> bool:
+    """Whether a package in its sources has to be compiled."""
+    try:
+        text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+    from linkwright.diagnostics import SourceText
+    from linkwright.packages.readers.cmake import read_cmake
+
+    return bool(read_cmake(SourceText(str(folder / "CMakeLists.txt"), text), folder).compiled)
