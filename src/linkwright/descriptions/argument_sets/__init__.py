@@ -1,0 +1,5 @@
+"""Which values the launch files, tests and build files of a workspace give to the arguments of a description."""
+
+from linkwright.descriptions.argument_sets.calling import ArgumentSet, ArgumentSets, argument_sets
+
+__all__ = ["ArgumentSet", "ArgumentSets", "argument_sets"]

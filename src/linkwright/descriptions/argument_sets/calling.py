@@ -1,0 +1,232 @@
+"""The sets of values that a description is expanded with."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from linkwright.descriptions.argument_sets.workspace import CallingFiles
+from linkwright.diagnostics import Span
+from linkwright.packages import PackageFinder, enclosing_package
+from linkwright.packages.readers.xacro_calls.call import (
+    CallingFile,
+    XacroCall,
+    launch_choice,
+    launch_names,
+)
+from linkwright.packages.readers.xacro_calls.texts import (
+    MOST_SETS,
+    Open,
+    Selection,
+    Share,
+    Text,
+    resolve,
+    selections,
+    share_mark,
+    split_mark,
+    variations,
+)
+
+_DEEPEST = 4
+_MOST_LAUNCHES = 16
+_MARK = re.compile("\0([^\0]*)\0")
+
+
+@dataclass(frozen=True, slots=True)
+class ArgumentSet:
+    """Values for the arguments of a description that are given together.
+
+    Attributes:
+        values: argument -> value.
+        open: the arguments that are given values which are only known when the program runs.
+        span: the call that gives them; None for those of a configuration.
+        is_certain: whether they are known to be given together.
+        varied: the arguments whose values differ from those that the same call gives by default.
+    """
+
+    values: Mapping[str, str]
+    open: tuple[str, ...] = ()
+    span: Span | None = None
+    is_certain: bool = True
+    varied: tuple[str, ...] = ()
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether these are known to be given, and all that is given is known."""
+        return self.is_certain and not self.open
+
+
+def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
+    """The sets of values that launch files, tests and build files give to the arguments of a description.
+
+    They are read in the file's package and in those beside it that depend on it; nothing is run.
+
+    Args:
+        path: the file.
+        finder: where packages are; by default those around the file.
+
+    Returns:
+        Each set once, those that are known best first; an empty set where a call gives nothing.
+    """
+    return ArgumentSets().of(Path(path), finder)
+
+
+class ArgumentSets:
+    """Finds the sets for many files; what calls xacro is read once.
+
+    Args:
+        folders: packages to look at besides those near a file.
+    """
+
+    def __init__(self, folders: Iterable[Path] = ()) -> None:
+        self._folders = tuple(folders)
+        self._files = CallingFiles()
+
+    def of(self, path: Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
+        """See `argument_sets`."""
+        path = Path(os.path.abspath(path))  # noqa: PTH100 - links stay what they are
+        finder = finder or PackageFinder(start=path.parent)
+        found: dict[object, ArgumentSet] = {}
+        for each in _Target(path, finder, list(self._files.around(path, self._folders))).sets():
+            key = (tuple(sorted(each.values.items())), each.open)
+            known = found.get(key)
+            if known is None or (each.is_certain and not known.is_certain):
+                found[key] = each if known is None else replace(known, is_certain=True)
+        best = sorted(found.values(), key=lambda each: (not each.is_complete, bool(each.open)))
+        complete = [each for each in best if each.is_complete][:MOST_SETS]
+        return (*complete, *[each for each in best if not each.is_complete][:MOST_SETS])
+
+
+@dataclass(eq=False)
+class _Target:
+    """A description, and the files that may call it, each with the name of its package."""
+
+    path: Path
+    finder: PackageFinder
+    files: list[tuple[str | None, CallingFile]]
+
+    def sets(self) -> Iterator[ArgumentSet]:
+        """The sets of all calls."""
+        for package, file in self.files:
+            calls = [call for call in file.calls if self._may_be(call.path)]
+            if not calls:
+                continue
+            launches = self._launches(package, file)
+            for call in calls:
+                for given in launches:
+                    yield from self._of_call(call, file, given)
+
+    def _of_call(self, call: XacroCall, file: CallingFile, given: Mapping[str, str]) -> Iterator[ArgumentSet]:
+        first: ArgumentSet | None = None
+        for selection in selections(call.path, file.choices, given):
+            written = resolve(call.path, file.choices, selection)
+            if written is None or not self._is_target(written, file):
+                continue
+            for taken, certain in variations(call.arguments.values(), file.choices, selection):
+                found = self._set(call, file, taken, is_certain=certain)
+                first = first or found
+                yield replace(found, varied=_differing(found, first))
+        if first is None and _is_open(call.path):
+            yield self._set(call, file, Selection({}, given), is_certain=False)
+
+    def _set(self, call: XacroCall, file: CallingFile, selection: Selection, *, is_certain: bool) -> ArgumentSet:
+        values: dict[str, str] = {}
+        missing: list[str] = []
+        for name, text in call.arguments.items():
+            value = resolve(text, file.choices, selection)
+            value = None if value is None else self._with_folders(value)
+            if value is None:
+                missing.append(name)
+            else:
+                values[name] = _unquoted(value) if call.is_command else value
+        return ArgumentSet(values, tuple(missing), call.span, is_certain)
+
+    # --- which file is meant --------------------------------------------------------------------------------
+
+    def _may_be(self, path: Text) -> bool:
+        """Whether a path with its open places may be the description."""
+        pattern = "".join(re.escape(piece) if isinstance(piece, str) else "\0" for piece in path)
+        if "/" not in pattern.strip("\0") and not pattern.strip("\0").endswith(re.escape(self.path.name)):
+            # Nothing but a name: any file could be meant, unless a choice tells.
+            return len(path) == 1 and pattern == "\0"
+        expression = "(^|.*/)" + pattern.lstrip("\0/").replace("\0", ".*").removeprefix("\\./")
+        return re.fullmatch(expression, self.path.as_posix()) is not None
+
+    def _is_target(self, written: str, file: CallingFile) -> bool:
+        """Whether a path whose places are filled is that of the description."""
+        package, rest = split_mark(written)
+        if package is None:
+            return self._is_same(Path(os.path.dirname(file.path), written)) or self._is_same(Path(written))  # noqa: PTH120
+        own = enclosing_package(self.path.parent)
+        if own is not None and own[0] == package and self._is_same(own[1] / rest.lstrip("/")):
+            return True
+        share = self.finder.find(package)
+        return share is not None and self._is_same(share / rest.lstrip("/"))
+
+    def _is_same(self, path: Path) -> bool:
+        return os.path.realpath(path) == os.path.realpath(self.path)
+
+    def _with_folders(self, value: str) -> str | None:
+        """A value with the share folders in it; None where a package is not here."""
+        for package in _MARK.findall(value):
+            share = self.finder.find(package)
+            if share is None:
+                return None
+            value = value.replace(share_mark(package), str(share))
+        return value
+
+    # --- launch arguments -----------------------------------------------------------------------------------
+
+    def _launches(self, package: str | None, file: CallingFile, depth: int = 0) -> list[dict[str, str]]:
+        """The launch arguments that a file is launched with: by itself, and by each file that includes it.
+
+        Returns:
+            The values that are given, by the names of their choices.
+        """
+        found: list[dict[str, str]] = [{}]
+        if depth >= _DEEPEST:
+            return found
+        for other_package, other in self.files:
+            for inclusion in other.inclusions:
+                if not _includes(inclusion.path, other, file, package):
+                    continue
+                for given in self._launches(other_package, other, depth + 1):
+                    selection = Selection({}, given)
+                    texts = {launch_choice(name): text for name, text in inclusion.arguments.items()}
+                    inherited = {name: (Open(name),) for name in launch_names(other.choices)}
+                    values = {
+                        name: value
+                        for name, text in {**inherited, **texts}.items()
+                        if (value := resolve(text, other.choices, selection)) is not None
+                    }
+                    if values not in found and len(found) < _MOST_LAUNCHES:
+                        found.append({**given, **values})
+        return found
+
+
+def _includes(path: Text, by: CallingFile, file: CallingFile, package: str | None) -> bool:
+    """Whether a launch file is meant by the path of an inclusion."""
+    written = resolve(path, by.choices, Selection()) or (path[-1] if path and isinstance(path[-1], str) else "")
+    named, rest = split_mark(written)
+    return rest.rpartition("/")[2] == file.path.replace(os.sep, "/").rpartition("/")[2] and named in (None, package)
+
+
+def _is_open(path: Text) -> bool:
+    """Whether a path has a place for which there may be more texts than those that are known."""
+    return any(_is_open(piece.package) if isinstance(piece, Share) else isinstance(piece, Open) for piece in path)
+
+
+def _differing(one: ArgumentSet, other: ArgumentSet) -> tuple[str, ...]:
+    return tuple(name for name, value in one.values.items() if other.values.get(name) != value)
+
+
+def _unquoted(value: str) -> str:
+    """A value as a command line has it, without quotes."""
+    try:
+        return "".join(shlex.split(value)) if set(value) & {'"', "'"} else value
+    except ValueError:
+        return value

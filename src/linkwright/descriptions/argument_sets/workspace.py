@@ -1,0 +1,112 @@
+"""The files of packages that may call xacro, each read once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError, SourceText
+from linkwright.packages import MANIFEST, enclosing_package
+from linkwright.packages.readers.xacro_calls.call import CallingFile
+from linkwright.packages.sources import IGNORE_MARKERS, SKIPPED_FOLDERS, SourceScan
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.reader import read_bytes
+
+_MOST_FILES = 5_000
+_LARGEST = 1_000_000
+"""Larger files, in bytes, hold data and no calls."""
+_MARKUP = (".launch", ".launch.xml", ".test", "_launch.xml")
+_YAML = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
+_WORDS = ("xacro", "MoveItConfigsBuilder", "IncludeLaunchDescription", "<include", "include:")
+"""A file without any of them calls nothing."""
+
+
+class CallingFiles:
+    """What the files of packages say of xacro."""
+
+    def __init__(self) -> None:
+        self._read: dict[Path, tuple[CallingFile, ...]] = {}
+        self._packages: dict[Path, dict[str, Path]] = {}
+        self._manifests: dict[Path, str] = {}
+
+    def around(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
+        """The files of the package of a file, and of those that use it: the package's name and what a file says.
+
+        Args:
+            path: the file, absolute.
+            folders: packages to look at besides those that lie near.
+        """
+        own = enclosing_package(path.parent)
+        if own is None:
+            yield from ((None, file) for file in self.of(path.parent))
+            return
+        name, folder = own
+        yield from ((name, file) for file in self.of(folder))
+        near = dict(self._beside(folder))
+        near.update({found[0]: each for each in folders if (found := enclosing_package(each))})
+        for other, place in near.items():
+            if other != name and name in self._manifest(place):
+                yield from ((other, file) for file in self.of(place))
+
+    def of(self, folder: Path) -> tuple[CallingFile, ...]:
+        """What the files in and below a folder say, but not those of other packages."""
+        if folder not in self._read:
+            read = (_read(path, folder) for path in _files(folder))
+            self._read[folder] = tuple(each for each in read if each and (each.calls or each.inclusions))
+        return self._read[folder]
+
+    def _beside(self, folder: Path) -> dict[str, Path]:
+        """The packages of the workspace, as far as they lie beside a package or below the same ``src``."""
+        above = next((each for each in folder.parents if each.name == "src"), folder.parent)
+        if above not in self._packages:
+            self._packages[above] = SourceScan(above).packages()
+        return self._packages[above]
+
+    def _manifest(self, folder: Path) -> str:
+        if folder not in self._manifests:
+            self._manifests[folder] = _text(folder / MANIFEST) or ""
+        return self._manifests[folder]
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    count = 0
+    for top, folders, names in os.walk(folder):
+        place = Path(top)
+        if place != folder and (MANIFEST in names or not IGNORE_MARKERS.isdisjoint(names)):
+            folders.clear()
+            continue
+        folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
+        for name in sorted(names):
+            if name == "CMakeLists.txt" or name.endswith((".py", *_MARKUP, *_YAML)):
+                count += 1
+                if count > _MOST_FILES:
+                    return
+                yield place / name
+
+
+def _read(path: Path, package: Path) -> CallingFile | None:
+    text = _text(path)
+    if text is None or not any(word in text for word in _WORDS):
+        return None
+    source = SourceText(str(path), text)
+    if path.name == "CMakeLists.txt":
+        from linkwright.packages.readers.xacro_calls.cmake import read_cmake_calls
+
+        return read_cmake_calls(source, package) if "xacro" in text and path.parent == package else None
+    if path.suffix == ".py":
+        from linkwright.packages.readers.xacro_calls.python import read_python
+
+        return read_python(source)
+    from linkwright.packages.readers.xacro_calls.markup import read_xml, read_yaml
+
+    return read_yaml(source) if path.name.endswith(_YAML) else read_xml(source)
+
+
+def _text(path: Path) -> str | None:
+    try:
+        if not path.is_file() or path.stat().st_size > _LARGEST:
+            return None
+        return decode(read_bytes(path), str(path))
+    except (LinkwrightError, OSError):
+        return None

@@ -1,0 +1,80 @@
+"""What a file says of xacro: its calls, the launch files that it includes, and what its open places stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from linkwright.diagnostics import Span
+from linkwright.packages.readers.xacro_calls.texts import Choice, Open, Text
+
+_LAUNCH = "launch:"
+
+
+@dataclass(frozen=True, slots=True)
+class XacroCall:
+    """A description that is expanded.
+
+    Attributes:
+        path: the file.
+        arguments: name -> value.
+        span: where it is written.
+        is_command: whether it is a command line, in which quotes are taken away.
+    """
+
+    path: Text
+    arguments: Mapping[str, Text]
+    span: Span
+    is_command: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Inclusion:
+    """A launch file that another includes.
+
+    Attributes:
+        path: the file.
+        arguments: name -> value of the launch arguments that it is given.
+    """
+
+    path: Text
+    arguments: Mapping[str, Text]
+
+
+@dataclass(slots=True)
+class CallingFile:
+    """What one file says.
+
+    Attributes:
+        path: the file.
+        calls: the calls of xacro in it.
+        inclusions: the launch files that it includes.
+        choices: name -> what stands in open places.
+    """
+
+    path: str
+    calls: list[XacroCall] = field(default_factory=list)
+    inclusions: list[Inclusion] = field(default_factory=list)
+    choices: dict[str, Choice] = field(default_factory=dict)
+
+    def declare(self, name: str, default: Text | None, others: tuple[Text, ...] = ()) -> None:
+        """Take a launch argument with its default and the other values that it may have."""
+        values = dict.fromkeys((*(() if default is None else (default,)), *others))
+        known = self.choices.get(_LAUNCH + name)
+        if values and (known is None or len(known.rows) < len(values)):
+            self.choices[_LAUNCH + name] = Choice(tuple((value,) for value in values))
+
+
+def launch_argument(name: str) -> Open:
+    """The place where a launch argument stands."""
+    return Open(_LAUNCH + name)
+
+
+def launch_choice(name: str) -> str:
+    """The name of the choice that a launch argument is."""
+    return _LAUNCH + name
+
+
+def launch_names(choices: Mapping[str, Choice]) -> dict[str, str]:
+    """The launch arguments among choices: name of the choice -> name of the argument."""
+    return {name: name.removeprefix(_LAUNCH) for name in choices if name.startswith(_LAUNCH)}

@@ -1,0 +1,63 @@
+"""Calls of xacro in ``CMakeLists.txt``: the macros of the package xacro, and commands that run the program."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.cmake_language import CMakeProgram, Command, within_package
+from linkwright.packages.readers.xacro_calls.call import CallingFile, XacroCall
+from linkwright.packages.readers.xacro_calls.command_line import xacro_command
+from linkwright.packages.readers.xacro_calls.texts import Text, joined, literal
+
+_MACROS = frozenset({"xacro_add_xacro_file", "xacro_add_files"})
+_RUNNING = frozenset({"add_custom_command", "add_custom_target", "execute_process"})
+_KEYWORDS = frozenset({"INORDER", "FORMAT", "REMAP", "INSTALL", "DESTINATION", "OUTPUT", "TARGET", "DEPENDS"})
+
+
+def read_cmake_calls(source: SourceText, package: Path) -> CallingFile:
+    """What a ``CMakeLists.txt`` says of xacro.
+
+    Args:
+        source: its text.
+        package: the folder of the package.
+    """
+    file = CallingFile(source.name)
+    for command in CMakeProgram(package).run(source):
+        if command.name in _MACROS or command.name in _RUNNING:
+            for path, arguments in _calls(command, package):
+                first = command.arguments[0]
+                file.calls.append(XacroCall(path, arguments, first.source.span(first.start, first.end)))
+    return file
+
+
+def _calls(command: Command, package: Path) -> Iterator[tuple[Text, dict[str, Text]]]:
+    if command.name in _MACROS:
+        arguments: dict[str, Text] = {}
+        files: list[str] = []
+        keyword = ""
+        for word in command.words:
+            keyword = word if word in _KEYWORDS else keyword
+            name, sign, value = word.partition(":=")
+            if sign:
+                arguments[name] = literal(value)
+            elif not keyword:
+                files.append(word)
+        files = files[:1] if command.name == "xacro_add_xacro_file" else files
+        for each in files:
+            yield literal(_path(each, command, package)), arguments
+        return
+    words = command.words
+    if "COMMAND" in words:
+        line = words[words.index("COMMAND") + 1 :]
+        found = xacro_command(joined(literal(f"{_path(word, command, package)} ") for word in line))
+        if found is not None:
+            yield found
+
+
+def _path(word: str, command: Command, package: Path) -> str:
+    """A word with what stands for the package's folder filled in."""
+    if not word.endswith((".xacro", ".urdf")):
+        return word
+    return str(package / within_package(word, command.folder))

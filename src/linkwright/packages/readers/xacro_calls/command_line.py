@@ -1,0 +1,90 @@
+"""Command lines that call xacro."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from linkwright.packages.readers.xacro_calls.texts import Open, Share, Text, joined, literal
+
+_PROGRAM = re.compile(r"(^|/)xacro(\.py)?$")
+_NAME = re.compile(r"[A-Za-z_][\w.-]*:=")
+_END = re.compile(r"^(\d?>.*|[|;]|&&)$")
+_WITH_VALUE = frozenset({"-o", "--output"})
+
+
+def xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
+    """The file and the arguments of a command line that calls xacro; None for any other."""
+    words = list(_words(line))
+    start = next((at for at, word in enumerate(words) if _is_program(word)), None)
+    if start is None:
+        return None
+    path: Text | None = None
+    arguments: dict[str, Text] = {}
+    rest = iter(words[start + 1 :])
+    for word in rest:
+        first = word[0] if word and isinstance(word[0], str) else ""
+        if _END.match(first):
+            break
+        if first in _WITH_VALUE:
+            next(rest, None)
+        elif _NAME.match(first):
+            name, _, value = first.partition(":=")
+            arguments[name] = _unquoted((*literal(value), *word[1:]))
+        elif word and not first.startswith("-") and path is None and not _is_program(word):
+            path = _unquoted(word)
+    return None if path is None else (path, arguments)
+
+
+def _is_program(word: Text) -> bool:
+    """Whether a word is the program: ``xacro``, or a path to it."""
+    return bool(word) and isinstance(word[-1], str) and _PROGRAM.search(word[-1]) is not None and len(word) <= 2
+
+
+def _words(line: Text) -> Iterator[Text]:
+    """The words of a command line; quotes hold blanks together, and stay."""
+    word: list[Text] = []
+    quote = ""
+    for piece in line:
+        if not isinstance(piece, str):
+            word.append((piece,))
+            continue
+        start = 0
+        for at, letter in enumerate(piece):
+            if quote:
+                quote = "" if letter == quote else quote
+            elif letter in "\"'":
+                quote = letter
+            elif letter.isspace():
+                word.append(literal(piece[start:at]))
+                start = at + 1
+                if any(word):
+                    yield _joined(word)
+                word = []
+        word.append(literal(piece[start:]))
+    if any(word):
+        yield _joined(word)
+
+
+def _joined(parts: Iterable[Text]) -> Text:
+    """Texts one behind another, in which strings that touch are one."""
+    found: list[str | Share | Open] = []
+    for piece in joined(parts):
+        last = found[-1] if found else None
+        if isinstance(piece, str) and isinstance(last, str):
+            found[-1] = last + piece
+        else:
+            found.append(piece)
+    return tuple(found)
+
+
+def _unquoted(word: Text) -> Text:
+    """A word without the quotes around it, or around the whole of a part, which a shell takes away."""
+    if not word:
+        return word
+    first, last = word[0], word[-1]
+    if isinstance(first, str) and isinstance(last, str) and first[:1] in ("'", '"') and last[-1:] == first[:1]:
+        if len(word) == 1:
+            return literal(first[1:-1])
+        return (*literal(first[1:]), *word[1:-1], *literal(last[:-1]))
+    return word

@@ -1,0 +1,172 @@
+"""Calls of xacro in launch files in XML, of ROS 2 and ROS 1, and in YAML."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, SourceText, Span
+from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, launch_argument
+from linkwright.packages.readers.xacro_calls.command_line import xacro_command
+from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Open, Share, Text, literal
+from linkwright.xmltree import Element, parse
+
+_WORD = re.compile(r"\s*(\S+)\s*(.*)", re.DOTALL)
+_ARGUMENTS = frozenset({"var", "arg"})
+_SHARES = frozenset({"find-pkg-share", "find"})
+
+
+def read_xml(source: SourceText) -> CallingFile:
+    """What an XML launch file says of xacro; nothing where it is no XML, or none for launch."""
+    file = CallingFile(source.name)
+    try:
+        root = parse(source.text, source.name).root
+    except LinkwrightError:
+        return file
+    if root.tag != "launch":
+        return file
+    inside = {id(child) for element in root.walk() if element.tag == "include" for child in element.elements()}
+    for element in root.walk():
+        values = {key: markup_text(value, source.name) for key, value in element.attributes.items()}
+        if element.tag in ("arg", "let") and id(element) not in inside and "name" in element.attributes:
+            default = values.get("default", values.get("value"))
+            file.declare(element.attributes["name"], default, tuple(_offered(element)))
+        elif element.tag == "include" and "file" in values:
+            given = {
+                child.attributes.get("name", ""): markup_text(child.attributes.get("value", ""), source.name)
+                for child in element.elements()
+                if child.tag in ("arg", "let")
+            }
+            file.inclusions.append(Inclusion(values["file"], given))
+        for key, value in element.attributes.items():
+            lines = [values[key]] if key == "command" else list(_commands(value, source.name))
+            _note(file, lines, element.attribute_span(key))
+    return file
+
+
+def _offered(element: Element) -> Iterator[Text]:
+    for child in element.elements():
+        if child.tag == "choice" and "value" in child.attributes:
+            yield literal(child.attributes["value"])
+
+
+def read_yaml(source: SourceText) -> CallingFile:
+    """What a YAML launch file says of xacro; nothing where it is no YAML, or none for launch."""
+    import yaml
+
+    file = CallingFile(source.name)
+    try:
+        whole = yaml.safe_load(source.text)
+    except (yaml.YAMLError, RecursionError, ValueError):
+        return file
+    if isinstance(whole, dict) and isinstance(whole.get("launch"), list):
+        for each in whole["launch"]:
+            _read_entity(each, source, file)
+    return file
+
+
+def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
+    """An action of a YAML launch file: a mapping from its tag to its attributes, or to the actions in it."""
+    for tag, value in entity.items() if isinstance(entity, dict) else ():
+        attributes = value if isinstance(value, dict) else {}
+        if tag in ("arg", "let") and "name" in attributes:
+            default = attributes.get("default", attributes.get("value"))
+            offered = tuple(literal(str(each["value"])) for each in _mappings(attributes.get("choice"), "value"))
+            written = None if default is None else markup_text(str(default), source.name)
+            file.declare(str(attributes["name"]), written, offered)
+            continue
+        if tag == "include" and "file" in attributes:
+            given = _mappings(attributes.get("arg", attributes.get("let")), "name")
+            arguments = {str(each["name"]): markup_text(str(each.get("value", "")), source.name) for each in given}
+            file.inclusions.append(Inclusion(markup_text(str(attributes["file"]), source.name), arguments))
+        for text in _strings(value):
+            _note(file, list(_commands(text, source.name)), source.span(max(source.text.find(text), 0)))
+        for inner in value if isinstance(value, list) else ():
+            _read_entity(inner, source, file)
+
+
+def _mappings(value: Any, key: str) -> list[dict[Any, Any]]:
+    """The mappings of a list that have a key."""
+    return [each for each in value if isinstance(each, dict) and key in each] if isinstance(value, list) else []
+
+
+def _strings(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    for each in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from _strings(each)
+
+
+def _note(file: CallingFile, lines: list[Text], span: Span | None) -> None:
+    for line in lines:
+        found = xacro_command(line)
+        if found is not None and span is not None:
+            file.calls.append(XacroCall(*found, span, is_command=True))
+
+
+def markup_text(text: str, file: str) -> Text:
+    """A text of a launch file with its ``$(...)`` as open places.
+
+    Args:
+        text: the text.
+        file: the launch file, for ``$(dirname)``.
+    """
+    found: list[str | Share | Open] = []
+    at = 0
+    for start, end in _substitutions(text):
+        found += literal(text[at:start])
+        found += _substituted(text[start + 2 : end - 1], file)
+        at = end
+    return (*found, *literal(text[at:]))
+
+
+def _substitutions(text: str) -> Iterator[tuple[int, int]]:
+    """Where the outermost ``$(...)`` of a text begin and end."""
+    at = text.find("$(")
+    while at >= 0:
+        depth, end = 1, at + 2
+        while end < len(text) and depth:
+            depth += (text[end] == "(") - (text[end] == ")")
+            end += 1
+        if depth:
+            return
+        yield at, end
+        at = text.find("$(", end)
+
+
+def _substituted(inside: str, file: str) -> Text:
+    match = _WORD.match(inside)
+    if match is None:
+        return (UNKNOWN,)
+    tag, rest = match[1], match[2].strip().strip("'\"")
+    if tag in _ARGUMENTS:
+        return (launch_argument(rest),)
+    if tag in _SHARES:
+        return (Share(markup_text(rest, file)),)
+    if tag == "dirname":
+        return literal(os.path.dirname(file))  # noqa: PTH120 - a part of a path as text
+    if tag == "find-exec":
+        return literal(rest)
+    if tag in ("env", "optenv"):
+        default = rest.partition(" ")[2]
+        return markup_text(default.strip(), file) if default or tag == "optenv" else (UNKNOWN,)
+    return (UNKNOWN,)
+
+
+def _commands(text: str, file: str) -> Iterator[Text]:
+    """The command lines in the ``$(command ...)`` of a text."""
+    for start, end in _substitutions(text):
+        match = _WORD.match(text[start + 2 : end - 1])
+        if match is not None and match[1] == "command":
+            yield _line(match[2].strip(), file)
+
+
+def _line(written: str, file: str) -> Text:
+    """The first argument of ``$(command ...)``, which stands in quotes unless it is one word."""
+    quote = written[:1]
+    if quote in ("'", '"'):
+        end = written.rfind(quote)
+        return markup_text(written[1 : end if end > 0 else None], file)
+    return markup_text(written, file)

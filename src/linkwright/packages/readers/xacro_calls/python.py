@@ -1,0 +1,183 @@
+"""Calls of xacro in Python: launch files, tests, and other programs."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+
+from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall
+from linkwright.packages.readers.xacro_calls.command_line import xacro_command
+from linkwright.packages.readers.xacro_calls.python_scopes import Function, Scope, walk
+from linkwright.packages.readers.xacro_calls.python_texts import Entries, Items, PythonTexts, Value
+from linkwright.packages.readers.xacro_calls.texts import Selection, Text, joined, resolve
+
+_ENDINGS = (".xacro", ".urdf")
+_WITHOUT_ARGUMENTS = frozenset({"process_file", "process_doc", "process", "load_xacro", "Xacro"})
+_BUILDER = "MoveItConfigsBuilder"
+
+
+def read_python(source: SourceText) -> CallingFile:
+    """What a Python file says of xacro; nothing where it is no Python."""
+    file = CallingFile(source.name)
+    try:
+        python = PythonFile(source)
+        _Reader(python, file).read()
+    except (SyntaxError, ValueError, RecursionError):
+        return CallingFile(source.name)
+    return file
+
+
+class _Reader:
+    def __init__(self, python: PythonFile, file: CallingFile) -> None:
+        self._python = python
+        self._file = file
+        self._nodes = walk(python.tree)
+        functions = {node.name for node, _ in self._nodes if isinstance(node, Function)}
+        calls: dict[str, list[tuple[ast.Call, Scope]]] = {}
+        for node, scope in self._nodes:
+            if isinstance(node, ast.Call) and called_name(node) in functions:
+                calls.setdefault(called_name(node), []).append((node, scope))
+        self._texts = PythonTexts(file, calls)
+        self._told: set[ast.AST] = set()
+
+    def read(self) -> None:
+        """Collect what the file says."""
+        for node, scope in self._nodes:
+            if isinstance(node, ast.Call) and called_name(node).endswith("DeclareLaunchArgument"):
+                self._declaration(node, scope)
+            elif isinstance(node, ast.Call) and called_name(node).endswith("Command") and node.args:
+                self._told.update(_lists_of(node.args[0], scope))  # which is no list of whole words
+        for node, scope in self._nodes:
+            if node in self._told:
+                self._told.update(ast.iter_child_nodes(node))
+            elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+                self._told.add(node.value)  # a docstring
+            elif isinstance(node, ast.Call):
+                self._call(node, scope)
+            elif isinstance(node, (ast.JoinedStr, ast.BinOp, ast.Constant, ast.List)):
+                self._command(node, scope)
+
+    def _declaration(self, node: ast.Call, scope: Scope) -> None:
+        name = self._texts.text(node.args[0] if node.args else argument_of(node, "name"), scope)
+        default, choices = argument_of(node, "default_value"), argument_of(node, "choices")
+        others = self._texts.value(choices, scope) if choices is not None else Items(())
+        if len(name) == 1 and isinstance(name[0], str):
+            values = (
+                tuple(each for each in others.values if isinstance(each, tuple)) if isinstance(others, Items) else ()
+            )
+            self._file.declare(name[0], None if default is None else self._texts.text(default, scope), values)
+
+    def _call(self, node: ast.Call, scope: Scope) -> None:
+        name = called_name(node).rpartition(".")[2]
+        if name == "Command":
+            written = node.args[0] if node.args else argument_of(node, "command")
+            self._note(xacro_command(self._texts.text(written, scope)), node, is_command=True)
+            self._told.update(ast.iter_child_nodes(node))
+        elif name == "IncludeLaunchDescription":
+            self._inclusion(node, scope)
+        elif name == "robot_description" and isinstance(node.func, ast.Attribute):
+            self._of_builder(node, scope)
+        else:
+            self._expansion(node, name, scope)
+
+    def _command(self, node: ast.JoinedStr | ast.BinOp | ast.Constant | ast.List, scope: Scope) -> None:
+        """A text, or the words of a list, that may be a command line."""
+        value = self._texts.value(node, scope)
+        if isinstance(value, Items):
+            words = [each for each in value.values if isinstance(each, tuple)]
+            line = joined((*word, " ") for word in words) if len(words) == len(value.values) else ()
+        else:
+            line = value if isinstance(value, tuple) else ()
+        if any(isinstance(piece, str) and "xacro" in piece for piece in line):
+            self._note(xacro_command(line), node, is_command=True)
+        if not isinstance(node, ast.List):
+            self._told.update(ast.iter_child_nodes(node))
+
+    def _expansion(self, node: ast.Call, name: str, scope: Scope) -> None:
+        """Any function that is given a description and a mapping expands the one with the other."""
+        paths: list[Text] = []
+        mapping: Mapping[str, Value] | None = None
+        for written in (*node.args, *(each.value for each in node.keywords)):
+            value = self._texts.value(written, scope)
+            if isinstance(value, tuple) and self._is_description(value):
+                paths.append(value)
+            elif isinstance(value, Entries) and mapping is None:
+                mapping = value.values
+        if paths and (mapping is not None or name in _WITHOUT_ARGUMENTS):
+            self._note((paths[0], dict(_texts_of(mapping or {}))), node)
+
+    def _of_builder(self, node: ast.Call, scope: Scope) -> None:
+        """``MoveItConfigsBuilder(...).robot_description(...)``."""
+        builder = next((each for each in ast.walk(node.func) if _is_builder(each)), None)
+        if not isinstance(builder, ast.Call):
+            return
+        robot = self._texts.text(builder.args[0] if builder.args else argument_of(builder, "robot_name"), scope)
+        package = argument_of(builder, "package_name")
+        written = argument_of(node, "file_path") or (node.args[0] if node.args else None)
+        file = (
+            self._texts.text(written, scope) if written is not None else joined((("config/",), robot, (".urdf.xacro",)))
+        )
+        folder = self._texts.text(package, scope) if package is not None else (*robot, "_moveit_config")
+        mappings = self._texts.value(
+            argument_of(node, "mappings") or (node.args[1] if len(node.args) > 1 else None), scope
+        )
+        arguments = dict(_texts_of(mappings.values)) if isinstance(mappings, Entries) else {}
+        self._note((_below_share(folder, file), arguments), node)
+
+    def _inclusion(self, node: ast.Call, scope: Scope) -> None:
+        source = node.args[0] if node.args else argument_of(node, "launch_description_source")
+        if isinstance(source, ast.Call) and called_name(source).endswith("LaunchDescriptionSource"):
+            source = source.args[0] if source.args else argument_of(source, "launch_file_path")
+        given = self._texts.value(argument_of(node, "launch_arguments"), scope)
+        arguments: dict[str, Text] = {}
+        if isinstance(given, Entries):
+            arguments = dict(_texts_of(given.values))
+        elif isinstance(given, Items):
+            pairs = [each.values for each in given.values if isinstance(each, Items) and len(each.values) == 2]
+            arguments = dict(
+                _texts_of(
+                    {resolve(key, {}, Selection()) or "": value for key, value in pairs if isinstance(key, tuple)}
+                )
+            )
+        self._file.inclusions.append(Inclusion(self._texts.text(source, scope), arguments))
+
+    def _is_description(self, path: Text) -> bool:
+        text = resolve(path, self._file.choices, Selection())
+        if text is None:
+            text = path[-1] if path and isinstance(path[-1], str) else ""
+        return text.endswith(_ENDINGS)
+
+    def _note(self, found: tuple[Text, dict[str, Text]] | None, node: ast.expr, *, is_command: bool = False) -> None:
+        if found is not None:
+            self._file.calls.append(XacroCall(*found, self._python.span(node), is_command))
+
+
+def _lists_of(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
+    """The list that is the value of a name."""
+    found = scope.find(node.id) if isinstance(node, ast.Name) else None
+    yield from (each.value for each in (found[1] if found else ()) if each.value is not None)
+
+
+def _is_builder(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] == _BUILDER
+
+
+def _texts_of(entries: Mapping[str, Value]) -> Iterator[tuple[str, Text]]:
+    for name, value in entries.items():
+        yield (
+            name,
+            value
+            if isinstance(value, tuple)
+            else joined(each for each in getattr(value, "values", ()) if isinstance(each, tuple)),
+        )
+
+
+def _below_share(package: Text, file: Text) -> Text:
+    from linkwright.packages.readers.xacro_calls.texts import Share, joined_path
+
+    first = file[0] if file else None
+    if isinstance(first, Share) or (isinstance(first, str) and first.startswith("/")):
+        return file
+    return joined_path([(Share(package),), file])

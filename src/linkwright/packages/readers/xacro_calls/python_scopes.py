@@ -1,0 +1,110 @@
+"""What the names of a Python file are bound to, function by function."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """One place where a name gets a value.
+
+    Attributes:
+        value: the expression; None where there is none that could be read.
+        path: which item of the value it is, for ``a, (b, c) = value``.
+        is_item: whether the name gets the items of the value one after another, as in a loop.
+        is_added: whether the value is added to the one before, as by ``+=``.
+    """
+
+    value: ast.expr | None
+    path: tuple[int, ...] = ()
+    is_item: bool = False
+    is_added: bool = False
+
+
+@dataclass(eq=False)
+class Scope:
+    """The names of a function, or of the module.
+
+    Attributes:
+        around: the scope in which it stands; None for that of the module.
+        function: the function; None for the module.
+        names: name -> where it gets a value.
+        entries: name -> the items that it gets by ``name[key] = value``, as key and value.
+    """
+
+    around: Scope | None = None
+    function: Function | None = None
+    names: dict[str, list[Binding]] = field(default_factory=dict)
+    entries: dict[str, list[tuple[ast.expr, ast.expr]]] = field(default_factory=dict)
+
+    def find(self, name: str) -> tuple[Scope, list[Binding]] | None:
+        """The innermost scope that binds a name, and where; None for a name from elsewhere."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.names:
+                return scope, scope.names[name]
+            scope = scope.around
+        return None
+
+
+def walk(tree: ast.Module) -> list[tuple[ast.AST, Scope]]:
+    """The nodes of a file, those outside first, each with the scope that it stands in; all scopes are filled."""
+    found: list[tuple[ast.AST, Scope]] = []
+    waiting: list[tuple[ast.AST, Scope]] = [(tree, Scope())]
+    while waiting:
+        node, scope = waiting.pop()
+        found.append((node, scope))
+        inner = scope
+        if isinstance(node, Function):
+            inner = Scope(scope, node)
+            for argument in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs):
+                inner.names[argument.arg] = []
+        else:
+            _bind(node, scope)
+        waiting.extend((child, inner) for child in reversed(list(ast.iter_child_nodes(node))))
+    return found
+
+
+def _bind(node: ast.AST, scope: Scope) -> None:
+    if isinstance(node, ast.Assign):
+        for target in node.targets:
+            _bind_target(target, Binding(node.value), scope)
+    elif isinstance(node, (ast.AnnAssign, ast.NamedExpr)) and node.value is not None:
+        _bind_target(node.target, Binding(node.value), scope)
+    elif isinstance(node, ast.AugAssign):
+        _bind_target(node.target, Binding(node.value, is_added=isinstance(node.op, ast.Add)), scope)
+    elif isinstance(node, (ast.For, ast.AsyncFor, ast.comprehension)):
+        _bind_target(node.target, Binding(node.iter, is_item=True), scope)
+    elif isinstance(node, ast.withitem) and node.optional_vars is not None:
+        _bind_target(node.optional_vars, Binding(node.context_expr), scope)
+
+
+def _bind_target(target: ast.expr, binding: Binding, scope: Scope) -> None:
+    if isinstance(target, ast.Name):
+        scope.names.setdefault(target.id, []).append(binding)
+    elif isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name) and binding.value is not None:
+        scope.entries.setdefault(target.value.id, []).append((target.slice, binding.value))
+    elif isinstance(target, (ast.Tuple, ast.List)):
+        for index, part in enumerate(target.elts):
+            inner = Binding(binding.value, (*binding.path, index), binding.is_item, binding.is_added)
+            _bind_target(part, inner, scope)
+
+
+def parameters(function: Function) -> list[str]:
+    """The names of a function's parameters that can be given by position."""
+    return [argument.arg for argument in (*function.args.posonlyargs, *function.args.args)]
+
+
+def defaults(function: Function) -> Iterator[tuple[str, ast.expr]]:
+    """The parameters of a function that have a default, with it."""
+    names = parameters(function)
+    given = function.args.defaults
+    yield from zip(names[len(names) - len(given) :], given, strict=True)
+    for argument, default in zip(function.args.kwonlyargs, function.args.kw_defaults, strict=True):
+        if default is not None:
+            yield argument.arg, default

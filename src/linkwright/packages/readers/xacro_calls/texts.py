@@ -1,0 +1,173 @@
+"""Texts with open places, as launch files put them together, and what may stand in these places."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations, islice
+from typing import Union
+
+_DEEPEST = 12
+_MOST_PATHS = 64
+MOST_SETS = 24
+"""Of more sets of values than these, the others are left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """The share folder of a package.
+
+    Attributes:
+        package: its name, which may have open places itself.
+    """
+
+    package: Text
+
+
+@dataclass(frozen=True, slots=True)
+class Open:
+    """A place of a text that is filled when the program runs.
+
+    Attributes:
+        choice: the name of the `Choice` that decides.
+        column: which item of the row that is chosen.
+    """
+
+    choice: str
+    column: int = 0
+
+
+Text = tuple[Union[str, Share, Open], ...]  # noqa: UP007 - Python 3.10 cannot join a name that is not yet there
+UNKNOWN = Open("")
+"""A place of which nothing is known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What may stand in open places that are filled together.
+
+    Attributes:
+        rows: what is chosen from; the first is the default.
+        is_certain: whether each row occurs whatever is chosen elsewhere. The branches of an `if` may belong together.
+    """
+
+    rows: tuple[tuple[Text, ...], ...]
+    is_certain: bool = True
+
+
+@dataclass(slots=True)
+class Selection:
+    """Which rows are taken.
+
+    Attributes:
+        rows: choice -> index of its row; the first where it is not named.
+        given: choice -> the text for its first place, whatever its rows are.
+    """
+
+    rows: Mapping[str, int] = field(default_factory=dict)
+    given: Mapping[str, str] = field(default_factory=dict)
+
+
+def literal(text: str) -> Text:
+    """A text without open places."""
+    return (text,) if text else ()
+
+
+def joined(parts: Iterable[Text]) -> Text:
+    """Texts one behind another."""
+    return tuple(piece for part in parts for piece in part)
+
+
+def joined_path(parts: Sequence[Text]) -> Text:
+    """Texts as the parts of a path."""
+    path: Text = ()
+    for part in parts:
+        if path and part and not (isinstance(path[-1], str) and path[-1].endswith("/")):
+            path = (*path, "/")
+        path = (*path, *part)
+    return path
+
+
+def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, depth: int = 0) -> str | None:
+    """The text with its places filled, or None where one stays open; a share folder is written `share_mark`."""
+    if depth > _DEEPEST:
+        return None
+    found: list[str] = []
+    for piece in text:
+        if isinstance(piece, str):
+            found.append(piece)
+            continue
+        inner = piece.package if isinstance(piece, Share) else _chosen(piece, choices, selection)
+        value = inner if isinstance(inner, str) else inner and resolve(inner, choices, selection, depth + 1)
+        if value is None and inner != ():
+            return None
+        found.append(share_mark(value or "") if isinstance(piece, Share) else value or "")
+    return "".join(found)
+
+
+def share_mark(package: str) -> str:
+    """How a share folder stands in a text that `resolve` returns."""
+    return f"\0{package}\0"
+
+
+def split_mark(path: str) -> tuple[str | None, str]:
+    """The package whose share folder a resolved path begins with, or None, and what follows."""
+    if not path.startswith("\0"):
+        return None, path
+    package, _, rest = path[1:].partition("\0")
+    return package, rest
+
+
+def _chosen(place: Open, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
+    if place.choice in selection.given:
+        return selection.given[place.choice]
+    choice = choices.get(place.choice)
+    if choice is None or not choice.rows:
+        return None
+    row = choice.rows[min(selection.rows.get(place.choice, 0), len(choice.rows) - 1)]
+    return row[place.column] if place.column < len(row) else None
+
+
+def choices_in(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> list[str]:
+    """The choices that a text depends on and that are not given, each once."""
+    found: dict[str, None] = {}
+    waiting: list[Text] = [text]
+    while waiting:
+        for piece in waiting.pop():
+            if isinstance(piece, Share):
+                waiting.append(piece.package)
+            elif isinstance(piece, Open) and piece.choice not in found and piece.choice not in given:
+                choice = choices.get(piece.choice)
+                if choice is not None:
+                    found[piece.choice] = None
+                    waiting += [text for row in choice.rows for text in row]
+    return list(found)
+
+
+def selections(text: Text, choices: Mapping[str, Choice], given: Mapping[str, str]) -> Iterator[Selection]:
+    """Every way to fill the places of a text."""
+    combined: list[dict[str, int]] = [{}]
+    for name in choices_in(text, choices, given):
+        rows = range(len(choices[name].rows) or 1)
+        combined = [{**each, name: row} for each in combined for row in rows][:_MOST_PATHS]
+    return (Selection(rows, given) for rows in combined)
+
+
+def variations(
+    texts: Iterable[Text], choices: Mapping[str, Choice], start: Selection
+) -> Iterator[tuple[Selection, bool]]:
+    """Ways to fill the places of several texts, and whether each is known to occur.
+
+    First every row of every choice occurs, one choice at a time, then come pairs of rows, of which nobody knows whether
+    they are meant to go together. Every combination would be too many.
+    """
+    names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.given))
+    free = [name for name in names if name not in start.rows and len(choices[name].rows) > 1]
+    certain = all(choices[name].is_certain for name in free)
+    yield start, certain
+    others = [(name, row) for name in free for row in range(1, len(choices[name].rows))]
+    for name, row in others[:MOST_SETS]:
+        yield Selection({**start.rows, name: row}, start.given), certain
+    pairs = ((one, other) for one, other in combinations(others, 2) if one[0] != other[0])
+    for pair in islice(pairs, MOST_SETS):
+        yield Selection({**start.rows, **dict(pair)}, start.given), False

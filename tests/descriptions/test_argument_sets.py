@@ -1,0 +1,262 @@
+"""The values that a workspace gives to the arguments of a description."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.descriptions.argument_sets import ArgumentSet, argument_sets
+
+ROBOT = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><link name="$(arg prefix)base"/></robot>'
+MANIFEST = "<package format='3'><name>{name}</name><exec_depend>{needs}</exec_depend></package>"
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """A workspace with the package ``arm``, whose robot takes arguments, and ``user``, which depends on it."""
+    for name, needs in (("arm", "xacro"), ("user", "arm")):
+        folder = tmp_path / "src" / name
+        folder.mkdir(parents=True)
+        (folder / "package.xml").write_text(MANIFEST.format(name=name, needs=needs))
+    robot = tmp_path / "src/arm/urdf/arm.urdf.xacro"
+    robot.parent.mkdir()
+    robot.write_text(ROBOT)
+    return tmp_path / "src"
+
+
+def sets(workspace: Path, file: str, text: str) -> list[ArgumentSet]:
+    """The sets that the robot of the workspace is given by one file."""
+    path = workspace / file
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    return list(argument_sets(workspace / "arm/urdf/arm.urdf.xacro"))
+
+
+def values(found: list[ArgumentSet]) -> list[dict[str, str]]:
+    """The values of the sets that are known to occur."""
+    return [dict(each.values) for each in found if each.is_complete]
+
+
+HEAD = """
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.substitutions import Command, FindExecutable, LaunchConfiguration, PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+"""
+COMMAND = """
+    Command([
+        PathJoinSubstitution([FindExecutable(name='xacro')]), ' ',
+        PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro']),
+        ' ', 'name:=robot', ' prefix:=', LaunchConfiguration('prefix'),
+    ])
+"""
+
+
+def launch_file(of_argument: str = "") -> str:
+    """A launch file that hands its argument ``prefix`` to the robot."""
+    declared = f"DeclareLaunchArgument('prefix', {of_argument})"
+    return f"{HEAD}\ndef generate_launch_description():\n    {declared}\n{COMMAND}"
+
+
+def test_a_command_with_the_default_of_a_launch_argument(workspace: Path) -> None:
+    text = launch_file("default_value='a_'")
+    assert values(sets(workspace, "arm/launch/view.launch.py", text)) == [{"name": "robot", "prefix": "a_"}]
+
+
+def test_each_choice_of_a_launch_argument_is_a_set(workspace: Path) -> None:
+    text = launch_file("choices=['a_', 'b_']")
+    found = sets(workspace, "arm/launch/view.launch.py", text)
+    assert [each["prefix"] for each in values(found)] == ["a_", "b_"]
+    assert found[1].varied == ("prefix",)
+    assert found[0].span is not None
+    assert found[0].span.file.endswith("view.launch.py")
+
+
+def test_a_launch_argument_without_values_stays_open(workspace: Path) -> None:
+    text = launch_file()
+    (found,) = sets(workspace, "arm/launch/view.launch.py", text)
+    assert found.open == ("prefix",)
+    assert not found.is_complete
+
+
+def test_a_package_that_depends_on_it_gives_values(workspace: Path) -> None:
+    text = launch_file("default_value='u_'")
+    assert values(sets(workspace, "user/launch/user.launch.py", text)) == [{"name": "robot", "prefix": "u_"}]
+
+
+def test_a_launch_file_that_includes_another_gives_its_arguments(workspace: Path) -> None:
+    inner = launch_file("default_value='a_'")
+    (workspace / "arm/launch").mkdir()
+    (workspace / "arm/launch/inner.launch.py").write_text(inner)
+    outer = f"""{HEAD}
+def generate_launch_description():
+    return LaunchDescription([IncludeLaunchDescription(
+        PathJoinSubstitution([FindPackageShare('arm'), 'launch', 'inner.launch.py']),
+        launch_arguments={{'prefix': 'outer_'}}.items(),
+    )])
+"""
+    found = values(sets(workspace, "user/launch/outer.launch.py", outer))
+    assert [each["prefix"] for each in found] == ["a_", "outer_"]
+
+
+def test_process_file_with_mappings_in_a_parametrized_test(workspace: Path) -> None:
+    text = """
+import os, pytest, xacro
+from ament_index_python.packages import get_package_share_directory
+
+@pytest.mark.parametrize('prefix', ['a_', 'b_'])
+@pytest.mark.parametrize('sim, gripper', [('true', 'none'), ('false', 'big')])
+def test_expands(prefix, sim, gripper):
+    path = os.path.join(get_package_share_directory('arm'), 'urdf', 'arm.urdf.xacro')
+    xacro.process_file(path, mappings={'prefix': prefix, 'sim': sim, 'gripper': gripper})
+"""
+    assert values(sets(workspace, "arm/test/test_arm.py", text)) == [
+        {"prefix": "a_", "sim": "true", "gripper": "none"},
+        {"prefix": "b_", "sim": "true", "gripper": "none"},
+        {"prefix": "a_", "sim": "false", "gripper": "big"},
+    ]
+
+
+def test_a_loop_over_combinations(workspace: Path) -> None:
+    text = """
+import itertools, xacro
+from ament_index_python.packages import get_package_share_path
+
+def test_expands():
+    prefixes = ['a_', 'b_']
+    for combination in list(itertools.product(prefixes, ['1', '2'])):
+        prefix, dof = combination
+        path = get_package_share_path('arm') / 'urdf' / 'arm.urdf.xacro'
+        xacro.process_file(path, mappings=dict(prefix=prefix, dof=dof))
+"""
+    found = values(sets(workspace, "arm/test/test_arm.py", text))
+    assert found == [{"prefix": "a_", "dof": "1"}, {"prefix": "b_", "dof": "1"}, {"prefix": "a_", "dof": "2"}]
+
+
+def test_a_shell_command_in_an_f_string(workspace: Path) -> None:
+    text = """
+import os, shutil, subprocess
+from ament_index_python.packages import get_package_share_directory
+
+def test_expands():
+    path = os.path.join(get_package_share_directory("arm"), "urdf", "arm.urdf.xacro")
+    command = (f"{shutil.which('xacro')}" f" {path}" f" prefix:=a_" f" > /tmp/out.urdf")
+    subprocess.run(command, shell=True)
+"""
+    assert values(sets(workspace, "arm/test/test_arm.py", text)) == [{"prefix": "a_"}]
+
+
+def test_values_that_ifs_choose_are_not_known_to_go_together(workspace: Path) -> None:
+    text = """
+import os, xacro
+from ament_index_python.packages import get_package_share_directory
+
+def generate_launch_description():
+    one = 'false'
+    if input('which? ') == '1':
+        one = 'true'
+    doc = xacro.parse(open(os.path.join(get_package_share_directory('arm'), 'urdf/arm.urdf.xacro')))
+    xacro.process_doc(doc, mappings={'one': one})
+"""
+    found = sets(workspace, "arm/launch/view.launch.py", text)
+    assert [dict(each.values) for each in found] == [{"one": "false"}, {"one": "true"}]
+    assert not any(each.is_complete for each in found)
+
+
+def test_the_builder_of_moveit(workspace: Path) -> None:
+    text = """
+from moveit_configs_utils import MoveItConfigsBuilder
+
+def generate_launch_description():
+    config = (
+        MoveItConfigsBuilder('arm', package_name='arm')
+        .robot_description(file_path='urdf/arm.urdf.xacro', mappings={'prefix': 'm_'})
+        .to_moveit_configs()
+    )
+"""
+    assert values(sets(workspace, "user/launch/move.launch.py", text)) == [{"prefix": "m_"}]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (
+            "view.launch.xml",
+            """<launch><arg name="prefix" default="x_"/><node pkg="p" exec="e"><param name="d"
+            value="$(command 'xacro $(find-pkg-share arm)/urdf/arm.urdf.xacro prefix:=$(var prefix)')"/>
+            </node></launch>""",
+        ),
+        (
+            "view.launch",
+            """<launch><arg name="prefix" default="x_"/><param name="robot_description"
+            command="$(find xacro)/xacro --inorder '$(find arm)/urdf/arm.urdf.xacro' prefix:=$(arg prefix)"/>
+            </launch>""",
+        ),
+        (
+            "view.launch.yaml",
+            """
+launch:
+  - arg: {name: prefix, default: x_}
+  - node:
+      pkg: p
+      exec: e
+      param:
+        - name: robot_description
+          value: "$(command 'xacro $(find-pkg-share arm)/urdf/arm.urdf.xacro prefix:=$(var prefix)')"
+""",
+        ),
+    ],
+)
+def test_launch_files_in_markup(workspace: Path, name: str, text: str) -> None:
+    assert values(sets(workspace, f"arm/launch/{name}", text)) == [{"prefix": "x_"}]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "xacro_add_xacro_file(urdf/arm.urdf.xacro REMAP prefix:=c_)",
+        "add_custom_target(a COMMAND xacro ${CMAKE_CURRENT_SOURCE_DIR}/urdf/arm.urdf.xacro prefix:=c_)",
+    ],
+)
+def test_build_files(workspace: Path, text: str) -> None:
+    assert values(sets(workspace, "arm/CMakeLists.txt", f"project(arm)\n{text}\n")) == [{"prefix": "c_"}]
+
+
+def test_a_call_without_arguments_is_an_empty_set(workspace: Path) -> None:
+    text = """
+import xacro
+from ament_index_python.packages import get_package_share_path
+
+def test_expands():
+    xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro')
+"""
+    assert values(sets(workspace, "arm/test/test_arm.py", text)) == [{}]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("arm/launch/a.launch.py", "def generate_launch_description(:"),
+        ("arm/launch/a.launch.xml", "<launch><include"),
+        ("arm/launch/a.launch.yaml", "launch: [include: {file: [1], arg: 3}, {arg: null}, 3, {xacro: [[]]}]"),
+        (
+            "arm/launch/b.launch.py",
+            "Command(Command)\nCommand(['xacro', *x, **y])\n'xacro '.format(1)\nIncludeLaunchDescription()",
+        ),
+        ("arm/CMakeLists.txt", "xacro_add_xacro_file()\nadd_custom_command(COMMAND xacro)"),
+    ],
+)
+def test_what_is_broken_gives_nothing(workspace: Path, name: str, text: str) -> None:
+    assert sets(workspace, name, text) == []
+
+
+def test_another_file_of_the_same_name_is_not_meant(workspace: Path) -> None:
+    text = """
+import xacro
+from ament_index_python.packages import get_package_share_path
+
+def test_expands():
+    xacro.process_file(get_package_share_path('user') / 'urdf/arm.urdf.xacro', mappings={'prefix': 'no_'})
+"""
+    assert sets(workspace, "user/test/test_user.py", text) == []
