@@ -1,6 +1,7 @@
 """Names inside the elements that URDF readers pass on: ``<gazebo>``, ``<transmission>``, ``<ros2_control>``.
 
-Source: the schemas of ros2_control, the ROS 1 transmission format, and what sdformat takes from ``<gazebo>``.
+Source: the schemas of ros2_control, the ROS 1 transmission format, and what sdformat and
+Gazebo Classic take from ``<gazebo>``.
 """
 
 from __future__ import annotations
@@ -41,7 +42,9 @@ CHILDREN: Mapping[str, tuple[str, ...]] = {
         "physics", "surface", "gripper", "velocity_decay", "bounce", "max_contacts", "friction", "must_be_base_link",
         "frame", "model", "audio_sink", "audio_source", "kinematic", "battery", "projector", "axis", "dynamics",
         "sensor_reference", "canonicalBody", "param", "soft_cfm", "soft_erp", "slip", "rolling_friction", "min_depth",
-        "max_vel", "dontCollapse", "include", "maxStepSize",
+        "max_vel", "dontCollapse", "include", "maxStepSize", "stopKp", "stopKd", "initialJointPosition", "parent",
+        "child", "allow_auto_disable", "particle_emitter", "gearbox_ratio", "gearbox_reference_body", "thread_pitch",
+        "axis2",
     ),
 }  # fmt: skip
 """Path from ``<robot>`` -> the elements that somebody reads there."""
@@ -61,6 +64,37 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "transmission/actuator": ("name",),
 }
 """Path from ``<robot>`` -> the attributes that somebody reads there."""
+
+OF_JOINTS = frozenset(
+    {
+        *(
+            "stopCfm",
+            "stopErp",
+            "stopKp",
+            "stopKd",
+            "fudgeFactor",
+            "cfmDamping",
+            "implicitSpringDamper",
+            "springReference",
+        ),
+        *(
+            "springStiffness",
+            "provideFeedback",
+            "preserveFixedJoint",
+            "disableFixedJointLumping",
+            "initialJointPosition",
+        ),
+    }
+)
+"""What ``<gazebo reference="...">`` says of a joint."""
+
+OF_LINKS = frozenset(
+    {
+        *("material", "mu1", "mu2", "kp", "kd", "maxVel", "minDepth", "maxContacts", "fdir1", "selfCollide", "gravity"),
+        *("turnGravityOff", "dampingFactor", "laserRetro", "visual", "collision", "inertial", "velocity_decay"),
+    }
+)
+"""What it says of a link."""
 
 INTERFACES = (
     "position", "velocity", "effort", "acceleration", "torque", "force", "current", "temperature", "voltage",

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from difflib import SequenceMatcher
-from functools import lru_cache
-
-from linkwright.diagnostics import Span, nearest
+from linkwright.diagnostics import Span
+from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.structure import EXTENSIONS, Place
 from linkwright.lint.subject import Subject
 from linkwright.schema import ElementRule
@@ -17,7 +14,6 @@ INNER_EXTENSIONS = frozenset({"contact", "sensor", "verbose", "self_collision_ch
 """Elements of other tools inside of links and joints."""
 EXTENSION_ATTRIBUTES = frozenset({"D", "K", "mu_coulomb", "mu_viscous", "type", "id", "reference_position", "unit"})
 """Attributes of other tools, such as those of Franka's ``<dynamics>``."""
-_CLOSE = 0.75
 
 _OTHER_ELEMENTS = {
     "pose": "origin",
@@ -78,13 +74,13 @@ def meant_element(rule: ElementRule, child: Element) -> str | None:
     if other in known:
         return other
     if rule is schema.ROBOT:
-        return close_name(child.tag, [*known, *EXTENSIONS])
-    return close_name(child.tag, known)
+        known = [*known, *EXTENSIONS]
+    return misspelling_of(child.tag, known)
 
 
-def is_misspelt(tag: str, meant: str) -> bool:
-    """Whether a tag is a slip of the pen for another, not the word of another format for it."""
-    return _OTHER_ELEMENTS.get(tag.casefold()) != meant
+def is_misspelt(name: str, meant: str) -> bool:
+    """Whether an element or attribute is a slip of the pen for another, not the word of another format for it."""
+    return misspelling_of(name, [meant]) is not None
 
 
 def meant_attribute(place: Place, attribute: str) -> str | None:
@@ -93,35 +89,7 @@ def meant_attribute(place: Place, attribute: str) -> str | None:
     other = _OTHER_ATTRIBUTES.get(attribute.casefold())
     if other in known:
         return other
-    near = nearest(attribute, known, limit=1)
-    return near[0] if near else None
-
-
-def close_name(name: str, known: Iterable[str]) -> str | None:
-    """The known name that a misspelt one is very near, or None; shorter differences than a word's own variants."""
-    if len(name) < 3:
-        return None
-    near = [(likeness, each) for each in known if (likeness := _likeness(name.casefold(), each)) >= _CLOSE]
-    best = max(near, key=lambda pair: pair[0], default=(0.0, name))[1]
-    return best if best != name else None
-
-
-def _likeness(folded: str, known: str) -> float:
-    """How alike a name in lower case and a known one are, from 0 to 1; 0 for less than what is close."""
-    matcher = _matcher(known)
-    matcher.set_seq1(folded)
-    # The first two are no less than the last, and found sooner.
-    if matcher.real_quick_ratio() < _CLOSE or matcher.quick_ratio() < _CLOSE:
-        return 0.0
-    return matcher.ratio()
-
-
-@lru_cache(maxsize=512)
-def _matcher(known: str) -> SequenceMatcher[str]:
-    """What compares names with a known one; what it works out about that one it keeps."""
-    matcher = SequenceMatcher[str]()
-    matcher.set_seq2(known.casefold())
-    return matcher
+    return misspelling_of(attribute, known)
 
 
 def inside(place: Place) -> str:

@@ -1,6 +1,7 @@
 """Whether ``setup.py`` and ``CMakeLists.txt`` install what the package has, and have what they install.
 
-Where a build file works out what it installs (a loop, a function), the rules about what is missing say nothing.
+Where it is not known what a build file installs (a value that only CMake knows, a command of another package), the
+rules about what is missing say nothing.
 """
 
 from __future__ import annotations
@@ -129,7 +130,7 @@ class FolderNotInstalled(PackageRule):
                 yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
 
     def _by_cmake(self, package: PackageContext, cmake: CMakeFile) -> Iterator[Diagnostic]:
-        if not cmake.is_complete or not cmake.is_ament:
+        if not cmake.is_complete or cmake.foreign or not cmake.is_ament:
             return
         for folder in shared_folders(package):
             covered = any(_covers(item.text, folder) for item in cmake.directories)

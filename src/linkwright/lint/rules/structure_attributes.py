@@ -11,6 +11,7 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.unread import (
     EXTENSION_ATTRIBUTES,
     attribute_name_span,
+    is_misspelt,
     meant_attribute,
     told_by_reader,
 )
@@ -54,7 +55,9 @@ class MisspeltAttribute(Rule):
                 place.element,
                 span=span,
                 hint=phrase("did you mean {names}?", names=quoted(meant)),
-                fix=rename_attribute(place.element, attribute, meant, safe=False),
+                fix=rename_attribute(place.element, attribute, meant, safe=False)
+                if is_misspelt(attribute, meant)
+                else None,
             )
 
 

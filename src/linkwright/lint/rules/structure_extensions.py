@@ -7,9 +7,10 @@ from collections.abc import Iterable, Iterator
 from linkwright.diagnostics import Diagnostic, phrase, quoted
 from linkwright.lint.extension_names import ATTRIBUTES, CHILDREN
 from linkwright.lint.fix import rename_attribute, rename_element
+from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.unread import attribute_name_span, close_name
+from linkwright.lint.unread import attribute_name_span
 from linkwright.xmltree import Element
 
 
@@ -41,7 +42,7 @@ class MisspeltExtension(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Every element and attribute there whose name is near a known one."""
+        """Every element and attribute there whose name is a misspelling of a known one."""
         for top in subject.elements():
             if top.tag not in CHILDREN:
                 continue
@@ -58,7 +59,7 @@ class MisspeltExtension(Rule):
                     waiting.append((child, f"{path}/{child.tag}"))
 
     def _element(self, child: Element, parent: Element, known: tuple[str, ...]) -> Iterator[Diagnostic]:
-        near = close_name(child.tag, known)
+        near = misspelling_of(child.tag, known)
         if near:
             yield self.report(
                 phrase(
@@ -74,8 +75,10 @@ class MisspeltExtension(Rule):
     def _attributes(self, element: Element, path: str) -> Iterator[Diagnostic]:
         known = ATTRIBUTES.get(path, ())
         for attribute in element.attributes:
-            near = close_name(attribute, [name for name in known if name not in element.attributes])
-            if attribute not in known and near:
+            if attribute in known:
+                continue
+            near = misspelling_of(attribute, [name for name in known if name not in element.attributes])
+            if near:
                 yield self.report(
                     phrase("'{attribute}' in <{tag}> is not read", attribute=attribute, tag=element.tag),
                     element,

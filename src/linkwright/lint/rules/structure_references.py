@@ -2,19 +2,32 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
-from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, nearest, phrase, quoted
-from linkwright.lint.extension_names import INTERFACES
+from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, phrase, quoted
+from linkwright.lint.extension_names import INTERFACES, OF_JOINTS, OF_LINKS
 from linkwright.lint.fix import replace_value
+from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.unread import close_name
 from linkwright.xmltree import Element
+
+_NUMBER = re.compile(r"\d+")
 
 
 def _names(subject: Subject, tag: str) -> set[str]:
     return {element.attributes.get("name", "") for element in subject.elements(tag)}
+
+
+def _kind_meant(gazebo: Element, name: str) -> str:
+    """Return whether a `<gazebo>` is meant for a ``link`` or a ``joint``, by what it holds and then by the name."""
+    held = {child.tag for child in gazebo.elements()}
+    if held & OF_JOINTS:
+        return "joint"
+    if held & OF_LINKS:
+        return "link"
+    return next((kind for kind in ("link", "joint") if kind in name.casefold()), "")
 
 
 def _control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
@@ -49,17 +62,20 @@ class GazeboReferenceUnknown(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every reference to nothing."""
-        known = _names(subject, "link") | _names(subject, "joint")
+        links, joints = _names(subject, "link"), _names(subject, "joint")
         for element in subject.elements("gazebo"):
             name = element.attributes.get("reference")
-            if name and name not in known:
-                near = nearest(name, known, limit=1)
+            if name and name not in links | joints:
+                kind = _kind_meant(element, name)
+                known = {"link": links, "joint": joints}.get(kind, links | joints)
+                alike = [each for each in known if _NUMBER.findall(each) == _NUMBER.findall(name)]
+                meant = misspelling_of(name, alike)
                 yield self.report(
                     phrase("<gazebo> refers to '{name}', which is neither a link nor a joint", name=name),
                     element,
                     "reference",
-                    hint=did_you_mean(name, known) or phrase("give the name of a link or joint"),
-                    fix=replace_value(element, "reference", near[0], safe=False) if near else None,
+                    hint=did_you_mean(name, alike) or phrase("give the name of a link or joint"),
+                    fix=replace_value(element, "reference", meant, safe=False) if meant else None,
                 )
 
 
@@ -133,13 +149,13 @@ class ControlJointUnknown(Rule):
         for _, joint in _control_joints(subject):
             name = joint.attributes.get("name")
             if name and name not in known:
-                near = nearest(name, known, limit=1)
+                meant = misspelling_of(name, known)
                 yield self.report(
                     phrase("<ros2_control> has joint '{name}', which the robot does not have", name=name),
                     joint,
                     "name",
                     hint=did_you_mean(name, known) or phrase('add <joint name="{name}" ...> to the robot', name=name),
-                    fix=replace_value(joint, "name", near[0], safe=False) if near else None,
+                    fix=replace_value(joint, "name", meant, safe=False) if meant else None,
                 )
 
 
@@ -175,7 +191,7 @@ class ControlInterfaceMisspelt(Rule):
                 if interface.tag not in ("command_interface", "state_interface"):
                     continue
                 name = interface.attributes.get("name", "")
-                near = close_name(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
+                near = misspelling_of(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
                 if near is not None:
                     yield self.report(
                         phrase("no controller asks for an interface '{name}'", name=name),
@@ -219,7 +235,7 @@ class ControlPluginMissing(Rule):
         """Every ros2_control without a plugin."""
         for system in subject.elements("ros2_control"):
             hardware = system.first("hardware")
-            if hardware is None and any(close_name(child.tag, ["hardware"]) for child in system.elements()):
+            if hardware is None and any(misspelling_of(child.tag, ["hardware"]) for child in system.elements()):
                 continue  # misspelt, which another rule says
             plugin = hardware.first("plugin") if hardware is not None else None
             if plugin is None or not plugin.text().strip():

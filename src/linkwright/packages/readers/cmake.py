@@ -12,6 +12,7 @@ from itertools import takewhile
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
+from linkwright.packages.readers.cmake_commands import is_followed
 from linkwright.packages.readers.cmake_conditions import matched
 from linkwright.packages.readers.cmake_language import (
     BUILD,
@@ -131,6 +132,7 @@ class CMakeFile:
         modules: the Python packages and modules that it installs, folders and files relative to the package.
         hooks: the installed files that set variables where the package is used, relative to the prefix.
         compiled: what it compiles.
+        foreign: the commands of other packages that it calls, which may install more than was read here.
         unknown: why it may install more than was read here; empty where that is all.
         is_ament: whether it is the one of an ament package.
     """
@@ -143,6 +145,7 @@ class CMakeFile:
     modules: list[str] = field(default_factory=list)
     hooks: list[str] = field(default_factory=list)
     compiled: list[str] = field(default_factory=list)
+    foreign: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
     is_ament: bool = False
     _generated: dict[str, InstalledFile] = field(default_factory=dict)
@@ -260,6 +263,8 @@ def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
 
 def _take(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
     name, given, words = command.name, command.arguments, command.words
+    if not is_followed(name):
+        file.foreign.append(name)
     if name in _COMPILED and "INTERFACE" not in words and words:
         file.compiled.append(words[0])
     if name == "project" and given:

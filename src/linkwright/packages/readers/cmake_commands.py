@@ -1,0 +1,34 @@
+"""The commands of which it is known what they install: those of CMake and of ROS' build tools.
+
+A package that is found may bring others, such as ``pal_register_modules`` of pal_module_cmake, which is nowhere to be
+read; what they install is not known here.
+"""
+
+from __future__ import annotations
+
+import re
+
+_OF_CMAKE = frozenset(
+    """
+    add_compile_definitions add_compile_options add_custom_command add_custom_target add_definitions add_dependencies
+    add_executable add_library add_link_options add_subdirectory add_test aux_source_directory block break build_command
+    build_name configure_file continue create_test_sourcelist define_property enable_language enable_testing endblock
+    exec_program execute_process export file fltk_wrap_ui get_cmake_property get_directory_property
+    get_filename_component get_property get_source_file_property get_target_property get_test_property include
+    include_directories include_external_msproject include_guard include_regular_expression install link_directories
+    link_libraries list load_cache mark_as_advanced math message option project remove_definitions return
+    separate_arguments set site_name source_group string try_compile try_run unset variable_watch
+    """.split()
+)
+_OF_FAMILIES = re.compile(
+    r"(cmake|ctest|check|find|fetchcontent|externalproject|pkg|set|get|target|qt[56]?|pybind11|protobuf|gz_find|export"
+    r"|ament|rosidl|catkin|rclcpp|pluginlib|roslint|roslaunch|generate)_\w+"
+    r"|python3?_add_\w+|moveit_package|xacro_add_files|add_(message|service|action)_files"
+    r"|add_\w*(test|gmock)\w*"
+)
+"""Commands by their beginnings; what of them installs, such as ``ament_python_install_package``, is read."""
+
+
+def is_followed(command: str) -> bool:
+    """Return whether it is known what a command, in lower case, installs."""
+    return command in _OF_CMAKE or bool(_OF_FAMILIES.fullmatch(command))

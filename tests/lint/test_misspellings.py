@@ -1,0 +1,59 @@
+"""Which names are taken for misspellings of others."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.lint.extension_names import CHILDREN
+from linkwright.lint.misspellings import misspelling_of
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("camera_lnk", "camera_link"),
+        ("baselink", "base_link"),
+        ("Base_Link", "base_link"),
+        ("lfet_wheel", "left_wheel"),
+        ("slefCollide", "selfCollide"),
+        ("positon", "position"),
+    ],
+)
+def test_a_slip_in_one_word_is_a_misspelling(written, meant):
+    assert misspelling_of(written, [meant, "something_else"]) == meant
+
+
+@pytest.mark.parametrize(
+    ("written", "other"),
+    [
+        ("wheel_2", "wheel_1"),
+        ("joint12", "joint1"),
+        ("fl_wheel", "fr_wheel"),
+        ("lwheel", "rwheel"),
+        ("wheelL", "wheelR"),
+        ("stopKp", "stopErp"),
+        ("stopKp", "stopKd"),
+        ("camera_link", "camera_joint"),
+        ("camera", "camera_link"),
+        ("left_front", "left_rear"),
+    ],
+)
+def test_a_siblings_name_is_not_a_misspelling(written, other):
+    assert misspelling_of(written, [other]) is None
+
+
+def test_between_two_names_nothing_is_chosen():
+    assert misspelling_of("weel_link", ["wheel_link", "welel_link"]) is None
+
+
+def test_two_spellings_of_one_name_are_one_name():
+    assert misspelling_of("slefCollide", ["selfCollide", "self_collide"]) == "selfCollide"
+
+
+@pytest.mark.parametrize("path", CHILDREN)
+def test_no_known_element_is_taken_for_another(path):
+    names = CHILDREN[path]
+    spellings = {name: "".join(filter(str.isalpha, name)).casefold() for name in names}
+    for name in names:
+        others = [each for each in names if spellings[each] != spellings[name]]
+        assert misspelling_of(name, others) is None
