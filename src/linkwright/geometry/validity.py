@@ -44,9 +44,17 @@ def is_positive_definite(tensor: Array) -> bool:
     return bool(relative_moments(tensor)[0] > 0)
 
 
-def is_indefinite(tensor: Array) -> bool:
-    """Whether a principal moment is negative by more than what computing it in doubles loses."""
-    return bool(relative_moments(tensor)[0] < -ROUNDING)
+def is_indefinite(tensor: Array, rounding: float = 0.0) -> bool:
+    """Return whether a principal moment is negative by more than what rounding can have made of zero.
+
+    Args:
+        tensor: in kg m2; shape (3, 3).
+        rounding: how far a principal moment may be off because the file has few digits, in kg m2; no more than
+            `TOLERANCE` of the largest entry counts.
+    """
+    largest = float(np.abs(tensor).max())
+    allowed = max(ROUNDING * largest, min(rounding, TOLERANCE * largest))
+    return bool(relative_moments(tensor)[0] * largest < -allowed)
 
 
 def triangle_excess(tensor: Array) -> float:

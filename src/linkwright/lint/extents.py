@@ -89,7 +89,18 @@ class Extents:
 
     def link_bounds(self, link: Link) -> Bounds | None:
         """The box around all shapes of a link in its frame; None without shapes, or when one cannot be measured."""
-        shapes: list[Visual | Collision] = [*link.visuals, *link.collisions]
+        return self._bounds([*link.visuals, *link.collisions])
+
+    def kinds_of_bounds(self, link: Link) -> list[Bounds]:
+        """Return the box around a link's collision shapes and the one around its visuals, as far as there are any.
+
+        A node that strays from a visual's mesh makes only one of them too large.
+        """
+        kinds: tuple[Sequence[Visual | Collision], ...] = (link.collisions, link.visuals)
+        boxes = [self._bounds(shapes) for shapes in kinds if shapes]
+        return [box for box in boxes if box is not None]
+
+    def _bounds(self, shapes: Sequence[Visual | Collision]) -> Bounds | None:
         found = [self.shape_bounds(shape) for shape in shapes]
         known = [bounds for bounds in found if bounds is not None]
         return union(known) if len(known) == len(found) else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
 from typing import TYPE_CHECKING
 
 from linkwright.urdf import Inertial
@@ -37,6 +38,26 @@ def tensor(inertial: Inertial) -> Array:
     return np.array(((i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)))
 
 
+def _rounding(inertial: Inertial) -> float:
+    """Return by how much the digits that were left out can move a principal moment, in kg m2.
+
+    Each component may be off by half of its last digit; a principal moment then moves by at most the largest sum of a
+    row of these (Weyl's inequality).
+    """
+    element = inertial.element and inertial.element.first("inertia")
+    written = {} if element is None else element.attributes
+
+    def off(name: str) -> float:
+        try:
+            exponent = Decimal(written.get(name, "0").strip()).as_tuple().exponent
+        except InvalidOperation:
+            return 0.0
+        return 0.5 * 10.0**exponent if isinstance(exponent, int) and exponent < 0 else 0.0
+
+    rows = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
+    return max(sum(map(off, row)) for row in rows)
+
+
 def flaw_of(inertial: Inertial) -> Flaw | None:
     """The first thing that is wrong with a tensor, or None."""
     from linkwright.geometry import validity
@@ -52,7 +73,7 @@ def flaw_of(inertial: Inertial) -> Flaw | None:
     if any(products):
         for name, limit in validity.excessive_products(matrix):
             return Flaw("product", name, limit)
-        if validity.is_indefinite(matrix):
+        if validity.is_indefinite(matrix, _rounding(inertial)):
             return Flaw("indefinite")
     excess = validity.triangle_excess(matrix)
     if excess > validity.TOLERANCE:

@@ -247,9 +247,7 @@ class CenterForgotten(Rule):
             body = subject.bodies.of(link.name)
             if body is None or len(body.frames) > 1:
                 continue
-            # Beyond 0.45 of an edge from the middle of the box: at its side, or outside.
-            ends = zip(bounds.center, bounds.size, strict=True)
-            if any(abs(middle) - 0.45 * size > _ALMOST_NOTHING for middle, size in ends):
+            if all(map(_lies_to_one_side, subject.extents.kinds_of_bounds(link))):
                 x, y, z = (round(part, 4) + 0.0 for part in bounds.center)
                 yield self.report(
                     phrase(
@@ -327,7 +325,8 @@ class InertiaTooSmall(Rule):
     ## Why
 
     All of the mass would have to sit in a small part of the link. More often the tensor was computed for a smaller
-    mass, or with a size in other units.
+    mass, or with a size in other units. Of the box around the collision shapes and the one around the visuals the smaller
+    counts, since a mesh for looks may reach farther than the body.
 
     ## Example
 
@@ -352,11 +351,11 @@ class InertiaTooSmall(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
         for link, inertial, _ in subject.extents.measured:
-            bounds = subject.extents.link_bounds(link)
+            boxes = subject.extents.kinds_of_bounds(link)
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
-            if bounds is None or largest <= 0:
+            if not boxes or largest <= 0:
                 continue
-            usual = _uniform(bounds, inertial.mass)
+            usual = min(_uniform(box, inertial.mass) for box in boxes)
             if largest * factor < usual and ((flaw := flaw_of(inertial)) is None or flaw.kind == "triangle"):
                 yield self.report(
                     phrase(
@@ -376,6 +375,12 @@ class InertiaTooSmall(Rule):
                     ],
                     hint=_COMPUTE,
                 )
+
+
+def _lies_to_one_side(bounds: Bounds) -> bool:
+    """Whether the origin is beyond 0.45 of an edge from the middle of a box: at its side, or outside."""
+    ends = zip(bounds.center, bounds.size, strict=True)
+    return any(abs(middle) - 0.45 * size > _ALMOST_NOTHING for middle, size in ends)
 
 
 _COMPUTE = phrase("`linkwright inertia` computes it from the link's shapes")
