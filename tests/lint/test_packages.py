@@ -23,6 +23,7 @@ def generate_launch_description():
     one = Command(["xacro", LaunchConfiguration("model")])
     two = Command([FindExecutable(name='xacro'), LaunchConfiguration('model')])
     three = get_package_share_path("my_robot") / "robot.urdf"
+    four = Node(package="rviz2", executable="rviz2")
     return {'robot_description': ParameterValue(Command(['xacro ', one]))}, two
 """
 _MANIFEST = """\
@@ -63,7 +64,7 @@ def test_fixes_of_launch_file_and_manifest(tmp_path):
         '<package format="3">\n'
         "  <name>my_robot</name>\n"
         "  <depend>xacro</depend> <!-- for the model -->\n"
-        "  <exec_depend>launch_ros</exec_depend>\n"
+        "  <exec_depend>rviz2</exec_depend>\n"
         "</package>\n"
     )
     assert not examine_package(tmp_path, settings).diagnostics

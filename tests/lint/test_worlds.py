@@ -97,6 +97,25 @@ def test_a_mesh_that_is_not_there_is_told_of_once(told, tmp_path):
     assert told(model) == []
 
 
+def test_models_and_meshes_that_are_not_there_are_one_finding_each(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    includes = "".join(f"<include>\n<uri>model://tree_{number}</uri></include>" for number in range(12))
+    mesh = '<visual name="v{0}"><geometry><mesh>\n<uri>meshes/{0}.stl</uri></mesh></geometry></visual>'
+    path = tmp_path / "w.world"
+    path.write_text(
+        f'<sdf version="1.9"><world name="w">{includes}{link(GOOD + mesh.format(1) + mesh.format(2))}</world></sdf>'
+    )
+    models, meshes = examine(path).diagnostics
+    assert (models.code, meshes.code) == ("SDF160", "SDF162")
+    assert str(models.message) == (
+        "'model://tree_0' is left out: there is no model 'tree_0' on the search path (and 11 more)"
+    )
+    assert [note.span.line for note in models.notes[:-1]] == list(range(3, 13))
+    assert str(models.notes[-1].message) == "and 1 more"
+    assert str(meshes.message).endswith("(and 1 more)")
+    assert [str(note.message).partition(" of ")[0] for note in meshes.notes] == ["'meshes/2.stl'"]
+
+
 def test_findings_go_by_the_settings(tmp_path):
     (tmp_path / "linkwright.toml").write_text('ignore = ["mass-negative", "SDF122"]\n')
     path = tmp_path / "w.world"

@@ -116,10 +116,10 @@ def _examine_world(
         return Checked(path, None, (*trouble, *error.diagnostics), None)
     said = list(described.diagnostics)
     if described.sdf is not None:
-        from linkwright.lint.worlds import check_sdf
+        from linkwright.lint.worlds import check_sdf, one_for_each_world
         from linkwright.sdf.resources import ResourceFinder
 
-        said += check_sdf(described.sdf, ResourceFinder(finder))
+        said = one_for_each_world([*said, *check_sdf(described.sdf, ResourceFinder(finder))])
     kept = [each for each in said if _is_wanted(each, settings)]
     found = in_order(_with_severities(kept, settings), str(path))
     return Checked(path, None, (*trouble, *found), None, described.sdf)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.lint.rules.inertia import NegativeMass, ZeroMass
 from linkwright.lint.rules.inertia_tensor import (
@@ -35,6 +35,9 @@ _FLAWS = {
     rule.kind: rule for rule in (NonPositiveMoment(), ExcessiveProduct(), IndefiniteInertia(), TriangleInequality())
 }
 _ADDRESSES = ("uri", "filename")
+_LEFT_OUT = frozenset({"SDF160", "SDF162"})
+"""Findings on models and meshes that are not on this machine; what is missing there is one thing to mend."""
+_MOST_NOTES = 10
 _ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
 
 
@@ -54,6 +57,28 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
         if key not in told:
             told.add(key)
             yield finding
+
+
+def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Put what a world misses into one finding for models and one for their meshes, with the others in its notes."""
+    kept: list[Diagnostic] = []
+    groups: dict[str, list[Diagnostic]] = {}
+    for each in found:
+        group = groups.setdefault(each.code, [])
+        if each.code not in _LEFT_OUT or not group:
+            kept.append(each)
+        group.append(each)
+    return [_with_others(each, groups[each.code][1:]) if each.code in _LEFT_OUT else each for each in kept]
+
+
+def _with_others(first: Diagnostic, others: list[Diagnostic]) -> Diagnostic:
+    if not others:
+        return first
+    notes = tuple(Note(each.message, each.span) for each in others[:_MOST_NOTES])
+    if len(others) > _MOST_NOTES:
+        notes += (Note(phrase("and {count} more", count=len(others) - _MOST_NOTES)),)
+    message = phrase("{message} (and {count} more)", message=first.message, count=len(others))
+    return replace(first, message=message, notes=(*first.notes, *notes))
 
 
 def _steps(sdf: Sdf) -> Iterator[Diagnostic]:

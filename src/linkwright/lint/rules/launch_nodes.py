@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note, counted, joined, nearest, phrase, quoted, quoted_names
+from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
 from linkwright.extensions import extensions
+from linkwright.lint.dependencies import brings, is_always_installed
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
@@ -49,8 +50,6 @@ WELL_KNOWN = frozenset(
     }
 )
 _PYTHON_PACKAGES = frozenset({"launch", "launch_ros", "ament_index_python", "launch_xml", "launch_yaml", "xacro"})
-_IMPLIED = {"launch": "launch_ros", "ament_index_python": "launch_ros"}
-"""Packages that come with another one."""
 
 
 class LaunchedPackageUnknown(Rule):
@@ -145,6 +144,7 @@ class UndeclaredLaunchDependency(Rule):
     ## Why
 
     rosdep installs what `package.xml` names. On a machine where nobody installed the others by hand, the launch fails.
+    Left out are the packages of every ROS installation, such as `launch_ros`, and those that declared packages bring.
 
     ## Example
 
@@ -163,6 +163,7 @@ class UndeclaredLaunchDependency(Rule):
 
     code = "LW848"
     name = "undeclared-launch-dependency"
+    severity = Severity.INFO
     scope = Scope.PACKAGE
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
@@ -175,11 +176,9 @@ class UndeclaredLaunchDependency(Rule):
         missing = {
             name: note
             for name, note in _used_packages(package).items()
-            if not manifest.declares(name) and _meant(name, package, subject) is None
+            if not (is_always_installed(name) or manifest.declares(name) or brings(manifest, name, subject.finder))
+            and _meant(name, package, subject) is None
         }
-        for name, bringer in _IMPLIED.items():
-            if name in missing and manifest.declares(bringer):
-                del missing[name]
         if not missing:
             return
         names = sorted(missing)

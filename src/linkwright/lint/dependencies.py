@@ -1,0 +1,81 @@
+"""Packages that are there without being declared: those of every ROS installation, and those that others bring."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.packages import PackageFinder
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.package_xml import Manifest
+from linkwright.xmltree import parse_file
+
+_OF_EVERY_INSTALLATION = frozenset(
+    {
+        *(
+            "ament_index_python",
+            "ament_index_cpp",
+            "launch",
+            "launch_ros",
+            "launch_xml",
+            "launch_yaml",
+            "launch_testing",
+        ),
+        *(
+            "launch_testing_ros",
+            "rclpy",
+            "rclcpp",
+            "rclcpp_action",
+            "rclcpp_components",
+            "rclcpp_lifecycle",
+            "ros2launch",
+        ),
+        *("lifecycle_msgs", "rcl_interfaces", "std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "rosbag2"),
+        *("robot_state_publisher", "tf2", "tf2_ros", "tf2_py", "tf2_msgs", "kdl_parser", "urdf", "rosbag2_transport"),
+    }
+)
+"""Packages of the variant `ros_base` (REP 2001), the least that is installed with names of its own."""
+_FAMILIES = (
+    ("navigation2", "nav2_"),
+    ("nav2_bringup", "nav2_"),
+    ("moveit", "moveit_"),
+    ("ros_gz", "ros_gz_"),
+    ("gazebo_ros_pkgs", "gazebo_"),
+    ("joint_state_publisher_gui", "joint_state_publisher"),
+    ("ros2_controllers", "controller_manager"),
+)
+"""Packages that bring all those whose names begin so."""
+_MOST = 200
+
+
+def is_always_installed(package: str) -> bool:
+    """Return whether each installation of ROS 2 has a package."""
+    return package in _OF_EVERY_INSTALLATION
+
+
+def brings(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
+    """Return whether what a manifest declares depends on a package, as far as those packages are here to be read.
+
+    Args:
+        manifest: of the package that is checked.
+        package: the name of the other package.
+        finder: where packages are.
+    """
+    waiting, met = [manifest], {manifest.name}
+    while waiting and len(met) < _MOST:
+        for dependency in waiting.pop().dependencies:
+            if dependency.tag in ("test_depend", "doc_depend") or dependency.name in met:
+                continue
+            met.add(dependency.name)
+            if any(dependency.name == one and package.startswith(family) for one, family in _FAMILIES):
+                return True
+            read = _manifest_of(dependency.name, finder)
+            if read is not None:
+                waiting.append(read)
+    return package in met
+
+
+def _manifest_of(package: str, finder: PackageFinder) -> Manifest | None:
+    folder = finder.find(package)
+    try:
+        return None if folder is None else Manifest(parse_file(folder / MANIFEST))
+    except LinkwrightError:
+        return None
