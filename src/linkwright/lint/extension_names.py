@@ -67,23 +67,9 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
 
 OF_JOINTS = frozenset(
     {
-        *(
-            "stopCfm",
-            "stopErp",
-            "stopKp",
-            "stopKd",
-            "fudgeFactor",
-            "cfmDamping",
-            "implicitSpringDamper",
-            "springReference",
-        ),
-        *(
-            "springStiffness",
-            "provideFeedback",
-            "preserveFixedJoint",
-            "disableFixedJointLumping",
-            "initialJointPosition",
-        ),
+        *("stopCfm", "stopErp", "stopKp", "stopKd", "fudgeFactor", "cfmDamping", "implicitSpringDamper"),
+        *("springReference", "springStiffness", "provideFeedback", "preserveFixedJoint", "disableFixedJointLumping"),
+        "initialJointPosition",
     }
 )
 """What ``<gazebo reference="...">`` says of a joint."""

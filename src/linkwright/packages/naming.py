@@ -22,23 +22,19 @@ _EMAIL = re.compile(r"[\w%+-]+(\.[\w%+-]+)*@[\w%-]+(\.[\w%-]+)*\.[A-Za-z]{2,}", 
 def check_package_name(name: str) -> list[Diagnostic]:
     """The findings on the name of a package; errors first (PKG201), or advice (PKG202)."""
     if not _IDENTIFIER.fullmatch(name):
-        problem = _broken_rule(name)
-        hint = _suggestion(name)
-        return [
-            Diagnostic(
-                "PKG201",
-                phrase("'{name}' cannot be the name of a package: {problem}", name=name, problem=problem),
-                hint=hint,
-            )
-        ]
+        message = phrase("'{name}' cannot be the name of a package: {problem}", name=name, problem=_broken_rule(name))
+        return [Diagnostic("PKG201", message, hint=_suggestion(name))]
     if keyword.iskeyword(name):
         message = phrase("'{name}' cannot be the name of a package: it is a word of the Python language", name=name)
         return [Diagnostic("PKG201", message, hint=phrase("did you mean {names}?", names=quoted(f"{name}_robot")))]
-    advice = _departure(name)
-    if advice is None:
-        return []
+    return [] if _departure(name) is None else [departure_from_rep(name)]
+
+
+def departure_from_rep(name: str) -> Diagnostic:
+    """Return the advice (PKG202) on a name that does not follow REP 144, with the rule that it breaks."""
+    advice = _departure(name) or _broken_rule(name)
     message = phrase("package name '{name}' does not follow REP 144: {advice}", name=name, advice=advice)
-    return [Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggestion(name))]
+    return Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggestion(name))
 
 
 def check_member_name(name: str, what: str) -> list[Diagnostic]:
@@ -81,7 +77,7 @@ def is_email(address: str) -> bool:
     return _EMAIL.fullmatch(address) is not None
 
 
-def _broken_rule(name: str) -> str:
+def _broken_rule(name: str) -> Phrase:
     if not name:
         return phrase("it is empty")
     wrong = sorted(set(re.findall(r"[^A-Za-z0-9_]", name)))
@@ -91,7 +87,7 @@ def _broken_rule(name: str) -> str:
     return phrase("it must begin with a letter")
 
 
-def _departure(name: str) -> str | None:
+def _departure(name: str) -> Phrase | None:
     if name != name.lower():
         return phrase("names are lower case")
     if "__" in name:
@@ -103,6 +99,8 @@ def _departure(name: str) -> str | None:
 
 def _suggestion(name: str) -> Phrase | None:
     better = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_").lstrip("0123456789_")
+    if len(better) == 1:
+        return phrase("choose a longer name, such as {names}", names=quoted(f"{better}_robot"))
     fits = _IDENTIFIER.fullmatch(better) and better != name and _departure(better) is None
     return (
         phrase("did you mean {names}?", names=quoted(better))

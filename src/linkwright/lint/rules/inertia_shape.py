@@ -325,8 +325,8 @@ class InertiaTooSmall(Rule):
     ## Why
 
     All of the mass would have to sit in a small part of the link. More often the tensor was computed for a smaller
-    mass, or with a size in other units. Of the box around the collision shapes and the one around the visuals the smaller
-    counts, since a mesh for looks may reach farther than the body.
+    mass, or with a size in other units. Of the box around the collision shapes and the one around the visuals the
+    smaller counts, since a mesh for looks may reach farther than the body.
 
     ## Example
 

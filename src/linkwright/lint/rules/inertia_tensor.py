@@ -163,7 +163,8 @@ class IndefiniteInertia(_TensorRule):
     ## Why
 
     About some axis the moment is negative, which no body has. Gazebo and Drake refuse it, others go wrong at
-    the first contact. A thin body whose smallest moment the digits of the file have rounded below zero is left alone. Mostly the products have a wrong sign, or were taken about another point than the moments.
+    the first contact. Mostly the products have a wrong sign, or were taken about another point than the moments. A thin
+    body whose smallest moment went below zero by rounding to the digits of the file is left alone.
 
     ## Example
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, nearest, phrase, quoted
+from linkwright.lint.made_files import is_made_later
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.subject import Subject
@@ -127,7 +128,8 @@ class LaunchedFileMissing(Rule):
 
     ## Why
 
-    The launch fails, or the node starts without what it was to read.
+    The launch fails, or the node starts without what it was to read. Files that are made later are left out: those that
+    git ignores, maps, and those of which a script or a README of the package speaks.
 
     ## Example
 
@@ -169,6 +171,8 @@ class LaunchedFileMissing(Rule):
         if not own and (share.parent.name != "share" or is_substitute(share)):
             return  # the sources of another package, which may install its files elsewhere, or only a part of it
         if own and any(other.rpartition("/")[2] == name for other in package.files) and _may_move(package):
+            return
+        if own and is_made_later(package, shared.path):
             return
         message = phrase("the package '{package}' has no file '{path}'", package=shared.package, path=shared.path)
         yield self.report(message, span=shared.span, source=file.source, hint=_like(package, shared) if own else None)

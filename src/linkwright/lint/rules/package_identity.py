@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from keyword import iskeyword
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.lint.rules.package_manifest import ManifestRule, PackageRule
-from linkwright.packages.naming import check_package_name, is_accepted_name, is_email
+from linkwright.packages.naming import check_package_name, departure_from_rep, is_accepted_name, is_email
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
@@ -124,8 +125,8 @@ class PackageName(ManifestRule):
             return  # which LW802 reports
         for found in check_package_name(name):
             if is_accepted_name(name):
-                message = phrase("the package name '{name}' does not follow REP 144", name=name)
-                yield self.report(message, element, hint=found.hint, severity=Severity.WARNING)
+                advice = found if iskeyword(name) else departure_from_rep(name)
+                yield self.report(advice.message, element, hint=advice.hint, severity=Severity.WARNING)
             else:
                 yield self.report(found.message, element, hint=found.hint, severity=Severity.ERROR)
 

@@ -7,7 +7,7 @@ rules about what is missing say nothing.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
@@ -22,6 +22,13 @@ _SHARED = re.compile(
     r".*\.(urdf|xacro|sdf|world|rviz|stl|dae|obj|glb|gltf|launch\.py|launch\.xml|launch\.yaml|srdf|yaml)$",
     re.IGNORECASE,
 )
+_USUAL = frozenset(
+    {
+        *("launch", "urdf", "xacro", "robot", "robots", "description", "mesh", "meshes", "model", "models", "media"),
+        *("materials", "world", "worlds", "config", "configs", "cfg", "param", "params", "rviz", "map", "maps", "srdf"),
+    }
+)
+"""What the folders are called whose files belong to what is installed; others may hold templates or sources."""
 _NOT_SHARED = re.compile(r"(^|/)(test|tests|docs?|scripts?|\w*_py|src|include|resource|ci|docker)(/|$)")
 
 
@@ -82,7 +89,8 @@ class FolderNotInstalled(PackageRule):
     ## Why
 
     ROS looks in the share folder of the installed package, not in the sources. What is not installed is not there when
-    the launch file or the description asks for it.
+    the launch file or the description asks for it. Folders with names of their own count where a launch file of the
+    package looks for a file in them.
 
     ## Example
 
@@ -121,24 +129,28 @@ class FolderNotInstalled(PackageRule):
         installed = {file.rpartition("/")[0] for file in files}
         empty = [item for item in setup.installed if item.is_pattern and not item.files(package.folder)]
         meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 tells of these
-        for folder in shared_folders(package):
-            if folder not in installed and folder not in meant:
-                message = phrase("setup.py does not install the folder '{folder}'", folder=folder)
-                hint = phrase(
-                    "add ('share/{name}/{folder}', glob('{folder}/*')) to data_files", name=package.name, folder=folder
-                )
-                yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
+        for folder in _left_out(package, lambda folder: folder in installed or folder in meant):
+            message = phrase("setup.py does not install the folder '{folder}'", folder=folder)
+            hint = phrase(
+                "add ('share/{name}/{folder}', glob('{folder}/*')) to data_files", name=package.name, folder=folder
+            )
+            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
 
     def _by_cmake(self, package: PackageContext, cmake: CMakeFile) -> Iterator[Diagnostic]:
         if not cmake.is_complete or cmake.foreign or not cmake.is_ament:
             return
-        for folder in shared_folders(package):
+
+        def is_installed(folder: str) -> bool:
             covered = any(_covers(item.text, folder) for item in cmake.directories)
-            if not covered and not any(item.text.startswith(f"{folder}/") for item in cmake.files):
-                message = phrase("CMakeLists.txt does not install the folder '{folder}'", folder=folder)
-                hint = phrase("add install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})", folder=folder)
-                span = cmake.span(cmake.project) if cmake.project else None
-                yield self.report(message, span=span, source=cmake.source, hint=hint)
+            return covered or any(item.text.startswith(f"{folder}/") for item in cmake.files)
+
+        kept = {_top(folder) for folder in filter(is_installed, shared_folders(package))}
+        lacking = (folder if _top(folder) in kept else _top(folder) for folder in _left_out(package, is_installed))
+        for folder in dict.fromkeys(lacking):
+            message = phrase("CMakeLists.txt does not install the folder '{folder}'", folder=folder)
+            hint = phrase("add install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})", folder=folder)
+            span = cmake.span(cmake.project) if cmake.project else None
+            yield self.report(message, span=span, source=cmake.source, hint=hint)
 
 
 class FileNotInstalled(PackageRule):
@@ -237,6 +249,20 @@ class InstalledFileMissing(PackageRule):
 def shared_folders(package: PackageContext) -> list[str]:
     """The folders that directly hold files which belong into the share folder, sorted."""
     return sorted({file.rpartition("/")[0] for file in package.files if "/" in file and _is_shared(file)})
+
+
+def _left_out(package: PackageContext, is_installed: Callable[[str], bool]) -> list[str]:
+    """Return the folders that are not installed although they are usual ones, or a launch file looks into them."""
+    asked = {shared.path for file in package.launch_files.values() for shared in file.paths}
+    return [
+        folder
+        for folder in shared_folders(package)
+        if not is_installed(folder) and (_top(folder) in _USUAL or any(path.startswith(f"{folder}/") for path in asked))
+    ]
+
+
+def _top(folder: str) -> str:
+    return folder.partition("/")[0]
 
 
 def near_folder(package: PackageContext, folder: str) -> str | None:

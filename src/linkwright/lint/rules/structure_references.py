@@ -340,7 +340,7 @@ class TransmissionIgnored(Rule):
     ## Why
 
     It is the form of ROS 1. ros2_control and its Gazebo plugins read joints, interfaces and transmissions inside
-    `<ros2_control>` only.
+    `<ros2_control>` only. Packages that build with catkin, which ROS 1 has, are left alone.
 
     ## Example
 
@@ -368,7 +368,8 @@ class TransmissionIgnored(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """The first transmission of the form of ROS 1."""
-        found = list(subject.elements("transmission"))
+        manifest = subject.package and subject.package.manifest
+        found = [] if manifest and manifest.is_ros1 else list(subject.elements("transmission"))
         if found:
             message = phrase("nothing in ROS 2 reads <transmission> directly in <robot>")
             if len(found) > 1:

@@ -9,16 +9,19 @@ from __future__ import annotations
 import re
 
 _OF_CMAKE = frozenset(
-    """
-    add_compile_definitions add_compile_options add_custom_command add_custom_target add_definitions add_dependencies
-    add_executable add_library add_link_options add_subdirectory add_test aux_source_directory block break build_command
-    build_name configure_file continue create_test_sourcelist define_property enable_language enable_testing endblock
-    exec_program execute_process export file fltk_wrap_ui get_cmake_property get_directory_property
-    get_filename_component get_property get_source_file_property get_target_property get_test_property include
-    include_directories include_external_msproject include_guard include_regular_expression install link_directories
-    link_libraries list load_cache mark_as_advanced math message option project remove_definitions return
-    separate_arguments set site_name source_group string try_compile try_run unset variable_watch
-    """.split()
+    {
+        *("add_compile_definitions", "add_compile_options", "add_custom_command", "add_custom_target"),
+        *("add_definitions", "add_dependencies", "add_executable", "add_library", "add_link_options"),
+        *("add_subdirectory", "add_test", "aux_source_directory", "block", "break", "build_command", "build_name"),
+        *("configure_file", "continue", "create_test_sourcelist", "define_property", "enable_language"),
+        *("enable_testing", "endblock", "exec_program", "execute_process", "export", "file", "fltk_wrap_ui"),
+        *("get_cmake_property", "get_directory_property", "get_filename_component", "get_property"),
+        *("get_source_file_property", "get_target_property", "get_test_property", "include", "include_directories"),
+        *("include_external_msproject", "include_guard", "include_regular_expression", "install", "link_directories"),
+        *("link_libraries", "list", "load_cache", "mark_as_advanced", "math", "message", "option", "project"),
+        *("remove_definitions", "return", "separate_arguments", "set", "site_name", "source_group", "string"),
+        *("try_compile", "try_run", "unset", "variable_watch"),
+    }
 )
 _OF_FAMILIES = re.compile(
     r"(cmake|ctest|check|find|fetchcontent|externalproject|pkg|set|get|target|qt[56]?|pybind11|protobuf|gz_find|export"

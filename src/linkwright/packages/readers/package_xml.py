@@ -61,6 +61,11 @@ class Manifest:
             if element.tag in DEPENDENCIES
         )
 
+    @property
+    def is_ros1(self) -> bool:
+        """Whether the package builds with catkin, in ROS 1 alone or in both."""
+        return self.build_type == "catkin" or self.declares("catkin")
+
     def declares(self, package: str) -> bool:
         """Whether the file names a package, as this one or as a dependency of any kind."""
         return package == self.name or any(dependency.name == package for dependency in self.dependencies)

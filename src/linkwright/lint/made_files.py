@@ -1,0 +1,84 @@
+"""Files that are not among a package's sources because a program or a user makes them later."""
+
+from __future__ import annotations
+
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
+
+_IGNORE = ".gitignore"
+_REPOSITORY = ".git"
+_HIGHEST = 4
+"""So many folders above a package are looked at for a ``.gitignore`` where none of them is a repository's."""
+_MAPS = frozenset({"map", "maps"})
+_TELLING = (".py", ".sh", ".bash", ".md", ".rst", ".txt", ".cpp", ".cc", ".hpp", ".h", ".in")
+_BUILD_FILES = frozenset({"setup.py", "CMakeLists.txt"})
+_LONGEST = 200_000
+
+
+def is_made_later(package: PackageContext, path: str) -> bool:
+    """Return whether a file that a package lacks is likely to be made by a program or a user.
+
+    So it is where git ignores it, where it is a map (which mapping saves), and where another file of the package that
+    is no launch file speaks of it: a script that writes it, a README that says how to make it.
+
+    Args:
+        package: the package.
+        path: of the file, relative to the package.
+    """
+    return (
+        not _MAPS.isdisjoint(path.split("/")[:-1])
+        or _is_ignored(package.folder, path)
+        or _is_told_of(package, path.rpartition("/")[2])
+    )
+
+
+def _is_ignored(package: Path, path: str) -> bool:
+    """Whether a ``.gitignore`` of the package or its repository names the file; a later line wins, as in git."""
+    full, answer = package / path, False
+    for folder in _folders_upwards(package):
+        try:
+            lines = (folder / _IGNORE).read_text(encoding="utf-8", errors="replace").splitlines()
+        except OSError:
+            continue
+        relative = full.relative_to(folder).as_posix()
+        for line in map(str.strip, lines):
+            if line and not line.startswith("#") and _names(line.removeprefix("!"), relative):
+                answer = not line.startswith("!")
+    return answer
+
+
+def _folders_upwards(package: Path) -> list[Path]:
+    """The repository's folders down to the package."""
+    found = []
+    for folder in (package, *list(package.parents)[:_HIGHEST]):
+        found.append(folder)
+        if (folder / _REPOSITORY).exists():
+            break
+    return found[::-1]
+
+
+def _names(pattern: str, path: str) -> bool:
+    """Whether a pattern of a ``.gitignore`` names a file, or a folder that it is in; both relative to its folder."""
+    parts = path.split("/")
+    above = ["/".join(parts[:count]) for count in range(1, len(parts) + 1)]
+    if pattern.endswith("/"):
+        pattern, above = pattern.rstrip("/"), above[:-1]
+    if "/" not in pattern:
+        return any(fnmatchcase(each.rpartition("/")[2], pattern) for each in above)
+    pattern = pattern.lstrip("/").removeprefix("**/")
+    return any(fnmatchcase(each, pattern) for each in above)
+
+
+def _is_told_of(package: PackageContext, name: str) -> bool:
+    if any(file.rpartition("/")[2] == name for file in package.files):
+        return False  # the one that is there may be meant
+    for file in package.files:
+        if file.endswith(_TELLING) and file not in package.launch_files and file not in _BUILD_FILES:
+            source = package.text(file)
+            if source is not None and name in source.text[:_LONGEST]:
+                return True
+    return False
