@@ -37,9 +37,8 @@ class GeneratedFiles(BuildHookInterface):
 
 
 class Readme(MetadataHookInterface):
-    """The README without links that lead nowhere outside of the repository."""
+    """The README as a package index shows it."""
 
     def update(self, metadata: dict[str, Any]) -> None:
         """Add it to the project's metadata."""
-        text = package_readme.README.read_text(encoding="utf-8")
-        metadata["readme"] = {"content-type": "text/markdown", "text": package_readme.without_relative_links(text)}
+        metadata["readme"] = {"content-type": "text/markdown", "text": package_readme.package_readme()}

@@ -1,4 +1,4 @@
-"""The README as a package index shows it, where files of the repository have no address.
+"""The README as a package index shows it: files of the repository have no address, and installing needs no checkout.
 
 Usage: python tools/package_readme.py (prints it)
 """
@@ -14,10 +14,26 @@ _PICTURE = re.compile(r"^!\[[^\]]*\]\((?!https:)[^)]*\)\n\n", re.MULTILINE)
 _LINK = re.compile(r"\[(!\[[^\]]*\]\([^)]*\)|[^\[\]]+)\]\((?!https:)[^)]*\)")
 
 
+_FROM_THE_CHECKOUT = (
+    (re.compile(r" +# in a checkout of this repository$", re.MULTILINE), ""),
+    (re.compile(r"\binstall \.(?=[`\n])"), "install linkwright"),
+    (re.compile(r"\binstall '\.\["), "install 'linkwright["),
+    (re.compile(r" No version is on a package index yet\."), ""),
+)
+
+
+def package_readme() -> str:
+    """The README of the repository for those who read it on a package index."""
+    text = without_relative_links(README.read_text(encoding="utf-8"))
+    for pattern, words in _FROM_THE_CHECKOUT:
+        text = pattern.sub(words, text)
+    return text
+
+
 def without_relative_links(text: str) -> str:
     """Markdown whose links lead somewhere from anywhere: of relative ones the words stay, relative pictures go."""
     return _LINK.sub(r"\1", _PICTURE.sub("", text))
 
 
 if __name__ == "__main__":
-    print(without_relative_links(README.read_text(encoding="utf-8")), end="")
+    print(package_readme(), end="")

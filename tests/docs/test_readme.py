@@ -45,10 +45,20 @@ def test_the_picture_moves_for_ten_seconds_and_is_small():
 
 
 def test_the_readme_of_a_package_has_no_links_into_the_repository():
-    text = load_tool("package_readme").without_relative_links(READMES[0].read_text(encoding="utf-8"))
+    text = load_tool("package_readme").package_readme()
     prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
     assert [target for target in re.findall(r"\]\(([^)]*)\)", prose) if not target.startswith("https://")] == []
     assert "a tutorial, pages about the viewer" in " ".join(prose.split())
+
+
+def test_the_readme_of_a_package_installs_from_an_index():
+    commands = re.findall(r"\b(?:pip|pipx|uv tool) install [^\n`]+", load_tool("package_readme").package_readme())
+    assert sorted(set(commands)) == [
+        "pip install 'linkwright[all]'",
+        "pip install linkwright",
+        "pipx install linkwright",
+        "uv tool install linkwright",
+    ]
 
 
 def script(path, text):

@@ -15,7 +15,7 @@ from moveit_configs_utils import MoveItConfigsBuilder, launches
 from moveit_configs_utils.substitutions import Xacro
 
 from launch import LaunchContext
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, package_hint
 from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.packages import PackageFinder, use_finder
 
@@ -187,7 +187,7 @@ class TestParameters:
         monkeypatch.setitem(sys.modules, "jinja2", None)
         with pytest.raises(LinkwrightError) as caught:
             load_yaml(write("limits.yaml", "angle: {{ radians(180) }}\n"))
-        assert caught.value.diagnostics[0].hint == "install it: pip install jinja2"
+        assert caught.value.diagnostics[0].hint == package_hint("jinja2")
 
     def test_the_substitution(self, tmp_path: Path) -> None:
         path = str(tmp_path / "src/arm_description/urdf/arm.urdf.xacro")

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, package_hint
 from linkwright.launch.arguments import argument_listing
 from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.messages.distribution import ASSUMED
@@ -111,7 +111,7 @@ class TestModulesOfTheWorkspace:
     def test_a_missing_one_is_told_with_what_provides_it(self, file: Any) -> None:
         for module, hint in (
             ("webots_ros2_driver.webots_launcher", "it comes with webots_ros2"),
-            ("serial.nothing", "pip install pyserial"),
+            ("serial.nothing", package_hint("pyserial")),
             ("my_arm_bringup", "put the ROS package 'my_arm_bringup' into the workspace's src folder"),
             ("nobody_has_this", "install the Python package that provides 'nobody_has_this'"),
         ):

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from linkwright.diagnostics import package_hint
 from linkwright.standins import process, table
 
 
@@ -158,7 +159,7 @@ class TestManners:
         [
             ("carrier_msgs.msg", "hint: put the ROS package 'carrier_msgs' into the workspace's src folder"),
             ("image_geometry", "hint: it comes with vision_opencv, which has to be compiled"),
-            ("serial", "hint: install it: pip install pyserial"),
+            ("serial", f"hint: {package_hint('pyserial')}"),
             ("unheard_of", "ModuleNotFoundError: No module named 'unheard_of'"),
         ],
     )

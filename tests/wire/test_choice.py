@@ -6,7 +6,7 @@ import importlib.util
 
 import pytest
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, install_hint
 from linkwright.graph import Graph
 from linkwright.wire.dds import DdsTransport
 from linkwright.wire.joining import CYCLONE, ZENOH, available, check_settings, join, middleware, why_not
@@ -51,7 +51,7 @@ def test_the_variable_of_ros_chooses_and_then_what_is_installed(installed, packa
 
 def test_what_is_missing_is_named(installed):
     installed()
-    assert "neither DDS nor Zenoh is installed: run pip install 'linkwright[zenoh]'" in why_not({})
+    assert f"neither DDS nor Zenoh is installed: {install_hint('zenoh')}, or with 'dds'" in why_not({})
     assert "the package 'eclipse-zenoh' is not installed" in why_not(ASKED)
     assert "the package 'cyclonedds' is not installed" in why_not({"RMW_IMPLEMENTATION": CYCLONE})
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Linkwright's nodes as programs of this package, so that its launch files work under ROS 2, too.
 
-There they are processes that speak DDS. Linkwright must be installed for the Python that runs them:
-pip install 'linkwright[vision,dds]'.
+There they are processes that speak DDS. Linkwright must be installed for the Python that runs them,
+with the extras vision and dds.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """Findings about a user's input: where, what, why, how to mend it; and how they are printed."""
 
 from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError, Note, Severity, has_errors, in_one_line
-from linkwright.diagnostics.extras import install_hint, missing_extra
+from linkwright.diagnostics.extras import install_hint, missing_extra, package_hint
 from linkwright.diagnostics.phrase import (
     Phrase,
     counted,
@@ -38,6 +38,7 @@ __all__ = [
     "missing_extra",
     "missing_file_hint",
     "nearest",
+    "package_hint",
     "phrase",
     "print_diagnostics",
     "quoted",

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import re
 import sys
+from typing import TYPE_CHECKING
 
 from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError
 from linkwright.diagnostics.phrase import Phrase, phrase
+
+if TYPE_CHECKING:
+    from linkwright.diagnostics.installation import Installation
 
 EXTRAS = {
     "bag": "rosbags",
@@ -47,12 +51,34 @@ def install_hint(extra: str, package: str = "") -> Phrase:
     newest = _newest_python(package)
     if newest and newest <= _VERSION:
         return phrase(
-            "there is no wheel of {package} for Python {version}: use an older Python, or run pip install {package},"
+            "there is no wheel of {package} for Python {version}: use an older Python, or run {command},"
             " which needs a compiler",
             package=package,
             version=".".join(map(str, _VERSION)),
+            command=_installation().command_for_packages(package),
         )
-    return phrase("run pip install 'linkwright[{extra}]'", extra=extra)
+    installation = _installation()
+    command = installation.command_for_extras(extra)
+    if installation.origin.is_gone:
+        return phrase(
+            "run {command}, with the path of a checkout or a wheel of Linkwright in place of {placeholder}: '{path}',"
+            " which it was installed from, is not there any more",
+            command=command,
+            placeholder=installation.origin.words(())[-1],
+            path=installation.origin.place,
+        )
+    return phrase("run {command}", command=command)
+
+
+def package_hint(distribution: str) -> Phrase:
+    """How to install a package that belongs to no extra, where Linkwright's Python finds it."""
+    return phrase("run {command}", command=_installation().command_for_packages(distribution))
+
+
+def _installation() -> Installation:
+    from linkwright.diagnostics.installation import find_installation  # takes 15 ms, and is needed for errors alone
+
+    return find_installation()
 
 
 def _newest_python(package: str) -> tuple[int, ...]:

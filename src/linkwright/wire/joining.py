@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, install_hint, phrase
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import say_alone
 from linkwright.wire.switch import is_switched_off
@@ -54,9 +54,10 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
     reason = dds.why_not(variables)
     if reason and find_spec("cyclonedds") is None and not variables.get(VARIABLE, "").strip():
         return phrase(
-            "neither DDS nor Zenoh is installed: run pip install 'linkwright[zenoh]', or 'linkwright[dds]' for the DDS"
-            " of ROS 2's default (there are wheels of it for Linux x86_64, Windows and macOS arm64, up to Python"
-            " 3.13; this is {system} {machine} with Python {version})",
+            "neither DDS nor Zenoh is installed: {hint}, or with 'dds' in place of 'zenoh' for the DDS of ROS 2's"
+            " default (there are wheels of it for Linux x86_64, Windows and macOS arm64, up to Python 3.13; this is"
+            " {system} {machine} with Python {version})",
+            hint=install_hint("zenoh"),
             system=platform.system(),
             machine=platform.machine(),
             version=platform.python_version(),

@@ -10,7 +10,7 @@ import onnx
 import pytest
 from onnx import TensorProto, helper
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, install_hint
 from linkwright.speech.engine import EngineOptions
 from linkwright.speech.engines.onnx_engine import OnnxEngine
 from linkwright.speech.sound.samples import RATE
@@ -118,4 +118,4 @@ def test_without_onnxruntime(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "onnxruntime", None)
     diagnostic = refused(network(tmp_path / "net.onnx"))
     assert diagnostic.code == "VOICE102"
-    assert "linkwright[vision]" in str(diagnostic.hint)
+    assert diagnostic.hint == install_hint("vision")

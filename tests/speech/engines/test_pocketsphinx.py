@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, install_hint
 from linkwright.speech.engine import EngineOptions, engine_names
 from linkwright.speech.engines.pocketsphinx_engine import PocketsphinxEngine
 from tests.speech.voices import WORDS, say
@@ -210,4 +210,4 @@ def test_without_the_library(monkeypatch):
     monkeypatch.setitem(sys.modules, "pocketsphinx", None)
     diagnostic = refused(("stop",))
     assert diagnostic.code == "VOICE102"
-    assert "linkwright[voice]" in str(diagnostic.hint)
+    assert diagnostic.hint == install_hint("voice")

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, install_hint
 from linkwright.speech.engine import EngineOptions, Heard
 from linkwright.speech.engines.vosk_engine import LEAST_CONFIDENCE, VoskEngine
 from tests.speech.engines import fake_vosk
@@ -164,4 +164,4 @@ def test_without_vosk(model, monkeypatch):
     monkeypatch.setitem(sys.modules, "vosk", None)
     diagnostic = refused(model)
     assert diagnostic.code == "VOICE102"
-    assert "linkwright[voice]" in str(diagnostic.hint)
+    assert diagnostic.hint == install_hint("voice")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, package_hint, phrase
 
 _ROS_PACKAGES = {
     "as2_core": "Aerostack2",
@@ -97,7 +97,7 @@ def known_provider_hint(module: str) -> Phrase | None:
             project=project,
         )
     if top in _DISTRIBUTIONS or top in _FROM_PYPI:
-        return phrase("install it: pip install {distributions}", distributions=_DISTRIBUTIONS.get(top, top))
+        return package_hint(_DISTRIBUTIONS.get(top, top))
     if top.endswith(_ENDINGS) or top.startswith(("ros_", "ros2_")):
         return phrase("put the ROS package '{top}' into the workspace's src folder, no build is needed", top=top)
     return None

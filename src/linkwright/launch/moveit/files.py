@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import LinkwrightError, display_path, foreign, missing_file_hint, phrase
+from linkwright.diagnostics import LinkwrightError, display_path, foreign, missing_file_hint, package_hint, phrase
 from linkwright.hosting.xacro_calls import Descriptions, XacroCall, current_descriptions
 from linkwright.launch.errors.places import Place, error_at, located
 from linkwright.launch.model.context import LaunchContext
@@ -110,7 +110,7 @@ def _rendered(text: str, path: Path, mappings: Mapping[str, Any]) -> str:
         message = phrase(
             "parameter file '{path}' is a template, and there is no jinja2 to fill it in", path=display_path(path)
         )
-        raise error_at(Place.of_caller(), "LAUNCH153", message, phrase("install it: pip install jinja2")) from error
+        raise error_at(Place.of_caller(), "LAUNCH153", message, package_hint("jinja2")) from error
     try:
         template = jinja2.Template(text)
         template.globals.update(radians=math.radians, degrees=math.degrees)

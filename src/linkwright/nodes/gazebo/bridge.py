@@ -12,7 +12,7 @@ from typing import Any
 
 import yaml
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, install_hint, phrase
 from linkwright.graph import Graph, MessageInfo, Node, Publisher, QoSProfile, ReliabilityPolicy, Subscription
 from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.drivers import DriverWatch
@@ -218,7 +218,9 @@ class ImageBridge(_Bridge):
                 message = compressed(image)
             except ModuleNotFoundError as error:
                 text = phrase(
-                    "pictures are not compressed: {name} is missing, which linkwright[image] brings", name=error.name
+                    "pictures are not compressed: {name} is missing; {hint}",
+                    name=error.name,
+                    hint=install_hint("image"),
                 )
                 self._node.get_logger().warning(text, once=True)
                 return

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, package_hint, phrase
 
 _LITERT = "ai-edge-litert"
 
@@ -35,6 +35,5 @@ def load_litert() -> Any:
         from ai_edge_litert import interpreter  # type: ignore[import-not-found, unused-ignore]
     except ModuleNotFoundError:
         message = phrase("TFLite files are run by the package '{package}', which is not installed", package=_LITERT)
-        hint = phrase("run pip install {package}", package=_LITERT)
-        raise LinkwrightError(Diagnostic("VISION101", message, hint=hint)) from None
+        raise LinkwrightError(Diagnostic("VISION101", message, hint=package_hint(_LITERT))) from None
     return interpreter

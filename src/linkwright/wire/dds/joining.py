@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, install_hint, phrase
 from linkwright.wire.background import JoinOptions, join_with
 from linkwright.wire.dds.settings import read_settings
 from linkwright.wire.dds.transport import DdsTransport
@@ -30,9 +30,10 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
         return switched_off()
     if find_spec("cyclonedds") is None:
         return phrase(
-            "the package 'cyclonedds' is not installed: run pip install 'linkwright[dds]' (there are wheels of it for"
+            "the package 'cyclonedds' is not installed: {hint} (there are wheels of it for"
             " Linux x86_64, Windows and macOS arm64, up to Python 3.13; this is {system} {machine} with Python"
             " {version})",
+            hint=install_hint("dds"),
             system=platform.system(),
             machine=platform.machine(),
             version=platform.python_version(),

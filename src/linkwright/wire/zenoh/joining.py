@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, install_hint, phrase
 from linkwright.wire.background import JoinOptions, join_with
 from linkwright.wire.switch import is_switched_off, switched_off
 from linkwright.wire.zenoh.settings import read_settings
@@ -35,8 +35,8 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
         return switched_off()
     if not is_installed():
         return phrase(
-            "the package 'eclipse-zenoh' is not installed: run pip install 'linkwright[zenoh]' (this is {system}"
-            " {machine} with Python {version})",
+            "the package 'eclipse-zenoh' is not installed: {hint} (this is {system} {machine} with Python {version})",
+            hint=install_hint("zenoh"),
             system=platform.system(),
             machine=platform.machine(),
             version=platform.python_version(),

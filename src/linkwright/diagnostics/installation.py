@@ -1,0 +1,168 @@
+"""How this Linkwright was installed, and the commands that add to it.
+
+Installers record that: ``direct_url.json`` (PEP 610) says where a distribution came from, and ``pipx_metadata.json``
+or ``uv-receipt.toml`` that the environment belongs to a tool, which makes it anew when it installs again.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import shutil
+import sys
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib import import_module, metadata
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
+
+NAME = "linkwright"
+SOMEWHERE = "PATH_TO_LINKWRIGHT"
+"""Stands for a checkout or a wheel in a command, when the one that was installed is not there any more."""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a distribution came from.
+
+    Attributes:
+        place: a path, or an address; empty for a package index.
+        editable: whether the files of the checkout are those that run.
+    """
+
+    place: str = ""
+    editable: bool = False
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether it was a checkout or a file that is not there any more."""
+        return bool(self.place) and "://" not in self.place and not Path(self.place).exists()
+
+    def words(self, extras: Iterable[str]) -> list[str]:
+        """What an installer is told in order to install it with extras."""
+        wanted = f"[{','.join(sorted(extras))}]" if extras else ""
+        if "://" in self.place:
+            return [f"{NAME}{wanted} @ {self.place}"]
+        place = SOMEWHERE if self.is_gone else self.place or NAME
+        if self.place and Path(self.place) == Path.cwd():
+            place = "."
+        return [*(["-e"] if self.editable else []), f"{place}{wanted}"]
+
+
+@dataclass(frozen=True)
+class Installation:
+    """A distribution in an environment.
+
+    Attributes:
+        origin: where it came from.
+        tool: the words of pip or uv that install into the environment; `PIPX` or `UV_TOOL` where it belongs to one.
+        extras: those that the environment's tool was asked for, and would leave out if it were not told again.
+        beside: as `extras`, other packages.
+    """
+
+    origin: Origin
+    tool: tuple[str, ...]
+    extras: frozenset[str] = frozenset()
+    beside: tuple[str, ...] = ()
+
+    def command_for_extras(self, *extras: str) -> str:
+        """The command that adds extras of Linkwright."""
+        return self._command(self.tool, {*self.extras, *extras}, self.beside)
+
+    def command_for_packages(self, *packages: str) -> str:
+        """The command that adds other packages, by the names that pip knows them by."""
+        if self.tool == PIPX:
+            return _quoted(["pipx", "inject", NAME, *packages])
+        if self.tool == UV_TOOL:
+            return self._command(self.tool, self.extras, (*self.beside, *packages))
+        return _quoted([*self.tool, *packages])
+
+    def _command(self, tool: tuple[str, ...], extras: Iterable[str], beside: Iterable[str]) -> str:
+        return _quoted([*tool, *(word for name in beside for word in ("--with", name)), *self.origin.words(extras)])
+
+
+PIPX = ("pipx", "install", "--force")
+UV_TOOL = ("uv", "tool", "install")
+_EXTRAS = re.compile(r"\[([^\]]*)\]")
+_PLAIN = re.compile(r"[\w@%+=:,./\\-]+")
+_CACHE_OF_UV = ("archive-v", "environments-v")
+
+
+def find_installation() -> Installation:
+    """Find out how the Linkwright that runs was installed."""
+    return installation_in(Path(sys.prefix), _origin())
+
+
+def installation_in(prefix: Path, origin: Origin) -> Installation:
+    """What is known of an installation in an environment.
+
+    Args:
+        prefix: the environment's folder.
+        origin: where Linkwright came from.
+    """
+    pipx, receipt = prefix / "pipx_metadata.json", prefix / "uv-receipt.toml"
+    if pipx.is_file():
+        asked = json.loads(pipx.read_text(encoding="utf-8"))["main_package"]["package_or_url"]
+        return Installation(origin, PIPX, _extras_in(asked))
+    if receipt.is_file():
+        toml: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+        wanted = toml.loads(receipt.read_text(encoding="utf-8"))["tool"]["requirements"]
+        extras = frozenset(extra for each in wanted if each["name"] == NAME for extra in each.get("extras", ()))
+        return Installation(origin, UV_TOOL, extras, tuple(each["name"] for each in wanted if each["name"] != NAME))
+    if prefix.parent.name.startswith(_CACHE_OF_UV):  # uvx made it for this run alone
+        return Installation(origin, UV_TOOL)
+    return Installation(origin, _pip(prefix, origin))
+
+
+def origin_of(direct_url: Mapping[str, Any]) -> Origin:
+    """Where a distribution came from, by what its ``direct_url.json`` says."""
+    url = direct_url["url"]
+    if version_control := direct_url.get("vcs_info"):
+        revision = version_control.get("requested_revision")
+        folder = direct_url.get("subdirectory")
+        return Origin(
+            f"{version_control['vcs']}+{url}{f'@{revision}' if revision else ''}"
+            f"{f'#subdirectory={folder}' if folder else ''}"
+        )
+    if url.startswith("file:"):
+        path = url2pathname(urlsplit(url).path)
+        return Origin(path, editable=bool(direct_url.get("dir_info", {}).get("editable")))
+    return Origin(url)
+
+
+def _origin() -> Origin:
+    try:
+        direct_url = metadata.distribution(NAME).read_text("direct_url.json")
+    except metadata.PackageNotFoundError:  # it runs out of a folder
+        checkout = Path(__file__).parents[3]
+        return Origin(str(checkout), editable=True) if (checkout / "pyproject.toml").is_file() else Origin()
+    return origin_of(json.loads(direct_url)) if direct_url else Origin()
+
+
+def _pip(prefix: Path, origin: Origin) -> tuple[str, ...]:
+    """What installs into an environment that belongs to nobody but its user."""
+    if find_spec("pip"):
+        found = shutil.which("pip")
+        in_reach = found is not None and Path(found).parent == Path(sys.executable).parent
+        return ("pip", "install") if in_reach else (sys.executable, "-m", "pip", "install")
+    own = Path(origin.place, ".build", "uv", "bin", "uv")  # where the Makefile has it, where the system has none
+    uv = str(own) if shutil.which("uv") is None and own.is_file() else "uv"
+    active = os.environ.get("VIRTUAL_ENV", "") == str(prefix)
+    return (uv, "pip", "install", *(() if active else ("--python", str(prefix))))
+
+
+def _extras_in(requirement: str) -> frozenset[str]:
+    found = _EXTRAS.search(requirement)
+    return frozenset(found[1].replace(" ", "").split(",")) if found else frozenset()
+
+
+def _quoted(words: list[str]) -> str:
+    """A line for the user's shell; that of Windows knows double quotes alone."""
+    if sys.platform == "win32":
+        return " ".join(word if _PLAIN.fullmatch(word) else f'"{word}"' for word in words)
+    return shlex.join(words)

@@ -1,0 +1,163 @@
+"""How Linkwright was installed, and which command adds to that."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import install_hint
+from linkwright.diagnostics.installation import Installation, Origin, find_installation, installation_in, origin_of
+
+PIP = ("pip", "install")
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    folder = tmp_path / "a checkout"
+    folder.mkdir()
+    return folder
+
+
+def direct_url(path: Path, **more: object) -> dict[str, object]:
+    """What an installer writes of a file or folder of this machine."""
+    return {"url": path.as_uri(), "dir_info": {}, **more}
+
+
+def test_of_an_index_it_is_installed_by_its_name() -> None:
+    assert Installation(Origin(), PIP).command_for_extras("sim") == "pip install 'linkwright[sim]'"
+
+
+def test_of_a_checkout_it_is_installed_by_its_path(checkout: Path) -> None:
+    installation = Installation(origin_of(direct_url(checkout)), PIP)
+    assert installation.command_for_extras("sim", "dds") == f"pip install '{checkout}[dds,sim]'"
+
+
+def test_a_checkout_in_which_the_user_stands_is_a_dot(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(checkout)
+    installation = Installation(origin_of(direct_url(checkout)), PIP)
+    assert installation.command_for_extras("sim") == "pip install '.[sim]'"
+
+
+def test_an_editable_checkout_stays_editable(checkout: Path) -> None:
+    installation = Installation(origin_of(direct_url(checkout, dir_info={"editable": True})), PIP)
+    assert installation.command_for_extras("sim") == f"pip install -e '{checkout}[sim]'"
+
+
+def test_a_wheel_is_named_by_its_path(tmp_path: Path) -> None:
+    wheel = tmp_path / "linkwright-0.1.0-py3-none-any.whl"
+    wheel.touch()
+    origin = origin_of({"url": wheel.as_uri(), "archive_info": {"hash": "sha256=0"}})
+    assert Installation(origin, PIP).command_for_extras("mesh") == f"pip install '{wheel}[mesh]'"
+
+
+@pytest.mark.parametrize(
+    ("recorded", "requirement"),
+    [
+        (
+            {"url": "https://example.org/l.git", "vcs_info": {"vcs": "git", "commit_id": "1"}},
+            "linkwright[mesh] @ git+https://example.org/l.git",
+        ),
+        (
+            {
+                "url": "https://example.org/l.git",
+                "vcs_info": {"vcs": "git", "commit_id": "1", "requested_revision": "main"},
+                "subdirectory": "python",
+            },
+            "linkwright[mesh] @ git+https://example.org/l.git@main#subdirectory=python",
+        ),
+        (
+            {"url": "https://example.org/linkwright-1-py3-none-any.whl", "archive_info": {}},
+            "linkwright[mesh] @ https://example.org/linkwright-1-py3-none-any.whl",
+        ),
+    ],
+)
+def test_what_came_from_an_address_is_taken_from_there(recorded: dict[str, object], requirement: str) -> None:
+    assert Installation(origin_of(recorded), PIP).command_for_extras("mesh") == f"pip install '{requirement}'"
+
+
+def test_a_source_that_is_gone_is_told_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    gone = Installation(Origin(str(tmp_path / "gone")), PIP)
+    monkeypatch.setattr("linkwright.diagnostics.installation.find_installation", lambda: gone)
+    assert str(install_hint("image")) == (
+        "run pip install 'PATH_TO_LINKWRIGHT[image]', with the path of a checkout or a wheel of Linkwright in place of"
+        f" PATH_TO_LINKWRIGHT: '{tmp_path / 'gone'}', which it was installed from, is not there any more"
+    )
+
+
+def test_pipx_makes_its_environment_anew_with_the_extras_that_it_had(tmp_path: Path) -> None:
+    main = {"package": "linkwright", "package_or_url": "/home/me/linkwright[image, dds]"}
+    (tmp_path / "pipx_metadata.json").write_text(json.dumps({"main_package": main}))
+    installation = installation_in(tmp_path, Origin())
+    assert installation.command_for_extras("sim") == "pipx install --force 'linkwright[dds,image,sim]'"
+    assert installation.command_for_packages("pyserial") == "pipx inject linkwright pyserial"
+
+
+def test_uv_makes_a_tool_anew_with_what_it_had(tmp_path: Path) -> None:
+    (tmp_path / "uv-receipt.toml").write_text(
+        '[tool]\nrequirements = [{ name = "linkwright", extras = ["image"], directory = "/x" }, { name = "jinja2" }]\n'
+    )
+    installation = installation_in(tmp_path, Origin())
+    assert installation.command_for_extras("sim") == "uv tool install --with jinja2 'linkwright[image,sim]'"
+    assert installation.command_for_packages("pyserial") == (
+        "uv tool install --with jinja2 --with pyserial 'linkwright[image]'"
+    )
+
+
+def test_what_uvx_runs_becomes_a_tool(tmp_path: Path) -> None:
+    installation = installation_in(tmp_path / "archive-v0" / "x", Origin())
+    assert installation.command_for_extras("sim") == "uv tool install 'linkwright[sim]'"
+
+
+@pytest.fixture
+def pip_there(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """An environment with pip; its folder of programs."""
+    monkeypatch.setattr("linkwright.diagnostics.installation.find_spec", lambda _name: object())
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    (tmp_path / "pip").write_text("")
+    (tmp_path / "pip").chmod(0o755)
+    return tmp_path
+
+
+def test_the_pip_that_is_typed_is_that_of_the_environment(pip_there: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shutil.which", lambda _name: str(pip_there / "pip"))
+    assert installation_in(pip_there, Origin()).command_for_packages("jinja2") == "pip install jinja2"
+
+
+def test_of_an_environment_that_is_not_active_the_python_is_named(
+    pip_there: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("shutil.which", lambda _name: "/usr/bin/pip")
+    command = installation_in(pip_there, Origin()).command_for_packages("jinja2")
+    assert command == f"{pip_there / 'python'} -m pip install jinja2"
+
+
+def test_where_there_is_no_pip_uv_installs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("linkwright.diagnostics.installation.find_spec", lambda _name: None)
+    monkeypatch.setattr("shutil.which", lambda _name: "/usr/bin/uv")
+    monkeypatch.delenv("VIRTUAL_ENV", raising=False)
+    installed = installation_in(tmp_path, Origin())
+    assert installed.command_for_packages("jinja2") == f"uv pip install --python {tmp_path} jinja2"
+    monkeypatch.setenv("VIRTUAL_ENV", str(tmp_path))
+    assert installation_in(tmp_path, Origin()).command_for_packages("jinja2") == "uv pip install jinja2"
+
+
+def test_where_only_the_checkout_has_uv_its_own_is_named(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = checkout / ".build" / "uv" / "bin" / "uv"
+    own.parent.mkdir(parents=True)
+    own.touch()
+    monkeypatch.setattr("linkwright.diagnostics.installation.find_spec", lambda _name: None)
+    monkeypatch.setattr("shutil.which", lambda _name: None)
+    command = installation_in(checkout / ".venv", Origin(str(checkout), editable=True)).command_for_extras("train")
+    assert command.startswith(f"'{own}' pip install --python ")
+
+
+def test_windows_has_double_quotes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "win32")
+    assert Installation(Origin(), PIP).command_for_extras("sim") == 'pip install "linkwright[sim]"'
+
+
+def test_that_which_runs_is_found() -> None:
+    assert find_installation().command_for_extras("sim").endswith("[sim]'")

@@ -1,0 +1,122 @@
+"""The commands that the README begins with, typed by somebody who has a checkout and nothing else."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import urllib.request
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.docs.pages import READMES, blocks
+from tests.places import REPOSITORY
+from tests.waiting import wait_until
+
+PAGE = Path("src", "linkwright", "viewer", "page")
+
+
+def first_screen(readme: Path) -> list[str]:
+    """The commands that a README begins with, without comments."""
+    return [re.sub(r"\s+#.*", "", line) for line in blocks(readme)[0].text.splitlines()]
+
+
+def test_both_readmes_begin_with_the_same_commands() -> None:
+    english, chinese = map(first_screen, READMES)
+    assert english == chinese
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """What git has of the repository, and the page, which takes a minute to build."""
+    if not (REPOSITORY / PAGE).is_dir() or not (REPOSITORY / ".git").exists():
+        pytest.skip("this is no checkout with a built page")
+    folder = tmp_path / "checkout"
+    listed = run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=REPOSITORY).stdout
+    for name in listed.split("\0")[:-1]:
+        if not name.startswith(("benchmarks/", "docs/", "tests/")) and (REPOSITORY / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(REPOSITORY / name, folder / name)
+    shutil.copytree(REPOSITORY / PAGE, folder / PAGE)
+    return folder
+
+
+def run(words: list[str], **options: Any) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(words, capture_output=True, text=True, check=False, **options)
+
+
+def program(path: Path, text: str) -> Path:
+    path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
+@pytest.fixture
+def newcomer(tmp_path: Path) -> dict[str, str]:
+    """An environment with Python, an empty home, and a browser that only writes down what it is told to open.
+
+    Where there is uv it takes pip's place, as it has the wheels of the tests' own environment at hand.
+    """
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    given = {name: value for name, value in os.environ.items() if name.startswith(("PIP_", "UV_", "SSL_", "ROS_"))}
+    uv = shutil.which(os.environ.get("UV") or "uv") or shutil.which(REPOSITORY / ".build" / "uv" / "bin" / "uv")
+    if uv:
+        (programs / "uv").symlink_to(Path(uv).absolute())
+        given["UV_CACHE_DIR"] = run([uv, "cache", "dir"]).stdout.strip()
+        pip = program(programs / "uv-as-pip", 'exec uv pip "$@"')
+        program(programs / "python3", f'{sys.executable} "$@" --without-pip && ln -s {pip} "$3/bin/pip"')
+    else:
+        (programs / "python3").symlink_to(sys.executable)
+    return {
+        **given,
+        "BROWSER": str(program(programs / "browser", f'echo "$1" >{tmp_path}/opened')),
+        "HOME": str(tmp_path),
+        "PATH": os.pathsep.join([str(programs), os.environ["PATH"]]),
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the block is for a shell of Unix")
+def test_the_first_screen_of_the_readme_can_be_typed(checkout: Path, newcomer: dict[str, str]) -> None:
+    typed = "\n".join(first_screen(READMES[0]))
+    with subprocess.Popen(
+        ["bash", "-e", "-c", typed],
+        cwd=checkout,
+        env=newcomer,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    ) as shell:
+        assert shell.stdout is not None
+        said = []
+        try:
+            for line in shell.stdout:
+                said.append(line)
+                if found := re.search(r"Viewer: (http://\S+)", line):
+                    break
+            else:
+                pytest.fail("".join(said))
+            with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(found[1]) as answer:
+                assert answer.status == 200
+            wait_until((checkout.parent / "opened").is_file, what="a browser that was told to open the page")
+        finally:
+            os.killpg(shell.pid, signal.SIGINT)
+            rest = shell.stdout.read()
+    assert shell.returncode in (0, 130, -signal.SIGINT), "".join(said) + rest
+
+    # What the base lacks is told with the command that fits, and that works.
+    export = "linkwright export robot.glb robots/my_robot_description/urdf/mbot_with_kinect.urdf"
+    told = run(["bash", "-c", f"source .venv/bin/activate; {export}"], cwd=checkout, env=newcomer)
+    hint = re.search(r"hint: run (.*)", told.stderr)
+    assert hint is not None, told.stderr
+    assert "[mesh]" in hint[1]
+    done = run(["bash", "-e", "-c", f"source .venv/bin/activate; {hint[1]}; {export}"], cwd=checkout, env=newcomer)
+    assert done.returncode == 0, done.stderr
+    assert (checkout / "robot.glb").is_file()

@@ -1,0 +1,62 @@
+"""What pages, messages and robots say about installing is what works, while no version is on a package index."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics.extras import APART, EXTRAS
+from linkwright.diagnostics.installation import Installation, Origin
+from tests.places import REPOSITORY
+
+WRITTEN = ("docs", "frontend/src", "robots", "src", "README.md", "README.zh-CN.md", "SECURITY.md", "SECURITY.zh-CN.md")
+KINDS = {".html", ".md", ".po", ".py", ".toml", ".ts", ".txt", ".xml", ".yaml"}
+RECORDS = REPOSITORY / "docs" / "decisions"
+INSTALLING = re.compile(r"\b(?:pip|pipx|uv tool) install (?P<what>(?:-e )?(?:'[^'\n]+'|[^\s`'）)]+))")
+OTHERS = {
+    "-e street_displays",
+    "'linkwright-0.1.0-py3-none-any.whl[all]'",
+    "ai-edge-litert",
+    "path/to/linkwright",
+}
+"""What readers are told to install besides Linkwright, and Linkwright where they are not in its checkout."""
+
+
+@cache
+def told() -> list[tuple[Path, str]]:
+    """Each command of pip, pipx and uv that users read or see printed: where, and what it installs."""
+    found = [path for name in WRITTEN for path in sorted([REPOSITORY / name, *(REPOSITORY / name).rglob("*")])]
+    return [
+        (path.relative_to(REPOSITORY), match["what"])
+        for path in found
+        if path.suffix in KINDS and path.is_file() and RECORDS not in path.parents
+        for match in INSTALLING.finditer(path.read_text(encoding="utf-8"))
+    ]
+
+
+def test_pages_tell_how_to_install() -> None:
+    assert {"README.md", "README.zh-CN.md"} <= {path.name for path, _ in told()}
+
+
+def test_messages_leave_the_command_to_what_knows_how_linkwright_was_installed() -> None:
+    assert [each for each in told() if each[0].parts[0] in ("frontend", "robots", "src")] == []
+
+
+def test_each_command_is_that_of_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    for path, what in told():
+        if what not in OTHERS:
+            extras = [extra for listed in re.findall(r"\[([\w,]+)\]", what) for extra in listed.split(",")]
+            assert set(extras) <= {*EXTRAS, "all"}, (path, what)
+            installation = Installation(Origin(str(tmp_path), what.startswith("-e ")), ("pip", "install"))
+            in_order = re.sub(r"\[.*\]", f"[{','.join(sorted(extras))}]", what)
+            assert f"pip install {in_order}" == installation.command_for_extras(*extras), (path, what)
+
+
+@pytest.mark.parametrize(("page", "number"), [("README.md", "all but three"), ("README.zh-CN.md", "除三个以外")])
+def test_the_readme_counts_what_all_leaves_out(page: str, number: str) -> None:
+    assert len(APART) == 3
+    assert number in (REPOSITORY / page).read_text(encoding="utf-8")
