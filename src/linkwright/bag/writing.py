@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import sqlite3
+import threading
 from collections.abc import Collection
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Literal
 
+from linkwright import unfinished
 from linkwright.bag.qos import to_bag
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, missing_extra, phrase
 from linkwright.messages import type_hash
@@ -28,9 +30,14 @@ _REFUSALS = (OSError, sqlite3.Error)
 _VERSION: Literal[8] = 8
 """The version of the metadata; Humble reads 8 and below but for unknown fields, Jazzy writes 9."""
 
+_LONGEST_WRITE = 30.0
+"""Seconds that `BagWriter.finish` waits for another thread to write what it is writing: disks may be slow."""
+
 
 class BagWriter:
     """A recording that is being written; close it, or use it in a ``with`` statement.
+
+    It gets its end however a signal ends the process, but for SIGKILL (`unfinished`).
 
     Args:
         path: the folder to make; of a single file, the file.
@@ -78,6 +85,11 @@ class BagWriter:
                 )
             ) from error
         self._connections: dict[str, Any] = {}
+        self._lock = threading.RLock()
+        self._is_ending = False
+        if hasattr(self._writer.storage, "conn"):
+            _let_any_thread_close(self._writer.storage)
+        unfinished.begun(self)
 
     @property
     def topics(self) -> Collection[str]:
@@ -97,16 +109,16 @@ class BagWriter:
         Raises:
             LinkwrightError: MSG101, the type is not known; BAG108, the disk refuses.
         """
-        try:
-            self._connections[name] = self._writer.add_connection(
-                name,
-                type_name,
-                msgdef=schema_of(type_name),
-                rihs01=type_hash(type_name),
-                offered_qos_profiles=[to_bag(qos) for qos in offered_qos],
-            )
-        except _REFUSALS as error:
-            raise self._ended(error) from error
+        schema, digest, offered = schema_of(type_name), type_hash(type_name), [to_bag(qos) for qos in offered_qos]
+        with self._lock:
+            if self._writer.storage is None:
+                return
+            try:
+                self._connections[name] = self._writer.add_connection(
+                    name, type_name, msgdef=schema, rihs01=digest, offered_qos_profiles=offered
+                )
+            except _REFUSALS as error:
+                raise self._ended(error) from error
 
     def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
         """Add a message.
@@ -119,12 +131,15 @@ class BagWriter:
         Raises:
             LinkwrightError: BAG108, the disk refuses; what was written until then can be played.
         """
-        if self._writer.storage is None:
+        if self._is_ending:  # who finishes it waits for the lock, and who writes all the time might always get it
             return
-        try:
-            self._writer.write(self._connections[topic], stamp_ns, data)
-        except _REFUSALS as error:
-            raise self._ended(error) from error
+        with self._lock:
+            if self._writer.storage is None:
+                return
+            try:
+                self._writer.write(self._connections[topic], stamp_ns, data)
+            except _REFUSALS as error:
+                raise self._ended(error) from error
 
     def flush(self) -> None:
         """Flush, so that what was written survives the end of this process, however it ends.
@@ -132,18 +147,19 @@ class BagWriter:
         Raises:
             LinkwrightError: BAG108, the disk refuses.
         """
-        storage: Any = self._writer.storage
-        if storage is None:
-            return
-        try:
-            if hasattr(storage, "close_chunk"):
-                if storage.chunk.msgs:
-                    storage.close_chunk()
-                storage.bio.flush()
-            else:
-                storage.conn.commit()
-        except _REFUSALS as error:
-            raise self._ended(error) from error
+        with self._lock:
+            storage: Any = self._writer.storage
+            if storage is None:
+                return
+            try:
+                if hasattr(storage, "close_chunk"):
+                    if storage.chunk.msgs:
+                        storage.close_chunk()
+                    storage.bio.flush()
+                else:
+                    storage.conn.commit()
+            except _REFUSALS as error:
+                raise self._ended(error) from error
 
     def close(self) -> None:
         """Write the index and the metadata. A second call, and one after the disk refused something, does nothing.
@@ -151,15 +167,28 @@ class BagWriter:
         Raises:
             LinkwrightError: BAG108, the disk refuses.
         """
-        if self._writer.storage is None:
+        with self._lock:
+            if self._writer.storage is None:
+                return
+            try:
+                if self._is_file:
+                    self._close_file()
+                else:
+                    self._writer.close()
+            except _REFUSALS as error:
+                raise self._ended(error) from error
+            unfinished.finished(self)
+
+    def finish(self) -> None:
+        """`close` from another thread than the one that writes, before the process is ended."""
+        self._is_ending = True
+        if not self._lock.acquire(timeout=_LONGEST_WRITE):
             return
         try:
-            if self._is_file:
-                self._close_file()
-            else:
-                self._writer.close()
-        except _REFUSALS as error:
-            raise self._ended(error) from error
+            with contextlib.suppress(LinkwrightError):  # nobody can be told any more
+                self.close()
+        finally:
+            self._lock.release()
 
     def _close_file(self) -> None:
         """Close a single file, which has the metadata in it; the library writes them into a folder, too."""
@@ -169,6 +198,7 @@ class BagWriter:
 
     def _ended(self, error: Exception) -> LinkwrightError:
         """The error when the disk refuses something; nothing more is written then."""
+        unfinished.finished(self)
         storage, self._writer.storage = self._writer.storage, None
         with contextlib.suppress(*_REFUSALS):  # what waits in its buffer is refused again
             if storage is not None:
@@ -185,6 +215,13 @@ class BagWriter:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _let_any_thread_close(storage: Any) -> None:
+    """Connect to a database again: the library's connection may be used in one thread only."""
+    storage.conn.close()
+    storage.conn = sqlite3.connect(f"file:{storage.path}", uri=True, check_same_thread=False)
+    storage.cursor = storage.conn.cursor()
 
 
 class _File:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from linkwright.graph import Graph, Node
     from linkwright.graph.loop.future import Future
+    from linkwright.hosting.signals import SignalWatch
 
 T = TypeVar("T")
 
@@ -50,20 +51,38 @@ def add_session_arguments(parser: argparse.ArgumentParser) -> None:
 class Session:
     """The graph and the node of a running verb.
 
+    A `SignalWatch` can end it: the verb is done then.
+
     Attributes:
         graph: joined with what runs outside.
         node: the verb's own hidden node.
+        loop: the loop it runs on.
+        visiting: whether a signal has to break something off; never.
     """
+
+    visiting = False
 
     def __init__(self, graph: Graph, node: Node) -> None:
         self.graph = graph
         self.node = node
-        self._outcome: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self.loop = asyncio.get_running_loop()
+        self._outcome: asyncio.Future[int] = self.loop.create_future()
 
     def finish(self, status: int = 0) -> None:
         """Let `finished` return a status."""
         if not self._outcome.done():
             self._outcome.set_result(status)
+
+    def interrupt(self, _reason: str) -> None:
+        """Let `finished` return 0, as the user said so."""
+        self.finish()
+
+    def seconds_to_end(self) -> float:
+        """No time: there are no processes."""
+        return 0.0
+
+    def kill_all(self) -> None:
+        """There are no processes to be ended."""
 
     def guarded(self, callback: Callable[..., object]) -> Callable[..., None]:
         """A callback for the graph whose errors end the verb, where the graph itself would log them and go on."""
@@ -181,6 +200,7 @@ def run_in_graph(
     node_name: str | None = None,
     remappings: Sequence[tuple[str, str]] = (),
     only_looks: bool = False,
+    signals: SignalWatch | None = None,
 ) -> int:
     """Run a verb's coroutine in the graph; its result is the exit status.
 
@@ -190,6 +210,7 @@ def run_in_graph(
         node_name: see `graph_session`.
         remappings: see `graph_session`.
         only_looks: see `graph_session`.
+        signals: handles signals, the first of which finishes the session; when left out, they break the verb off.
     """
 
     async def main() -> int:
@@ -200,10 +221,15 @@ def run_in_graph(
             remappings=remappings,
             only_looks=only_looks,
         ) as session:
+            if signals is not None:
+                signals.session = session
             return await job(session)
 
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(line_buffering=True)
+    if signals is not None:
+        with signals:
+            return signals.run(main)
     with TerminationEnds():
         return run_coroutine(main, raise_interrupts)
 

@@ -1,4 +1,7 @@
-"""Ctrl-C and other signals: the first ends a run in order, the second hurries, the third ends it at once."""
+"""Ctrl-C and other signals: the first ends a run in order, the second hurries, the third ends it at once.
+
+What has an end that must be written, such as a recording, gets it in any case (`unfinished`).
+"""
 
 from __future__ import annotations
 
@@ -17,12 +20,13 @@ from linkwright.event_loop import run_coroutine
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.interruption import signal_again, when_lost
 from linkwright.packages import PackageFinder, use_finder
+from linkwright.unfinished import finish_all
 
 T = TypeVar("T")
 
 _DEADLINE_SECONDS = 1.9
-"""However badly something hangs: this long after a signal the program is over, or, after the first one, its event loop
-gives the processes the time that they have."""
+"""However badly something hangs: this long after a signal the program finishes its recordings and is over, or, after
+the first one, its event loop gives the processes the time that they have."""
 _SAME_KEYPRESS_SECONDS = 0.3
 """Signals this close count as one: a wrapper may pass a terminal's Ctrl-C on."""
 
@@ -109,16 +113,15 @@ class SignalWatch:
 
     def _handle(self, number: int, _: FrameType | None) -> None:
         now = time.monotonic()
-        session = self.session
+        session, at_once = self.session, False
         if self.received is not None:
             if now - self._received_at <= _SAME_KEYPRESS_SECONDS:
                 return
-            if self._hurried or session is None or session.loop is None:
-                self._end_at_once()
+            at_once = self._hurried or session is None or session.loop is None
             self._hurried = True
         self.received, self._received_at = self.received or number, now
-        self._end_after(_DEADLINE_SECONDS)
-        if self._is_making_loop:
+        self._end_after(0.0 if at_once else _DEADLINE_SECONDS)
+        if at_once or self._is_making_loop:
             return
         if session is None or session.loop is None:
             raise KeyboardInterrupt
@@ -148,8 +151,10 @@ class SignalWatch:
             signal_again(number)
 
     def _end_at_once(self) -> None:
+        """End the process, in a thread of its own: the main one may hang, or be writing what is finished here."""
         if self.session is not None:
             self.session.kill_all()
+        finish_all()
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
         os._exit(self.exit_status or 1)

@@ -126,6 +126,7 @@ class ModelView:
                 await self.host.start_planned()
                 self.reload.start()
             await self._is_over.wait()
+            self._end_recording()  # before what takes time: nothing more is recorded
             self.ending = True
             self.reload.close()
             self.host.close_nodes()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from datetime import datetime
 from typing import TYPE_CHECKING
@@ -92,6 +93,7 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
 def run_record(arguments: argparse.Namespace) -> int:
     """Record until the user ends it."""
     from linkwright.cli.session import run_in_graph
+    from linkwright.hosting.signals import SignalWatch
 
     selection = _selection(arguments)
     if selection.is_empty:
@@ -132,10 +134,13 @@ def run_record(arguments: argparse.Namespace) -> int:
             finally:
                 recorder.close()
 
+    signals = SignalWatch()
     try:
-        return run_in_graph(arguments, job, node_name=arguments.node_name)
+        status = run_in_graph(arguments, job, node_name=arguments.node_name, signals=signals)
     except KeyboardInterrupt:
-        return 0  # that is how a recording is ended
+        status = 0
+    interrupted = signals.received in (None, signal.SIGINT)  # that is how a recording is ended
+    return status if interrupted else signals.exit_status or status
 
 
 def _selection(arguments: argparse.Namespace) -> TopicSelection:
