@@ -36,6 +36,7 @@ import { WorldPanel } from "./panels/modelling/world-panel";
 import { livePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
+import type { PanelId } from "./panels/panel";
 import { TimePanel } from "./panels/timeline/time-panel";
 import { TimelineBar } from "./panels/timeline/timeline-bar";
 import { SelectionPanel } from "./panels/views-and-tools/selection-panel";
@@ -72,6 +73,8 @@ import { browserStorage } from "./storage";
 import { language } from "./strings";
 import { matches, SHORTCUTS } from "./widgets/shortcuts";
 
+const CLOSING_MS = 2000;
+
 function start(app: HTMLElement): void {
   document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
   const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
@@ -81,6 +84,10 @@ function start(app: HTMLElement): void {
   const door = new Door(connection, tokens, app);
   // Before anything is drawn: the answer takes a moment.
   connection.open();
+  // Browsers slow down the clock of pages that nobody sees.
+  document.addEventListener("visibilitychange", () => {
+    if (!document.hidden) connection.hurry();
+  });
   const session = new Session(connection);
 
   const sheet = new KeySheet(session.tools);
@@ -169,18 +176,9 @@ function addressBar(): AddressBar {
 
 /** The panels that depend on what there is, whichever arrangement is shown. */
 function keepCurrent(dock: Dock, session: Session): void {
-  const keepJoints = (): void => {
-    if (session.joints.controls === null) dock.close("joints");
-    else if (!dock.isOpen("joints")) dock.open("joints");
-  };
-  const keepWorld = (): void => {
-    if (!session.modelling.active) dock.close("world");
-    else if (!dock.isOpen("world")) dock.open("world");
-  };
-  const keepComparison = (): void => {
-    if (session.comparison.compared === null) dock.close("comparison");
-    else if (!dock.isOpen("comparison")) dock.open("comparison");
-  };
+  const keepJoints = follow(dock, "joints", () => session.joints.controls !== null);
+  const keepWorld = follow(dock, "world", () => session.modelling.active);
+  const keepComparison = follow(dock, "comparison", () => session.comparison.compared !== null);
   const { displays } = session;
   const keepDisplays = (): void => dock.displayPanels.keep(displays.displays.map(({ id }) => id));
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failing);
@@ -200,6 +198,19 @@ function keepCurrent(dock: Dock, session: Session): void {
     keepDisplays();
     countFindings();
   });
+}
+
+/**
+ * What opens a panel when there is something for it, and closes it when there no longer is: a moment later, since a
+ * program that was started again has it soon, and the panel then is where the user had put it.
+ */
+function follow(dock: Dock, id: PanelId, hasSomething: () => boolean): () => void {
+  let closing: ReturnType<typeof setTimeout> | undefined;
+  return () => {
+    clearTimeout(closing);
+    if (!hasSomething()) closing = setTimeout(() => dock.close(id), CLOSING_MS);
+    else if (!dock.isOpen(id)) dock.open(id);
+  };
 }
 
 /** Mouse and keys for the scene. */

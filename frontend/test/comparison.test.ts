@@ -71,7 +71,7 @@ describe("two descriptions in one scene", () => {
   });
 
   it("knows nothing of a program that it was not told of", () => {
-    connection.message.emit({ type: "hello", protocol: 1, version: "", title: "" });
+    connection.message.emit({ type: "hello", protocol: 1, version: "", title: "", run: "1" });
     expect(comparison.compared).toBeNull();
     expect(comparison.instead("display-2", "arm")).toBeNull();
     expect(comparison.isOld("")).toBe(false);

@@ -23,7 +23,7 @@ class FakeSocket {
     this.onclose?.({ code: 1000 });
   }
   hello(protocol = PROTOCOL_VERSION): void {
-    this.onmessage?.({ data: JSON.stringify({ type: "hello", protocol, version: "1", title: "" }) });
+    this.onmessage?.({ data: JSON.stringify({ type: "hello", protocol, version: "1", title: "", run: "1" }) });
   }
 }
 
@@ -127,7 +127,7 @@ describe("the connection", () => {
     const { socket } = opened();
     socket.hello();
     socket.onmessage?.({ data: packed(1, [[0, 0, 0, 0, 0, 0, 1]], [0]) });
-    socket.onmessage?.({ data: JSON.stringify({ type: "hello", protocol: PROTOCOL_VERSION, version: "1", title: "x".repeat(2000) }) });
+    socket.onmessage?.({ data: JSON.stringify({ type: "hello", protocol: PROTOCOL_VERSION, version: "1", title: "x".repeat(2000), run: "1" }) });
     const counts = socket.sent.map((text) => JSON.parse(text) as unknown);
     expect(counts).toEqual([{ type: "received", count: 1 }, { type: "received", count: 3 }]);
   });
@@ -203,6 +203,65 @@ describe("the connection", () => {
     expect(FakeSocket.made[0]?.url).toBe("ws://127.0.0.1/ws?token=abc");
     FakeSocket.made[0]!.hello();
     expect(connection.state).toBe("connected");
+  });
+
+  describe("after the program has ended", () => {
+    const token = "a".repeat(32);
+
+    /** A page that was let in and lost its server, and what it asks whoever answers with `answer`. */
+    async function comingBack(answer: (nonce: string) => Promise<string>) {
+      const asked: string[] = [];
+      vi.stubGlobal("fetch", async (url: URL) => {
+        asked.push(url.href);
+        const text = await answer(url.searchParams.get("nonce") ?? "");
+        return { status: 200, text: () => Promise.resolve(text) };
+      });
+      const { tokens } = page(`http://127.0.0.1/?token=${token}`);
+      const connection = new Connection("ws://127.0.0.1/ws", tokens);
+      connection.open();
+      FakeSocket.made[0]!.hello();
+      FakeSocket.made[0]!.onclose?.({ code: 1001 });
+      await vi.advanceTimersByTimeAsync(250);
+      await vi.waitFor(() => expect(asked).not.toEqual([]));
+      return { connection, asked };
+    }
+
+    async function proofOf(nonce: string): Promise<string> {
+      const [text, { subtle }] = [new TextEncoder(), crypto];
+      const key = await subtle.importKey("raw", text.encode(token), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
+      const made = new Uint8Array(await subtle.sign("HMAC", key, text.encode(nonce)));
+      return Array.from(made, (byte) => byte.toString(16).padStart(2, "0")).join("");
+    }
+
+    it("comes back to the one that proves to know the token", async () => {
+      const { connection, asked } = await comingBack(proofOf);
+      await vi.waitFor(() => expect(FakeSocket.made).toHaveLength(2));
+      FakeSocket.made[1]!.hello();
+      expect(connection.state).toBe("connected");
+      expect(asked[0]).toMatch(/^http:\/\/127\.0\.0\.1\/proof\?nonce=[0-9a-f]{32}$/);
+    });
+
+    it("tells the token to no other, and says that the program is another", async () => {
+      const answers = ["", "<html>", "0".repeat(64), await proofOf("0".repeat(32))];
+      for (const answer of answers) {
+        FakeSocket.made = [];
+        const { connection, asked } = await comingBack(() => Promise.resolve(answer));
+        await vi.waitFor(() => expect(connection.state).toBe("refused"));
+        expect(FakeSocket.made).toHaveLength(1);
+        expect(asked.join()).not.toContain(token);
+      }
+    });
+
+    it("asks again, never with the same number, while nobody answers, and at once when it is seen again", async () => {
+      const { connection, asked } = await comingBack(() => Promise.reject(new Error("nobody")));
+      await vi.advanceTimersByTimeAsync(10_000);
+      await vi.waitFor(() => expect(asked.length).toBeGreaterThan(3));
+      expect(connection.state).toBe("ended");
+      expect(new Set(asked).size).toBe(asked.length);
+      const before = asked.length;
+      connection.hurry();
+      await vi.waitFor(() => expect(asked).toHaveLength(before + 1));
+    });
   });
 
   it("reloads the page once when the server speaks another version", () => {

@@ -54,7 +54,7 @@ function receive(...messages: ServerMessage[]): void {
 }
 
 function hello(): void {
-  receive({ type: "hello", protocol: 0, version: "", title: "" });
+  receive({ type: "hello", protocol: 0, version: "", title: "", run: "1" });
 }
 
 function configuration(part: Partial<Configuration>): Configuration {

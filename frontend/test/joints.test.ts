@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import { halvesOf } from "../src/panels/joints/joint-row";
-import type { JointControl, PageMessage } from "../src/protocol";
+import type { JointControl, PageMessage, ServerMessage } from "../src/protocol";
 import { JointsState } from "../src/state/joints";
 import { PoseStore, posesOf, srdfOf, standsAs } from "../src/state/named-poses";
 import { roundTrip, Sweep } from "../src/state/sweep";
@@ -17,12 +17,14 @@ describe("moving joints", () => {
   let sent: PageMessage[];
   let frames: (() => void)[];
   let joints: JointsState;
+  let emit: (message: ServerMessage) => void;
 
   beforeEach(() => {
     sent = [];
     frames = [];
     const connection = new Connection("ws://localhost/ws");
     vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+    emit = (message) => connection.message.emit(message);
     joints = new JointsState(connection, (work) => frames.push(work));
     const controls = [control("grip"), control("claw", { mimic: "grip", multiplier: -2, offset: 0.5 })];
     connection.message.emit({ type: "joints", controls: [...controls, control("tip", { mimic: "claw" })] });
@@ -31,6 +33,35 @@ describe("moving joints", () => {
   function frame(): void {
     for (const work of frames.splice(0)) work();
   }
+
+  describe("of a program that was started again", () => {
+    beforeEach(() => {
+      emit({ type: "joint_positions", positions: { grip: 0.7, claw: -0.9, tip: 0 } });
+      emit({ type: "joints", controls: null }); // as it ends, and as the next one begins
+    });
+
+    it("puts those that were moved back once there are sliders, once", () => {
+      joints.programRestarted(true);
+      emit({ type: "joints", controls: null });
+      emit({ type: "joints", controls: [] });
+      expect(sent).toEqual([]);
+      emit({ type: "joints", controls: [control("grip"), control("claw"), control("lift")] });
+      emit({ type: "joints", controls: [control("grip")] });
+      expect(sent).toEqual([{ type: "set_joint", name: "grip", position: 0.7 }]);
+    });
+
+    it("moves none that stood at their zero, are gone, or belong to something else that is shown now", () => {
+      joints.programRestarted(true);
+      emit({ type: "joints", controls: [control("other")] });
+      emit({ type: "joint_positions", positions: { other: 0 } });
+      joints.programRestarted(true);
+      emit({ type: "joints", controls: [control("other")] });
+      emit({ type: "joint_positions", positions: { other: 1 } });
+      joints.programRestarted(false);
+      emit({ type: "joints", controls: [control("other")] });
+      expect(sent).toEqual([]);
+    });
+  });
 
   it("tells the first move at once and the rest of a frame as one", () => {
     for (const position of [0.1, 0.2, 0.3]) joints.move({ grip: position });

@@ -149,7 +149,7 @@ describe("plots", () => {
     plots.setOpen(true);
     const wanted = { type: "watch_series", series: [{ id: plots.series[0]?.id, topic: "/a", path: "x" }], seconds: 30 };
     expect(sent.at(-1)).toEqual(wanted);
-    connection.message.emit({ type: "hello", protocol: 3, version: "1", title: "" });
+    connection.message.emit({ type: "hello", protocol: 3, version: "1", title: "", run: "1" });
     expect(sent.filter((message) => JSON.stringify(message) === JSON.stringify(wanted))).toHaveLength(2);
     plots.setOpen(false);
     expect(sent.at(-1)).toEqual({ type: "watch_series", series: [], seconds: 30 });

@@ -53,7 +53,7 @@ describe("recording", () => {
   });
 
   it("is not possible before the program says so, nor beside a recording", () => {
-    connection.message.emit({ type: "hello", protocol: 0, version: "", title: "" });
+    connection.message.emit({ type: "hello", protocol: 0, version: "", title: "", run: "1" });
     expect(recording.possible).toBe(false);
     connection.message.emit(told({ possible: false }));
     expect(recording.possible).toBe(false);

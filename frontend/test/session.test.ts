@@ -102,6 +102,35 @@ describe("the view", () => {
     expect(session.view.values["Yaw"]).toBe(1);
   });
 
+  describe("of a program that was started again", () => {
+    const hello = (run: string, title = "robot.urdf"): ServerMessage => ({ type: "hello", protocol: 1, version: "1", title, run });
+    const sizes = (): unknown[] => sent.filter(({ type }) => type === "robot_measured");
+
+    it("keeps the camera, and the program is told anew how large the robot is", () => {
+      receive(hello("first"));
+      receive(view(1));
+      session.view.update({ Yaw: 2 });
+      session.view.measured(box, 0);
+      expect(sizes()).toHaveLength(0);
+      receive(hello("second"));
+      receive(view(1));
+      expect(session.view.values["Yaw"]).toBe(2);
+      expect(session.view.awaitsSize).toBe(true);
+      session.view.measured(box, 0);
+      session.view.measured(box, 0);
+      expect(sizes()).toHaveLength(1);
+    });
+
+    it("is its own where that shows another file", () => {
+      receive(hello("first"));
+      receive(view(1));
+      session.view.update({ Yaw: 2 });
+      receive(hello("second", "other.urdf"));
+      receive(view(3));
+      expect(session.view.values["Yaw"]).toBe(3);
+    });
+  });
+
   it("of another file moves the camera", () => {
     receive(view(1));
     session.view.update({ Yaw: 2 });

@@ -69,7 +69,7 @@ describe("the timeline", () => {
   });
 
   it("is gone with a program that has none", () => {
-    connection.message.emit({ type: "hello", protocol: 1, version: "", title: "" });
+    connection.message.emit({ type: "hello", protocol: 1, version: "", title: "", run: "1" });
     expect(timeline.timeline).toBeNull();
   });
 });

@@ -77,7 +77,7 @@ describe("the clocks", () => {
     const time = new TimeControlState(connection);
     time.watch(true);
     time.watch(true);
-    receive({ type: "hello", protocol: 0, version: "", title: "" });
+    receive({ type: "hello", protocol: 0, version: "", title: "", run: "1" });
     expect(sent).toEqual([
       { type: "watch_clock", watching: true },
       { type: "watch_clock", watching: true },

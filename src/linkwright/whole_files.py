@@ -57,7 +57,7 @@ def _permissions(path: str) -> int | None:
 
 def _replace(target: str, content: bytes, mode: int | None) -> None:
     draft = _beside(target, "draft")
-    _create(draft, content)
+    _create(draft, content, 0o666 if mode is None else mode)
     try:
         if mode is not None:
             os.chmod(draft, mode)
@@ -104,9 +104,12 @@ def _beside(target: str, what: str) -> str:
     return os.path.join(folder, f".{name}.{what}-{os.urandom(4).hex()}")
 
 
-def _create(path: str, content: bytes) -> None:
-    """Make a file that is on the disk when this returns, or not there when it fails."""
-    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
+def _create(path: str, content: bytes, mode: int = 0o666) -> None:
+    """Make a file that is on the disk when this returns, or not there when it fails.
+
+    `mode` is its permissions, less those that the process gives no file.
+    """
+    descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode)
     try:
         try:
             _write_all(descriptor, content)

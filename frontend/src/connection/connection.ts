@@ -3,6 +3,7 @@ import { Signal } from "../signal";
 import { browserStorage } from "../storage";
 import { unpackData, type DisplayData } from "./data";
 import { isPiece, Pieces } from "./pieces";
+import { askForProof } from "./proof";
 import { recordingIn } from "./recording-address";
 import { unpackSamples, type SeriesSamples } from "./samples";
 import type { Tokens } from "./tokens";
@@ -15,7 +16,8 @@ import { unpackTransforms, type Transforms } from "./transforms";
 export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "refused" | "outdated";
 
 const FIRST_RETRY_MS = 250;
-const LONGEST_RETRY_MS = 4000;
+/** Less than the server waits for pages that were open before it was restarted. */
+const LONGEST_RETRY_MS = 2000;
 const GOING_AWAY = 1001;
 const UNAUTHORIZED = 401;
 /** Messages of this length, in bytes or characters, are acknowledged: fewer than the server counts on. */
@@ -34,6 +36,9 @@ export class Connection {
   private retryMs = FIRST_RETRY_MS;
   private receivedCount = 0;
   private shown: string | null = null;
+  /** The token with which this page was let in. */
+  private accepted: string | null = null;
+  private attempts = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private current: ConnectionState = "connecting";
 
@@ -71,6 +76,29 @@ export class Connection {
       this.retryLater();
       return;
     }
+    this.attempts += 1;
+    if (this.shown !== null && this.accepted !== null) void this.comeBack(this.shown, this.attempts);
+    else this.connect();
+  }
+
+  /** Tries now what it would try some time later. */
+  hurry(): void {
+    if (this.socket === null && this.attempts > 0 && this.current !== "connected" && this.current !== "outdated") this.open();
+  }
+
+  /** Shows the token to the program that this page knows, and to nobody else who listens in its place. */
+  private async comeBack(token: string, attempt: number): Promise<void> {
+    const proof = await askForProof(this.url, token);
+    if (attempt !== this.attempts) return;
+    if (proof === "known") {
+      this.connect();
+      return;
+    }
+    if (proof === "unknown" && this.tokens?.refused() !== true) this.become("refused");
+    this.retryLater();
+  }
+
+  private connect(): void {
     const socket = new WebSocket(this.address.href);
     socket.binaryType = "arraybuffer";
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
@@ -82,6 +110,7 @@ export class Connection {
   /** Shows the server another token, now. */
   show(token: string): void {
     this.tokens?.take(token);
+    this.accepted = null;
     this.become("connecting");
     this.open();
   }
@@ -112,6 +141,7 @@ export class Connection {
         return;
       }
       browserStorage("sessionStorage").removeItem(RELOADED_KEY);
+      this.accepted = this.shown;
       if (this.shown !== null) this.tokens?.accepted(this.shown);
       this.retryMs = FIRST_RETRY_MS;
       this.become("connected");

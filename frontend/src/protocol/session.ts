@@ -2,11 +2,12 @@
 
 export const PROTOCOL_VERSION = 5;
 
-/** First message on every connection. */
+/** First message on every connection; `run` is another one when the program was started again. */
 export interface Hello {
   protocol: number;
   version: string;
   title: string;
+  run: string;
   type: "hello";
 }
 

@@ -291,9 +291,10 @@ export class Stage {
       if (settled) lookFirst(world, view, this.viewport.size);
     } else {
       const seen = robots.flatMap((robot) => robot.seen || []).join(";");
-      if (seen === "" || !view.awaitsFit(seen)) return;
+      const fits = view.awaitsFit(seen);
+      if (seen === "" || !(fits || view.awaitsSize)) return;
       const box = this.boundsOfRobots();
-      if (box) view.fitFirst(box, this.room.take(), seen);
+      if (box && fits) view.fitFirst(box, this.room.take(), seen);
       if (box && settled) view.measured(box, Math.min(...robots.map((robot) => robot.ground())));
     }
     this.viewport.aim(view);

@@ -17,6 +17,10 @@ export class JointsState {
   /** Links are dragged without holding Alt. */
   handsOn = false;
   private waiting: Record<string, number> | null = null;
+  /** The rows that there were last; a program that ends takes them away. */
+  private latest: readonly JointControl[] = [];
+  /** Where joints stood in a program that was started again, until the new one has sliders. */
+  private lost: Positions = {};
 
   constructor(
     private readonly connection: Connection,
@@ -56,9 +60,22 @@ export class JointsState {
     return null;
   }
 
+  /** The program was started again: joints that were moved go back to where they stood, if it shows the same. */
+  programRestarted(isSame: boolean): void {
+    const moved = this.latest.filter(({ name, mimic, zero }) => mimic === null && this.positions[name] !== zero);
+    const before = moved.map(({ name }) => [name, this.positions[name]]).filter(([, position]) => position !== undefined);
+    this.lost = isSame ? { ...this.lost, ...(Object.fromEntries(before) as Positions) } : {};
+  }
+
   private setControls(controls: readonly JointControl[] | null): void {
     this.controls = controls;
     this.controlsChanged.emit();
+    if (controls === null || controls.length === 0) return;
+    this.latest = controls;
+    const known = new Set(controls.map(({ name }) => name));
+    const found = Object.entries(this.lost).filter(([name]) => known.has(name));
+    this.lost = {};
+    this.send(Object.fromEntries(found));
   }
 
   private setPositions(positions: Positions): void {

@@ -68,6 +68,7 @@ export class Session {
   readonly voice: VoiceState;
   readonly words: WordsState;
   diagnostics: readonly DiagnosticItem[] = [];
+  private program: Hello | null = null;
 
   constructor(readonly connection: Connection) {
     this.configuration = new ConfigurationState(connection);
@@ -110,8 +111,20 @@ export class Session {
     return null;
   }
 
+  /** Keeps pose and camera where the program was started again, unless it shows something else now. */
+  private greet(hello: Hello): void {
+    const before = this.program;
+    this.program = hello;
+    if (before !== null && before.run !== hello.run) {
+      const isSame = before.title === hello.title;
+      this.view.programRestarted(isSame);
+      this.joints.programRestarted(isSame);
+    }
+    this.greeted.emit(hello);
+  }
+
   private listen(connection: Connection): void {
-    connection.on("hello", (message) => this.greeted.emit(message));
+    connection.on("hello", (message) => this.greet(message));
     connection.on("tree", (message) => {
       this.displays.setTree(message);
       for (const id of this.robots.keys()) if (!this.displays.find(id)) this.robots.delete(id);

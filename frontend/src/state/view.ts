@@ -28,6 +28,8 @@ export class ViewState {
   private lookedAt: { readonly what: string; readonly box: Span | null } | null = null;
   private revision: number | null = null;
   private measuredFor: number | null = null;
+  /** A program that was started again does not know the size of the robots yet, wherever the camera is. */
+  private measuresAgain = false;
   private lastTarget: Target = FIXED;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -90,6 +92,17 @@ export class ViewState {
     return this.lookedAt !== null && what !== this.lookedAt.what;
   }
 
+  /** The program was started again; with something else to look at, the camera begins anew. */
+  programRestarted(isSame: boolean): void {
+    this.measuresAgain = true;
+    if (!isSame) this.revision = null;
+  }
+
+  /** The server is to be told how large the robots are, though the camera stays. */
+  get awaitsSize(): boolean {
+    return this.measuresAgain;
+  }
+
   /** Keeps the camera where it is, since somebody works with it. */
   stay(): void {
     this.lookedAt = null;
@@ -108,11 +121,12 @@ export class ViewState {
   }
 
   /**
-   * Reports the size of the robots, while nobody has moved the camera, and the height of the ground that they stand on,
-   * once all of them are there.
+   * Reports the size of the robots, while nobody has moved the camera or to a program that was started again, and the
+   * height of the ground that they stand on, once all of them are there.
    */
   measured({ min, max }: Span, ground: number): void {
-    if (this.lookedAt === null || this.measuredFor === this.revision) return;
+    if (!this.measuresAgain && (this.lookedAt === null || this.measuredFor === this.revision)) return;
+    this.measuresAgain = false;
     this.measuredFor = this.revision;
     this.connection.send({ type: "robot_measured", diagonal: distanceBetween(min, max), ground });
   }

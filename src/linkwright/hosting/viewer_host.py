@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 
 _CLOSE_SECONDS = 0.8
 
+_RETURN_SECONDS = 2.5
+"""Longer than pages wait between two looks for the program."""
+
+_LOOK_SECONDS = 0.1
+
 
 class ViewerHost:
     """Starts, holds and ends viewers."""
@@ -101,7 +106,10 @@ class ViewerHost:
             plan.viewer_started(viewer)
         session.log.announce(f"Viewer: {viewer.url}")
         if session.options.open_browser:
-            _open_in_browser(viewer.url)
+            if viewer.pages_wait:
+                session.spawn(self._open_unless_back(viewer))
+            else:
+                _open_in_browser(viewer.url)
         instead = "RViz" if plan.owner is not None else "Gazebo's window"
         session.log.say(
             plan.process_name, f"started in the launcher's process: the viewer in the browser stands in for {instead}"
@@ -109,6 +117,14 @@ class ViewerHost:
         viewer.show_diagnostics([*self._findings, *findings])
         for running in nodes:
             _attach_panel(viewer, running)
+
+    async def _open_unless_back(self, viewer: Viewer) -> None:
+        """Open the page, unless one that was open before the program was started again comes back by itself."""
+        for _ in range(round(_RETURN_SECONDS / _LOOK_SECONDS)):
+            if self._session.ending or len(viewer.audience) > 0:
+                return
+            await asyncio.sleep(_LOOK_SECONDS)
+        _open_in_browser(viewer.url)
 
     def _port_for(self, plan: HostedPlan) -> int | None:
         """The port that was asked for; None, the next that is free, where another page has it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from linkwright.graph import Node
     from linkwright.nodes.joint_panel import JointPanel
     from linkwright.viewer.live_history import LiveHistory
+    from linkwright.viewer.web.kept_tokens import PortToken
     from linkwright.viewer.web.server import WebServer
     from linkwright.viewer.web.uploads import Guests
 
@@ -85,6 +87,8 @@ class Viewer:
         self.guests: Guests | None = None
         self._host, self._port, self._title = host, port, title
         self._url = ""
+        self._run = secrets.token_hex(8)
+        self._kept: tuple[int, PortToken] | None = None
         self._node, _ = create_node(graph, options or NodeOptions(), _NAME)
         frame = self._node.declare_parameter(
             _FIXED_FRAME,
@@ -140,20 +144,25 @@ class Viewer:
             raise
 
     async def _serve(self) -> None:
+        from linkwright.viewer.web.kept_tokens import keep_token, new_token
         from linkwright.viewer.web.server import WebServer, is_open_to_others, listen
 
         listener = listen(self._host, self._port)
-        self._server = WebServer(
-            Gate(self._host), self._audience, self.context.meshes, self.context.downloads, guests=self.guests
-        )
+        is_open = is_open_to_others(listener)
+        if self._port != 0 and not is_open:
+            port = listener.getsockname()[1]
+            self._kept = port, keep_token(port)
+        gate = Gate(self._host, self._kept[1].token if self._kept else new_token())
+        self._server = WebServer(gate, self._audience, self.context.meshes, self.context.downloads, guests=self.guests)
         self._url = await self._server.start(listener)
-        if is_open_to_others(listener):
+        if is_open:
             self._node.get_logger().warning(
                 f"Listening on '{self._host}': whoever reaches it and knows the token can see and move the robot"
             )
 
     async def close(self) -> None:
         """Close the connections to pages, leave the graph and stop listening."""
+        self._leave_token()
         async with AsyncExitStack() as stack:  # each of these is done, also where one before it fails
             stack.callback(self._node.destroy_node)
             if self._beside is not None:
@@ -166,6 +175,18 @@ class Viewer:
                 stack.callback(feature.close)
             if self.guests is not None:
                 stack.push_async_callback(self.guests.close)
+
+    def _leave_token(self) -> None:
+        if self._kept is not None:
+            from linkwright.viewer.web.kept_tokens import leave_token
+
+            (port, kept), self._kept = self._kept, None
+            leave_token(port, kept.token, pages_wait=len(self._audience) > 0)
+
+    @property
+    def pages_wait(self) -> bool:
+        """Whether pages of the program that was ended at this port before look for this one."""
+        return self._kept is not None and self._kept[1].pages_wait
 
     def keep_unsaved(self) -> list[Diagnostic]:
         """Keep unsaved edits of pages, before the program ends; returns the notices about it."""
@@ -258,7 +279,7 @@ class Viewer:
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
         """Messages for a page that begins to see a configuration, the frame table last; and binary frames."""
-        messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title)]
+        messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title, self._run)]
         shown, table, frames = manager.opening()
         messages += self._openings(before_displays=True)
         messages += shown

@@ -1,15 +1,18 @@
 from __future__ import annotations
 
+import hmac
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.viewer.web.access import Gate, security_headers
+from linkwright.viewer.web.kept_tokens import new_token
 
 
 @pytest.fixture
 def gate():
-    return Gate("127.0.0.1")
+    return Gate("127.0.0.1", new_token())
 
 
 def is_let_in(gate, *, host="127.0.0.1:7447", origin=None):
@@ -29,7 +32,7 @@ def test_nothing_else_does(gate, wrong):
 
 
 def test_two_servers_have_two_tokens(gate):
-    other = Gate("127.0.0.1")
+    other = Gate("127.0.0.1", new_token())
     assert gate.token != other.token
 
 
@@ -61,7 +64,7 @@ def test_other_names_are_refused(gate, host):
 
 
 def test_the_host_it_is_bound_to_is_known():
-    assert is_let_in(Gate("robot.lan"), host="robot.lan")
+    assert is_let_in(Gate("robot.lan", new_token()), host="robot.lan")
 
 
 @pytest.mark.parametrize(
@@ -85,7 +88,7 @@ def test_only_pages_of_this_origin_may_ask(gate, origin, may):
 
 @given(st.text(), st.text())
 def test_no_header_is_too_strange(host, origin):
-    assert Gate("127.0.0.1").refusal({"Host": host, "Origin": origin})
+    assert Gate("127.0.0.1", new_token()).refusal({"Host": host, "Origin": origin})
 
 
 def test_scripts_come_from_files_of_the_server_only():
@@ -93,3 +96,14 @@ def test_scripts_come_from_files_of_the_server_only():
     assert policy["script-src"] == "'self' 'unsafe-eval'"
     assert policy["default-src"] == "'none'"
     assert "ws://127.0.0.1:1" in policy["connect-src"]
+
+
+def test_the_proof_for_a_page_is_made_of_its_number_and_the_token(gate):
+    nonce = "0123456789abcdef" * 2
+    assert gate.proof(nonce) == hmac.new(gate.token.encode(), nonce.encode(), "sha256").hexdigest()
+    assert gate.proof(nonce) != Gate("127.0.0.1", new_token()).proof(nonce)
+
+
+@pytest.mark.parametrize("nonce", ["", "0" * 31, "0" * 33, "x" * 32, "0" * 31 + "\n", "é" * 32])
+def test_nothing_but_such_a_number_is_answered(gate, nonce):
+    assert gate.proof(nonce) is None

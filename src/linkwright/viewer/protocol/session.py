@@ -9,11 +9,12 @@ PROTOCOL_VERSION = 5
 
 
 class Hello(ServerMessage):
-    """First message on every connection."""
+    """First message on every connection; `run` is another one when the program was started again."""
 
     protocol: int
     version: str
     title: str
+    run: str
 
 
 class Received(PageMessage):

@@ -5,6 +5,9 @@ host and port alone, and shows it when it opens its WebSocket. There is no cooki
 else listens on this machine, whichever its port, and for pages that know nothing. Names are checked because a
 stranger's site can give its own name this machine's address (DNS rebinding) and would then be of one origin with us.
 Connections that have not shown the token are limited in number and time.
+
+A page whose program ended looks for it at the same port, where another user's program may listen by then. It shows the
+token only to a server that proves to know it (`Gate.proof`).
 """
 
 from __future__ import annotations
@@ -13,11 +16,11 @@ import asyncio
 import hmac
 import ipaddress
 import re
-import secrets
 import socket
 from collections.abc import Callable, Mapping
 from urllib.parse import urlsplit
 
+_NONCE = re.compile(r"[0-9a-f]{32}")
 _PLAIN_HOST = re.compile(r"[A-Za-z0-9_.\-]+(:\d+)?|\[[0-9A-Fa-f:.]+\](:\d+)?")
 
 TOKEN_PARAMETER = "token"  # noqa: S105 - the name of a query parameter
@@ -28,10 +31,11 @@ class Gate:
 
     Args:
         host: the name that the server is bound to, which is allowed too.
+        token: what opens the page.
     """
 
-    def __init__(self, host: str) -> None:
-        self.token = secrets.token_urlsafe(24)
+    def __init__(self, host: str, token: str) -> None:
+        self.token = token
         machine = socket.gethostname().lower()
         self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
 
@@ -49,6 +53,13 @@ class Gate:
         """Whether the query of a request has the token."""
         given = query.get(TOKEN_PARAMETER)
         return given is not None and hmac.compare_digest(given.encode(errors="replace"), self.token.encode())
+
+    def proof(self, nonce: str) -> str | None:
+        """What only who knows the token can make of a page's nonce, 32 hexadecimal digits: their HMAC-SHA256.
+
+        None for anything else. It tells nothing about the token.
+        """
+        return hmac.digest(self.token.encode(), nonce.encode(), "sha256").hex() if _NONCE.fullmatch(nonce) else None
 
     def knows(self, host_header: str) -> bool:
         """Whether a Host header names this machine: a bare address, localhost, or its own name."""

@@ -132,6 +132,7 @@ class WebServer:
         application = web.Application(middlewares=[self._guard])
         application.on_response_prepare.append(self._add_headers)
         application.router.add_get("/", self._index)
+        application.router.add_get("/proof", self._proof, allow_head=False)
         application.router.add_get("/ws", self._socket, allow_head=False)
         application.router.add_get("/mesh/{key}/{path:.+}", self._mesh)
         application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
@@ -206,6 +207,13 @@ class WebServer:
         if not index.is_file():
             return web.Response(status=503, text=_NOT_BUILT)
         return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache")
+
+    async def _proof(self, request: web.Request) -> web.Response:
+        """What proves to a page that was let in before that this is the program that it knows."""
+        proof = self._gate.proof(request.query.get("nonce", ""))
+        if proof is None:
+            return web.Response(status=400, text="This address is for the page's question.\n")
+        return web.Response(text=proof)
 
     async def _page_file(self, request: web.Request) -> web.StreamResponse:
         path = request.match_info["path"]

@@ -1,0 +1,117 @@
+"""Ctrl-C, arrow up, Enter: open pages go on with the program that was started again."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import socket
+
+import pytest
+
+from tests.browser.conftest import SECONDS, becomes, state, until
+from tests.places import PACKAGE
+
+pytestmark = pytest.mark.browser
+
+MBOT = PACKAGE / "urdf" / "mbot_base.xacro"
+
+
+@pytest.fixture
+def port() -> str:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return str(free.getsockname()[1])
+
+
+@pytest.fixture
+def context(browser):
+    """A browser whose console may tell that nobody answered."""
+    made = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
+    made.set_default_timeout(1000 * SECONDS)
+    yield made
+    made.close()
+
+
+def opened(context, url):
+    page = context.new_page()
+    page.goto(url)
+    until(page, "lw.ready")
+    return page
+
+
+def tabs(page) -> list[str]:
+    """Titles of panels, without the number of findings, which come one after the other."""
+    return [re.sub(r" \(\d+\)", "", text) for text in page.locator(".dv-tab").all_inner_texts()]
+
+
+def is_gone(page) -> None:
+    page.locator(".notice[data-state=ended]").wait_for()
+
+
+def is_back(page) -> None:
+    page.locator(".notice[data-state=connected]").wait_for(state="attached")
+
+
+def test_pages_keep_panels_pose_and_camera(start, context, port):
+    program = start("view", str(MBOT), "--port", port)
+    page, second = opened(context, program.url), opened(context, program.url)
+    page.locator('[data-joint="left_wheel_joint"] input[type=range]').fill("1.2")
+    until(page, "lw.joints.left_wheel_joint > 1")
+    joints = state(page, "joints")
+    page.mouse.move(600, 400)
+    page.mouse.wheel(0, -360)
+    page.get_by_role("tab", name="Links").click()
+    until(page, "lw.view.distance < 1")
+    view, panels = state(page, "view.values"), tabs(page)
+
+    assert program.interrupt() == 130
+    is_gone(page)
+    assert "Start it again" in page.locator(".notice[data-state=ended]").inner_text()
+    again = start("view", str(MBOT), "--port", port)
+    assert again.url == program.url
+    is_back(page)
+    becomes(lambda: state(page, "joints"), joints)
+    becomes(lambda: state(second, "joints"), joints)
+    until(page, "lw.robot.visuals === 12 && lw.settled")
+    assert state(page, "view.values") == view
+    assert tabs(page) == panels
+    assert page.get_by_role("tab", name="Links").get_attribute("aria-selected") == "true"
+
+
+def test_another_file_is_seen_from_where_all_of_it_is_seen_and_panels_stay(start, context, port, tmp_path):
+    other = tmp_path / "other.xacro"
+    shutil.copy(MBOT, other)
+    program = start("view", str(MBOT), "--port", port)
+    page = opened(context, program.url)
+    first = state(page, "view.distance")
+    page.locator('[data-joint="left_wheel_joint"] input[type=range]').fill("1.2")
+    until(page, "lw.joints.left_wheel_joint > 1")
+    page.mouse.move(600, 400)
+    page.mouse.wheel(0, -360)
+    until(page, "lw.view.distance < 1")
+    panels = tabs(page)
+    assert program.interrupt() == 130
+    is_gone(page)
+    start("view", str(other), "--port", port)
+    is_back(page)
+    until(page, "lw.robot.visuals === 12 && lw.settled")
+    becomes(lambda: state(page, "view.distance"), pytest.approx(first))
+    assert state(page, "joints.left_wheel_joint") == 0
+    assert page.title().startswith("other.xacro")
+    becomes(lambda: tabs(page), panels)
+
+
+def test_a_program_that_does_not_know_the_token_is_not_told_it(start, context, port, monkeypatch, tmp_path):
+    program = start("view", str(MBOT), "--port", port)
+    page = opened(context, program.url)
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("websocket", lambda opened: asked.append(opened.url))
+    assert program.interrupt() == 130
+    is_gone(page)
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "of-another-user"))
+    other = start("view", str(MBOT), "--port", port)
+    assert other.url != program.url
+    page.locator(".notice[data-state=refused]").wait_for()
+    assert any("/proof?nonce=" in url for url in asked)
+    assert not [url for url in asked if "token" in url]
