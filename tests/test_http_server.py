@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
+
+import pytest
+
+from linkwright.http_server import SERVER_LOGGER
+from tests.places import REPOSITORY
 
 SERVER = "import sys; from linkwright.http_server import web; import aiohttp; "
 
@@ -49,3 +55,25 @@ def test_what_was_loaded_before_stays():
     code = "import aiohttp.web; given = aiohttp.web; from linkwright.http_server import web; print(web is given)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["True"]
+
+
+def test_a_fault_of_the_server_is_told(caplog):
+    SERVER_LOGGER.error("Error handling request", exc_info=RuntimeError("ours"))
+    assert "ours" in caplog.text
+
+
+@pytest.mark.parametrize("fault", [ConnectionResetError(), BrokenPipeError()])
+def test_a_client_that_left_is_no_fault(caplog, fault):
+    SERVER_LOGGER.error("Error handling request", exc_info=fault)
+    assert caplog.records == []
+
+
+def test_each_server_tells_its_faults_there():
+    """aiohttp's own logger prints a traceback for each client that leaves."""
+    runners = [
+        words
+        for path in (REPOSITORY / "src").rglob("*.py")
+        for words in re.findall(r"web\.AppRunner\(([^)]*)\)", path.read_text(encoding="utf-8"))
+    ]
+    assert len(runners) >= 2
+    assert [words for words in runners if "logger=SERVER_LOGGER" not in words] == []

@@ -7,6 +7,7 @@ somebody asks for one of its names: a user's node, say, that fetches something.
 
 from __future__ import annotations
 
+import logging
 import sys
 from importlib.util import find_spec, module_from_spec
 from pathlib import Path
@@ -54,4 +55,15 @@ except (AttributeError, ImportError):  # a later aiohttp, whose server needs wha
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
 
-__all__ = ["HttpProcessingError", "web"]
+__all__ = ["SERVER_LOGGER", "HttpProcessingError", "web"]
+
+
+def _is_the_servers_fault(record: logging.LogRecord) -> bool:
+    """Keep what a client did out of the log: a malformed request, which is answered with 400, and leaving early."""
+    error = record.exc_info[1] if record.exc_info else None
+    return not isinstance(error, (HttpProcessingError, web.RequestPayloadError, ConnectionError))
+
+
+SERVER_LOGGER = logging.getLogger(__name__)
+"""The logger for each ``web.AppRunner``: aiohttp's own one prints a traceback whenever a client leaves."""
+SERVER_LOGGER.addFilter(_is_the_servers_fault)

@@ -18,6 +18,7 @@ from linkwright.nodes.foxglove import FoxgloveBridge
 from linkwright.nodes.foxglove.origins import is_welcome
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.registry import EXECUTABLES
+from tests.leaving import UPGRADE, ask_and_leave
 from tests.waiting import SECONDS, eventually
 
 V1 = ("foxglove.websocket.v1",)
@@ -377,6 +378,15 @@ async def test_no_list_of_names_keeps_it_busy():
         await w.offers("/seen")
         async with w.client() as client:
             assert [each["topic"] for each in (await client.until("advertise"))["channels"]] == ["/seen"]
+
+
+async def test_a_client_that_leaves_writes_nothing_on_the_terminal(caplog):
+    async with world() as w:
+        for headers in ("", f"{UPGRADE}Sec-WebSocket-Protocol: {V1[0]}\r\n"):
+            await ask_and_leave(w.port, "/", headers)
+        async with w.client() as client:
+            await client.until("serverInfo")
+    assert [record.getMessage() for record in caplog.records] == []
 
 
 async def test_what_it_cannot_start_with_is_said():

@@ -160,11 +160,13 @@ class FoxgloveBridge(SingleNode):
     # --- the network -------------------------------------------------------------------------------------------
 
     async def _serve(self) -> None:
-        from linkwright.http_server import web
+        from linkwright.http_server import SERVER_LOGGER, web
 
         application = web.Application()
         application.router.add_get("/", self._connected)
-        self._runner = web.AppRunner(application, handle_signals=False, access_log=None, shutdown_timeout=0.5)
+        self._runner = web.AppRunner(
+            application, handle_signals=False, access_log=None, logger=SERVER_LOGGER, shutdown_timeout=0.5
+        )
         await self._runner.setup()
         serve = cast("web.Server", self._runner.server)
         self._server = await self._loop.create_server(serve, sock=self._listener, start_serving=False)

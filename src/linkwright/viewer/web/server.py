@@ -6,7 +6,6 @@ import asyncio
 import errno
 import gzip
 import ipaddress
-import logging
 import os
 import re
 import socket
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.http_server import HttpProcessingError, web
+from linkwright.http_server import SERVER_LOGGER, web
 from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
 from linkwright.viewer.web.audience import Page, language_asked
 from linkwright.viewer.web.files import CONTENT_TYPES, Downloads, FileRefusedError, MeshFolders
@@ -84,15 +83,6 @@ MOST_UNSENT = 16 * 1024
 _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 
-def _is_no_malformed_request(record: logging.LogRecord) -> bool:
-    """Let our own errors pass to the log; a malformed request is answered with 400 and logs nothing."""
-    return not (record.exc_info and isinstance(record.exc_info[1], (HttpProcessingError, web.RequestPayloadError)))
-
-
-_LOGGER = logging.getLogger(__name__)
-_LOGGER.addFilter(_is_no_malformed_request)
-
-
 class WebServer:
     """Serves one viewer.
 
@@ -144,7 +134,7 @@ class WebServer:
             application,
             handle_signals=False,
             access_log=None,
-            logger=_LOGGER,
+            logger=SERVER_LOGGER,
             shutdown_timeout=_GOODBYE,
             keepalive_timeout=_IDLE,
         )
