@@ -33,11 +33,12 @@ _SOON_SECONDS = 0.01
 
 
 def end_at_once() -> None:
-    """Let Ctrl-C end the process from now on without a word: there is nothing to clean up.
+    """Let Ctrl-C, and any other SIGINT, end the process from now on without a word: there is nothing to clean up.
 
-    A process that was told to ignore it, as shells tell those in the background, goes on doing so.
+    So it is, too, where the process was started to ignore it: scripts do that with all that they start with ``&``, and
+    end it by ``kill -INT``. ROS's programs obey there as well, whose rclpy and rclcpp install handlers in any case.
     """
-    if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
+    if _signal.getsignal(_signal.SIGINT) in (_signal.default_int_handler, _signal.SIG_IGN):
         _signal.signal(_signal.SIGINT, _end)
 
 

@@ -145,6 +145,8 @@ class Machine:
             "PYTHONUNBUFFERED": "1",
         }
         self._started: list[Running] = []
+        self.before: tuple[str, ...] = ()
+        """What command lines begin with, such as a shell that prepares something and becomes the command."""
 
     def command(self, *words: object, **variables: str) -> Running:
         """Start ``linkwright WORDS``."""
@@ -184,7 +186,7 @@ class Machine:
         return path
 
     def _start(self, command: list[str], variables: Mapping[str, str]) -> Running:
-        self._started.append(Running(command, {**self.variables, **variables}, self.folder))
+        self._started.append(Running([*self.before, *command], {**self.variables, **variables}, self.folder))
         return self._started[-1]
 
     def clean_up(self) -> None:
