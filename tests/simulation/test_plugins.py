@@ -10,12 +10,13 @@ import pytest
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
 from linkwright.graph import Graph, LogLevel, LogRecord
 from linkwright.messages import get_message
+from linkwright.sdf.plugins import library_name
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.simulation.exchange import Exchange
 from linkwright.simulation.plugins.calls import logged_calls
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import parameter, parameters_from
-from linkwright.simulation.plugins.registry import is_of_gz, library_name, needs_nothing
+from linkwright.simulation.plugins.registry import is_of_gz, needs_nothing
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.testing import Recording

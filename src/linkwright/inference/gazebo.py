@@ -7,9 +7,12 @@ theirs.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 
+from linkwright.extensions import extensions
 from linkwright.inference.model import Drive
+from linkwright.sdf.plugins import library_name, original_library
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element, Text
 
@@ -20,6 +23,8 @@ _DRIVES = re.compile(
 )
 _JOINT_STATES = re.compile(r"joint[_-]state[_-]publisher", re.IGNORECASE)
 _JOINTS = re.compile(r"joint[_-](?:position|pose|trajectory|controller)", re.IGNORECASE)
+_CONTROL = re.compile(r"ros2?_control")
+_SIMULATED = "linkwright.simulated_plugins"
 _SIMULATORS = re.compile(r"gz|gazebo|ign|mujoco|isaac", re.IGNORECASE)
 
 _ACCELERATION = 1.0
@@ -39,17 +44,57 @@ _RATE = "50"
 
 
 def own_drive(robot: Robot) -> Element | None:
-    """The plugin, or the ``<ros2_control>`` for a simulator, by which a description says itself how it is driven."""
+    """The plugin by which a description says itself how it is driven, and which works here."""
+    return next((plugin for plugin in _drives(robot) if _works(plugin)), None)
+
+
+def idle_drive(robot: Robot) -> Element | None:
+    """The plugin or ``<ros2_control>`` by which a description says how it is driven, and which does nothing here.
+
+    Such are controllers of ROS 1, those whose parameter file is not there, and a ``<ros2_control>`` for a simulator
+    without the plugin that runs it, which is often in a file for launches.
+    """
+    idle = next((plugin for plugin in _drives(robot) if not _works(plugin)), None)
+    if idle is not None:
+        return idle
+    if any(_CONTROL.search(plugin.attributes.get("filename", "")) for plugin in _drives(robot)):
+        return None
+    return next(
+        (
+            extension
+            for extension in robot.extensions
+            if extension.tag == "ros2_control"
+            for hardware in extension.elements("hardware")
+            if any(_SIMULATORS.search(plugin.text()) for plugin in hardware.elements("plugin"))
+        ),
+        None,
+    )
+
+
+def commanded_joints(robot: Robot) -> frozenset[str]:
+    """The joints that controllers command, by ``<ros2_control>`` or, as in ROS 1, by ``<transmission>``."""
+    return frozenset(
+        joint.attributes.get("name", "")
+        for extension in robot.extensions
+        if extension.tag in ("ros2_control", "transmission")
+        for joint in extension.elements("joint")
+        if extension.tag == "transmission" or joint.first("command_interface") is not None
+    )
+
+
+def _drives(robot: Robot) -> Iterator[Element]:
     for extension in robot.extensions:
-        if extension.tag == "gazebo":
-            for plugin in extension.elements("plugin"):
-                if _DRIVES.search(f"{plugin.attributes.get('filename', '')} {plugin.attributes.get('name', '')}"):
-                    return plugin
-        elif extension.tag == "ros2_control":
-            for hardware in extension.elements("hardware"):
-                if any(_SIMULATORS.search(plugin.text()) for plugin in hardware.elements("plugin")):
-                    return extension
-    return None
+        for plugin in extension.elements("plugin") if extension.tag == "gazebo" else ():
+            if _DRIVES.search(f"{plugin.attributes.get('filename', '')} {plugin.attributes.get('name', '')}"):
+                yield plugin
+
+
+def _works(plugin: Element) -> bool:
+    """Whether a plugin is simulated, and has the files that it is given."""
+    known = extensions(_SIMULATED)
+    names = library_name(plugin.attributes.get("filename", "")), original_library(plugin.attributes.get("name", ""))
+    files = [Path(each.text().strip()) for each in plugin.elements("parameters")]
+    return any(name in known for name in names) and all(file.exists() for file in files if file.is_absolute())
 
 
 def publishes_joint_states(robot: Robot) -> bool:

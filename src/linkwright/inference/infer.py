@@ -42,23 +42,27 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
     under = survey.undercarriage()
     chosen = [_chosen(survey, name) for name in wheels]
     asked = kind is not None or bool(chosen)
-    own = None if asked else gazebo.own_drive(robot)
+    own, idle = (None, None) if asked else (gazebo.own_drive(robot), gazebo.idle_drive(robot))
     verdict = Verdict(None, Phrase("")) if own is not None else _verdict(survey, under, kind, chosen)
+    if own is None and idle is not None and verdict.drive is None:
+        verdict = Verdict(Drive("joints"), phrase("its own controllers do not work here"))
     if asked and verdict.drive is None:
         message = phrase("'{robot}' cannot be driven as asked: {why}", robot=robot.name, why=verdict.reason)
         raise LinkwrightError(Diagnostic("DRIVE211", message, hint=_OPTION))
-    return _Inferring(survey, under, verdict, own).result()
+    return _Inferring(survey, under, verdict, own, idle).result()
 
 
 class _Inferring:
     """Puts an inference together, once the drive is known."""
 
-    def __init__(self, survey: Survey, under: Undercarriage, verdict: Verdict, own: Element | None) -> None:
+    def __init__(
+        self, survey: Survey, under: Undercarriage, verdict: Verdict, own: Element | None, idle: Element | None
+    ) -> None:
         self._survey = survey
         self._robot = survey.robot
         self._under = under
         self._verdict = verdict
-        self._own = own
+        self._own, self._idle = own, idle
         drive = verdict.drive
         self._drive = drive
         self._driven = (
@@ -97,25 +101,32 @@ class _Inferring:
 
     def _held(self) -> tuple[str, ...]:
         """The joints that something has to hold, as nothing else moves them."""
-        if self._own is not None:
+        if self._own is not None and self._idle is None:
             return ()
         rolling = {each.joint for each in self._wheels.values()} | self._under.swivelling
         rolling |= gazebo.controlled_joints(self._robot)
         for wheel in self._wheels.values():
             rolling |= {joint.name for joint in self._survey.chain(self._robot.joints[wheel.joint].parent)}
+        commanded = gazebo.commanded_joints(self._robot)
         return tuple(
             joint.name
             for joint in self._robot.joints.values()
             if joint.type in _MOVING and joint.mimic is None and joint.name not in rolling
+            if self._own is None or joint.name in commanded
         )
 
     def _moved(self, held: tuple[str, ...], mass: float) -> Iterator[Finding]:
         """What there is to say of the drive, the casters and the joints."""
         root = self._robot.element
+        if self._idle is not None:
+            message = phrase(
+                "'{what}', by which '{robot}' says how it is driven, has no effect here", **self._named(self._idle)
+            )
+            yield Finding(_at(self._idle, "DRIVE205", message))
         if self._own is not None:
-            what = self._own.attributes.get("filename") or self._own.attributes.get("name") or self._own.tag
-            message = phrase("'{robot}' says itself how it is driven, by '{what}'", robot=self._robot.name, what=what)
+            message = phrase("'{robot}' says itself how it is driven, by '{what}'", **self._named(self._own))
             yield Finding(_at(self._own, "DRIVE202", message))
+            yield from self._holding(held)
             return
         drive = self._drive
         if drive is None:
@@ -139,15 +150,22 @@ class _Inferring:
         if self._fixed_base and self._robot.root != _WORLD:
             message = phrase("'{robot}' is fixed to the world: {why}", robot=self._robot.name, why=self._verdict.reason)
             yield Finding(self._at_root("DRIVE113", message), root, tuple(_anchor(self._robot)))
-        if held:
-            message = phrase(
-                "nothing drives {joints}: each is held in place until it is told to move", joints=quoted_names(held)
-            )
-            yield Finding(self._at_root("DRIVE114", message), root, (gazebo.joint_controllers(held),))
+        yield from self._holding(held)
         moving = [joint.name for joint in self._robot.joints.values() if joint.type in _MOVING]
         if moving and not gazebo.publishes_joint_states(self._robot):
             message = phrase("the positions of the joints are published as joint_states")
             yield Finding(self._at_root("DRIVE115", message), root, (gazebo.joint_states(moving),))
+
+    def _holding(self, held: tuple[str, ...]) -> Iterator[Finding]:
+        if held:
+            message = phrase(
+                "nothing drives {joints}: each is held in place until it is told to move", joints=quoted_names(held)
+            )
+            yield Finding(self._at_root("DRIVE114", message), self._robot.element, (gazebo.joint_controllers(held),))
+
+    def _named(self, what: Element) -> dict[str, str]:
+        named = what.attributes.get("filename") or what.attributes.get("name") or what.tag
+        return {"robot": self._robot.name, "what": named}
 
     def _undriven(self) -> Finding:
         if not any(joint.type in _MOVING for joint in self._robot.joints.values()):

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.values import TEXT
 from linkwright.xmltree import Element
+
+_ENDING = re.compile(r"\.(so|dylib|dll)(\.[0-9.]+)?$")
+_GZ = re.compile(r"^(gz-sim|ignition-gazebo)[0-9]*-")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,3 +35,18 @@ PLUGIN = ElementRule(
     located=True,
     field="plugins",
 )
+
+
+def library_name(filename: str) -> str:
+    """The name of a library without folders, ``lib``, ``.so`` and the version; ``ignition-gazebo-`` is ``gz-sim-``."""
+    name = _ENDING.sub("", filename.strip().replace("\\", "/").rpartition("/")[2])
+    return _GZ.sub("gz-sim-", name.removeprefix("lib"))
+
+
+def original_library(class_name: str) -> str:
+    """The library that a class comes from: ``ign_ros2_control-system`` for one in the namespace ``ign_ros2_control``.
+
+    Vendors ship copies of libraries under names of their own, ``franka_ign_ros2_control-system``, that keep the class.
+    """
+    namespace, separator, _ = class_name.strip().partition("::")
+    return f"{namespace}-system" if separator else ""

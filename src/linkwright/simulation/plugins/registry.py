@@ -12,20 +12,18 @@ They are found through two groups of entry points, ours and those of other packa
 
 from __future__ import annotations
 
-import re
 from functools import cache
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.extensions import EntryPoint, extensions
+from linkwright.sdf.plugins import library_name
 
 if TYPE_CHECKING:
     from linkwright.simulation.plugins.plugin import PluginClass
 
 PLUGINS, SENSORS = "linkwright.simulated_plugins", "linkwright.simulated_sensors"
 
-_ENDING = re.compile(r"\.(so|dylib|dll)(\.[0-9.]+)?$")
-_GZ = re.compile(r"^(gz-sim|ignition-gazebo)[0-9]*-")
 _SYSTEMS = (
     *("physics", "user-commands", "scene-broadcaster", "sensors", "imu", "contact", "navsat", "altimeter"),
     *("air-pressure", "air-speed", "magnetometer", "forcetorque", "logical-camera", "label", "wheel-slip"),
@@ -40,12 +38,6 @@ _BUILT_IN = frozenset(
     )
 )
 """Libraries of other simulators for what this one does itself."""
-
-
-def library_name(filename: str) -> str:
-    """The name of a library without folders, ``lib``, ``.so`` and the version; ``ignition-gazebo-`` is ``gz-sim-``."""
-    name = _ENDING.sub("", filename.strip().replace("\\", "/").rpartition("/")[2])
-    return _GZ.sub("gz-sim-", name.removeprefix("lib"))
 
 
 def is_of_gz(filename: str) -> bool:
@@ -65,15 +57,6 @@ def plugin_class(library: str) -> PluginClass | None:
         LinkwrightError: SIM136 the package that brings it cannot be imported.
     """
     return _loaded(PLUGINS, library)
-
-
-def original_library(class_name: str) -> str:
-    """The library that a class comes from: ``ign_ros2_control-system`` for one in the namespace ``ign_ros2_control``.
-
-    Vendors ship copies of libraries under names of their own, ``franka_ign_ros2_control-system``, that keep the class.
-    """
-    namespace, separator, _ = class_name.strip().partition("::")
-    return f"{namespace}-system" if separator else ""
 
 
 def sensor_class(kind: str) -> PluginClass | None:

@@ -16,6 +16,7 @@ from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.graph import Node
 from linkwright.sdf.comparison import alike
 from linkwright.sdf.models import Model
+from linkwright.sdf.plugins import library_name, original_library
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World
@@ -28,9 +29,7 @@ from linkwright.simulation.plugins.places import of_model, of_world
 from linkwright.simulation.plugins.plugin import PluginClass, PluginPlace, SimulatedPlugin
 from linkwright.simulation.plugins.registry import (
     is_of_gz,
-    library_name,
     needs_nothing,
-    original_library,
     plugin_class,
     sensor_class,
 )

@@ -14,11 +14,10 @@ import numpy as np
 
 from linkwright.messages import get_message
 from linkwright.sdf.models import Model
-from linkwright.sdf.plugins import Plugin
+from linkwright.sdf.plugins import Plugin, library_name
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import NoParameters
-from linkwright.simulation.plugins.registry import library_name
 from linkwright.simulation.plugins.sensors.camera import IMAGE, INFO, CameraPlugin, Eye
 from linkwright.simulation.plugins.sensors.pictures import Pixels, fill_camera_info, fill_picture
 from linkwright.simulation.rendering.renderer import Wanted
