@@ -91,3 +91,45 @@ class TestOverlay:
         found = examine(tmp_path / "r.xacro", overlay=Overlay({tmp_path / "r.xacro": text}))
         provenance = found.provenance(next(found.document.root.elements("link")))
         assert provenance.attributes[0].values[0].value == "'arm'"
+
+
+class TestWhatUrdfdomReadsAllTheSame:
+    @pytest.mark.parametrize(
+        ("written", "code"),
+        [
+            ('<robot name="r"><!-- a -- b --><link name="a"/></robot>', "XML206"),
+            ('<robot name="r"><!-- a <!-- b --><link name="a"/></robot>', "XML206"),
+            ('<robot name="r & d"><link name="a"/></robot>', "XML206"),
+            ('<robot name="r&nbsp;d"><link name="a"/></robot>', "XML206"),
+            ('<robot name="r"><sensor:camera/><link name="a"/></robot>', "XML205"),
+            (f'<robot name="r" {PREFIX}><link name="a"/><xacro:camera/></robot>', "XAC401"),
+            (f'<robot name="r" {PREFIX}><link name="a"/><xacro:include filename="no.xacro"/></robot>', "XML101"),
+        ],
+    )
+    def test_is_a_robot_with_a_warning(self, tmp_path, written, code):
+        path = tmp_path / "r.urdf"
+        path.write_text(written)
+        found = examine(path, partly=True)
+        assert list(found.robot.links) == ["a"]
+        assert [(each.severity.value, each.code) for each in found.diagnostics if each.code == code] == [
+            ("warning", code)
+        ]
+
+    @pytest.mark.parametrize(
+        "written",
+        [
+            '<robot name="r"><!-- a -- b --><link name="a"/></robot>',
+            f'<robot name="r" {PREFIX}><link name="a"/><xacro:camera/></robot>',
+        ],
+    )
+    def test_xacro_refuses_it(self, tmp_path, written):
+        path = tmp_path / "r.urdf.xacro"
+        path.write_text(written)
+        with pytest.raises(LinkwrightError):
+            examine(path)
+
+    def test_what_is_no_robot_without_the_expansion_keeps_its_error(self, tmp_path):
+        path = tmp_path / "r.urdf"
+        path.write_text(f'<robot name="r" {PREFIX}><xacro:arm/></robot>')
+        found = examine(path, partly=True)
+        assert [(each.severity.value, each.code) for each in found.problems] == [("error", "XAC401")]

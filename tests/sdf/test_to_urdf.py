@@ -172,7 +172,7 @@ def test_a_robot_that_became_sdf_is_itself_again():
     assert {each.name: each.type for each in before.joints.values()} == {
         each.name: each.type for each in after.joints.values()
     }
-    written = read_urdf(parse_as_urdfdom(save(after), "robot.urdf")).robot
+    written = read_urdf(parse_as_urdfdom(save(after), "robot.urdf")[0]).robot
     assert (list(written.links), list(written.joints)) == (list(after.links), list(after.joints))
 
 

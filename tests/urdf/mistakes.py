@@ -9,7 +9,7 @@ from linkwright.urdf.plaintext import parse_as_urdfdom
 
 def describe(text: str) -> str:
     """What the reader says of a URDF text, one line for each fact."""
-    reading = read(parse_as_urdfdom(text, "robot.urdf"))
+    reading = read(parse_as_urdfdom(text, "robot.urdf")[0])
     lines = [line for diagnostic in reading.diagnostics for line in lines_of(diagnostic)]
     return "\n".join([*lines, "robot: none" if reading.robot is None else "robot: kept"])
 

@@ -85,7 +85,7 @@ class DescriptionLibrary:
 
 def _read(text: str) -> Description:
     try:
-        document = parse_as_urdfdom(text, TEXT_NAME)
+        document, _ = parse_as_urdfdom(text, TEXT_NAME)
     except LinkwrightError as error:
         return Description(TEXT_NAME, Document(Element("robot")), Reading(None, error.diagnostics))
     if document.root.tag == "sdf":

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Union
 
 from linkwright.descriptions.description import TEXT_NAME, Description
-from linkwright.diagnostics import LinkwrightError
-from linkwright.urdf import Robot, read
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, phrase
+from linkwright.urdf import Reading, Robot, read
 from linkwright.urdf.plaintext import parse_as_urdfdom
-from linkwright.xmltree import Element, Overlay
+from linkwright.xmltree import Document, Element, Overlay
 from linkwright.xmltree.collection import seldom_collected
 from linkwright.xmltree.reader import read_bytes
 
 if TYPE_CHECKING:
     from linkwright.packages import PackageFinder
+
+_URDF = ".urdf"
+"""The ending of files that robot_state_publisher may be given as they are, whatever prefixes they declare."""
 
 Packages = Union[Mapping[str, str | Path], "PackageFinder", None]
 
@@ -73,13 +77,13 @@ def examine(
     name = TEXT_NAME if is_text else str(path_or_text)
     text = str(path_or_text) if is_text else overlay.text(name) if overlay is not None else None
     if not xacro:
-        document = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
+        document, forbidden = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
         if document.root.tag == "sdf" and document.source is not None:
             from linkwright.descriptions.worlds import robot_of_text
 
             return Description(name, document, robot_of_text(document.source.text, name), overlay=overlay)
         if xacro is False or not (arguments or is_xacro(name, document.root)):
-            return Description(name, document, read(document), overlay=overlay)
+            return _as_it_stands(name, document, forbidden, overlay)
         text = document.source.text if is_text and document.source else text
     from linkwright.xacro import expand
 
@@ -88,11 +92,30 @@ def examine(
     except LinkwrightError as error:
         if not partly:
             raise
+        if not xacro and not arguments and name.endswith(_URDF):
+            unexpanded = tuple(map(_as_warning, error.diagnostics))
+            plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay)
+            if plain.robot is not None:
+                return plain
         from linkwright.xacro.inputs import Inputs
         from linkwright.xacro.parts import expand_parts
 
         expansion = expand_parts(Inputs(name, arguments or {}, packages, text, overlay=overlay), error)
     return Description.of_expansion(name, expansion, overlay)
+
+
+def _as_it_stands(
+    name: str, document: Document, remarks: tuple[Diagnostic, ...], overlay: Overlay | None
+) -> Description:
+    """The description that urdfdom makes of a document which nobody expands."""
+    reading = read(document)
+    return Description(name, document, Reading(reading.robot, (*remarks, *reading.diagnostics)), overlay=overlay)
+
+
+def _as_warning(error: Diagnostic) -> Diagnostic:
+    """An error of the expansion in a file that is a robot for urdfdom as it stands."""
+    note = Note(phrase("urdfdom reads the file without expanding it, and passes over what xacro would do"))
+    return replace(error, severity=Severity.WARNING, notes=(*error.notes, note))
 
 
 def is_xacro(name: str, root: Element) -> bool:

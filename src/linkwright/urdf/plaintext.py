@@ -1,47 +1,56 @@
 """XML text as urdfdom's parser takes it, which is not quite as XML says.
 
 tinyxml2 keeps tabs and line breaks inside attribute values, where XML makes them spaces, and urdfdom does not take them
-between numbers. It also does not mind blanks before the XML declaration, or more elements after the root.
+between numbers. It also does not mind blanks before the XML declaration, more elements after the root, and what
+`linkwright.xmltree.tinyxml` lists.
 """
 
 from __future__ import annotations
 
 import re
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.xmltree import Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.positions import attribute_value_range
+from linkwright.xmltree.tinyxml import parse_as_tinyxml
 
+_READ_ALL_THE_SAME = phrase("urdfdom reads it all the same; xacro and other XML readers refuse the file")
 _LATE_DECLARATION = re.compile(r"\s+<\?xml\s[^>]*\?>")
 # A blank after which a value goes on with a number or ends; in other values blanks do not matter. Each pattern starts
 # with a fixed character, which makes the search ten times as fast as one pattern for all three would be.
 _INSIDE_VALUE = {blank: re.compile(rf"""{blank}[-+0-9eE. ]*["']""") for blank in "\n\t\r"}
 
 
-def parse_as_urdfdom(text: str | bytes, name: str) -> Document:
+def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:
     """Read a URDF text with the blanks in its attribute values as they are written.
 
+    Returns:
+        The document, and a warning for each kind of thing in it that XML forbids and urdfdom accepts.
+
     Raises:
-        LinkwrightError: it is not XML (XML###).
+        LinkwrightError: urdfdom does not take it for XML either (XML###).
     """
     if isinstance(text, bytes):
         text = decode(text, name)
     late = _LATE_DECLARATION.match(text)
     if late:
         text = _blanked(late[0]) + text[late.end() :]
+    warnings: tuple[Diagnostic, ...] = ()
     try:
         document = parse(text, name, blanks=False)
     except LinkwrightError as error:
         end = _end_of_root(error)
-        if end is None:
-            raise
-        parse(f"<rest>{text[end:]}</rest>", name)  # tinyxml2 wants it well-formed all the same
-        text = text[:end] + _blanked(text[end:])
-        document = parse(text, name, blanks=False)
+        if end is not None:
+            parse(f"<rest>{text[end:]}</rest>", name)  # tinyxml2 wants it well-formed all the same
+            text = text[:end] + _blanked(text[end:])
+        try:
+            document, warnings = parse_as_tinyxml(text, name, _READ_ALL_THE_SAME)
+        except LinkwrightError:
+            raise error from None
     if any(blank in text and inside.search(text) for blank, inside in _INSIDE_VALUE.items()):
         _restore_blanks(document.root, text)
-    return document
+    return document, warnings
 
 
 def _blanked(text: str) -> str:

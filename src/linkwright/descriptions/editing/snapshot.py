@@ -91,7 +91,7 @@ class Snapshot:
         name, expansion, overlay = self.description.name, self.description.expansion, Overlay(texts)
         text = overlay.text(name)
         if expansion is None:
-            document = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
+            document, _ = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
             return Snapshot(self.description, texts, document, self.files)
         from linkwright.xacro import expand
 

@@ -52,10 +52,10 @@ class Places:
     def __init__(self, text: str) -> None:
         self._expanded: dict[tuple[str, str], Element] = {}
         try:
-            root = parse_as_urdfdom(text, _EXPANDED).root
+            document, _ = parse_as_urdfdom(text, _EXPANDED)
         except LinkwrightError:
             return  # a robot was made of it, so that this does not happen
-        for element in root.elements():
+        for element in document.root.elements():
             key = (element.tag, element.attributes.get("name", ""))
             self._expanded.setdefault(key, element)
 

@@ -1,0 +1,114 @@
+"""Parsing XML as TinyXML2 does, the parser of urdfdom and the simulators, which accepts more than XML allows.
+
+It knows no namespaces, ends a comment at ``-->`` alone, and an ``&`` that begins no entity does not trouble it. Such
+files work for their users, so they are read, with a warning.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, SourceText, Span, phrase
+from linkwright.xmltree.nodes import Comment, Document, Element, Node, Text
+from linkwright.xmltree.reader import parse
+
+_UNDECLARED = "XML205"
+_OUTSIDE_TAGS = re.compile(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
+_BARE_AMPERSAND = re.compile(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|amp|lt|gt|quot|apos);)")
+_DEFINITION = "<!ENTITY"
+_STAND_IN = "\x7f"
+"""The replacement of an ``&`` that begins no entity; as long, and allowed."""
+
+
+def parse_as_tinyxml(
+    text: str, name: str, readers: Phrase, *, read_as: str | None = None
+) -> tuple[Document, tuple[Diagnostic, ...]]:
+    """Parse a text as TinyXML2 does, with a warning (XML206, XML205) for each kind of thing that XML forbids.
+
+    Args:
+        text: the text.
+        name: of the file, for messages.
+        readers: who reads the file all the same, and who does not.
+        read_as: what to read in place of the text, with everything in the same place.
+
+    Raises:
+        LinkwrightError: it is not XML for TinyXML2 either (XML###).
+    """
+    warnings: list[Diagnostic] = []
+    source = SourceText(name, text)
+    read_as = text if read_as is None else read_as
+    dashed = [found for found in _OUTSIDE_TAGS.finditer(text) if _has_dashes(found[1])]
+    if dashed:
+        at = text.index("--", dashed[0].start(1))
+        advice = phrase("use other characters, such as '=='")
+        warnings.append(
+            forbidden(phrase("'--' is not allowed inside a comment"), source.span(at, at + 2), source, advice, readers)
+        )
+        for found in dashed:
+            read_as = read_as[: found.start(1)] + found[1].replace("-", "=") + read_as[found.end(1) :]
+    bare = []
+    if _STAND_IN not in text and _DEFINITION not in text:
+        bare = [each.start() for each in _BARE_AMPERSAND.finditer(_tags_alone(text))]
+    if bare:
+        advice = phrase("write '&amp;' for the character '&'")
+        warnings.append(
+            forbidden(
+                phrase("'&' does not begin an entity"), source.span(bare[0], bare[0] + 1), source, advice, readers
+            )
+        )
+        for at in bare:
+            read_as = read_as[:at] + _STAND_IN + read_as[at + 1 :]
+    document, undeclared = _parsed(text, name, read_as)
+    if bare:
+        _put_back(document.root)
+    for comment in _comments(document) if dashed else ():
+        comment.data = text[comment.offset + 4 : text.index("-->", comment.offset + 4)]
+    return document, (*warnings, *undeclared)
+
+
+def forbidden(message: Phrase, span: Span, source: SourceText, hint: Phrase, readers: Phrase) -> Diagnostic:
+    """Return a warning about something that XML forbids and TinyXML2 accepts."""
+    return Diagnostic("XML206", message, span, Severity.WARNING, (Note(readers),), hint, source)
+
+
+def _parsed(text: str, name: str, read_as: str) -> tuple[Document, tuple[Diagnostic, ...]]:
+    try:
+        return parse(text, name, blanks=False, read_as=read_as), ()
+    except LinkwrightError as error:
+        found = error.diagnostics[0]
+        if found.code != _UNDECLARED:
+            raise
+        document = parse(text, name, blanks=False, read_as=read_as, any_prefix=True)
+        return document, (replace(found, severity=Severity.WARNING),)
+
+
+def _tags_alone(text: str) -> str:
+    """The text with comments and CDATA blanked."""
+    return _OUTSIDE_TAGS.sub(lambda found: " " * len(found[0]), text)
+
+
+def _put_back(root: Element) -> None:
+    """Restore each ``&`` that was replaced by another character."""
+    for element in root.walk():
+        for name, value in element.attributes.items():
+            element.attributes[name] = value.replace(_STAND_IN, "&")
+        for child in element.children:
+            if isinstance(child, Text):
+                child.data = child.data.replace(_STAND_IN, "&")
+
+
+def _has_dashes(comment: str | None) -> bool:
+    """Whether XML forbids the content of a comment; None stands for other parts."""
+    return comment is not None and ("--" in comment or comment.endswith("-"))
+
+
+def _comments(document: Document) -> Iterator[Comment]:
+    nodes: list[Node] = [*document.prolog, document.root, *document.epilog]
+    while nodes:
+        node = nodes.pop()
+        if isinstance(node, Comment):
+            yield node
+        elif isinstance(node, Element):
+            nodes.extend(node.children)
