@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkwright.diagnostics import Diagnostic, Note, phrase, quoted_names
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase, quoted_names
+from linkwright.lint.explanations import is_explained
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
@@ -20,7 +21,8 @@ class PlaceholderInertia(Rule):
 
     A tensor of ones on everything is a placeholder from a tutorial. For a link of a few hundred grams it is thousands
     of times too large, and the robot moves as if in honey. What depends on size and mass cannot be the same for all.
-    The rule speaks where at least half of the links share such a tensor.
+    The rule speaks where at least half of the links share such a tensor. Where a comment on the line or above it says
+    why, the finding is an information.
 
     ## Example
 
@@ -67,6 +69,7 @@ class PlaceholderInertia(Rule):
                 part(inertial, "inertia"),
                 notes=[Note(others)],
                 hint=phrase("`linkwright inertia` computes one for each from its shapes"),
+                severity=Severity.INFO if is_explained(part(inertial, "inertia")) else None,
             )
 
 

@@ -9,7 +9,8 @@ from collections.abc import Iterable
 from math import prod
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note, Phrase, phrase
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
+from linkwright.lint.explanations import is_explained
 from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
@@ -39,6 +40,7 @@ class DensityTooHigh(Rule):
     Osmium, the densest there is, has 22 600 kg/m3. A link that would be denser has a mass in grams, or shapes in
     other units than metres. Meshes count with the whole box around them, so nothing real is reported. Where links that
     are fixed to it have shapes and no mass, its mass counts in the box around all links that fixed joints connect.
+    Where a comment on the line or above it says why, as for ballast, the finding is an information.
 
     ## Example
 
@@ -93,6 +95,7 @@ class DensityTooHigh(Rule):
                         )
                     ],
                     hint=phrase("masses are in kg and lengths in m"),
+                    severity=Severity.INFO if is_explained(part(inertial, "mass")) else None,
                 )
 
 

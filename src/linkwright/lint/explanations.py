@@ -1,0 +1,57 @@
+"""Comments with which authors explain a value: on its line, or on the lines above it."""
+
+from __future__ import annotations
+
+import re
+
+from linkwright.xmltree import Element
+from linkwright.xmltree.patches import element_range
+
+_COMMENT = re.compile(r"<!--(.*?)-->", re.DOTALL)
+_ABOVE = re.compile(r"<!--((?:(?!-->).)*)-->[ \t]*\r?\n[ \t]*\Z", re.DOTALL)
+_CODE = re.compile(r"[<=]|linkwright:")
+_WORD = re.compile(r"[^\W\d_]{3,}")
+_HEADINGS = frozenset(
+    {
+        *(
+            "inertia",
+            "inertial",
+            "inertias",
+            "inertie",
+            "matrix",
+            "tensor",
+            "moment",
+            "moments",
+            "mass",
+            "masses",
+            "link",
+        ),
+        *("properties", "property", "parameters", "parameter", "the", "and", "value", "values", "for", "collision"),
+    }
+)
+"""Words that say what the line is, and nothing of why its value is what it is."""
+
+
+def is_explained(element: Element | None) -> bool:
+    """Return whether a comment beside an element, or right above it, says more than what the element is.
+
+    Commented-out elements and suppressions explain nothing.
+    """
+    if element is None or element.source is None:
+        return False
+    found = element_range(element)
+    if found is None:
+        return False
+    text, (start, end) = element.source.text, found
+    line = text.rfind("\n", 0, start) + 1
+    last = text.find("\n", end)
+    comments = [each[1] for each in _COMMENT.finditer(text, line, len(text) if last < 0 else last)]
+    above = _ABOVE.search(text, max(0, text.rfind("<!--", 0, start)), line + len(text[line:start]))
+    if above is not None and not text[line:start].strip():
+        comments.append(above[1])
+    return any(map(_explains, comments))
+
+
+def _explains(comment: str) -> bool:
+    words = {word.casefold() for word in _WORD.findall(comment)}
+    return not _CODE.search(comment) and bool(words - _HEADINGS)
