@@ -153,3 +153,28 @@ def test_no_text_makes_the_reader_raise(tmp_path, text):
     file = tmp_path / "linkwright.toml"
     file.write_text(text)
     read_settings(file)
+
+
+def test_arguments_are_one_set_or_several_for_files_that_match(tmp_path):
+    (tmp_path / "linkwright.toml").write_text(
+        """
+        [arguments]
+        "urdf/arm.urdf.xacro" = [{ arm = "left" }, { arm = "right", gripper = true, dof = 7 }]
+        "*.world.xacro" = { size = 2.5 }
+        """
+    )
+    settings, found = settings_for(tmp_path / "urdf")
+    assert found == ()
+    assert settings.arguments_of(tmp_path / "urdf/arm.urdf.xacro") == (
+        {"arm": "left"},
+        {"arm": "right", "gripper": "true", "dof": "7"},
+    )
+    assert settings.arguments_of(tmp_path / "a/b.world.xacro") == ({"size": "2.5"},)
+    assert settings.arguments_of(tmp_path / "other.urdf.xacro") == ()
+
+
+def test_arguments_of_another_form_are_told(tmp_path):
+    (told,) = said(tmp_path, '[arguments]\n"a.xacro" = ["prefix"]\n')
+    what, hint = told.split(" | ")
+    assert what == "2:2 LINT103 'a.xacro' is neither a set of values nor a list of sets"
+    assert hint == 'write "a.xacro" = [{ prefix = "left_" }, { prefix = "right_" }]'

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from linkwright.diagnostics import Severity
 from linkwright.lint import Settings, check, examine
 from linkwright.lint.registry import all_rules, find_rule
 from linkwright.lint.rule import Scope
@@ -92,8 +93,39 @@ def test_package_rules_say_so():
     assert {rule.scope for rule in all_rules() if rule.code.startswith("LW1")} == {Scope.DESCRIPTION}
 
 
-def test_an_error_of_the_reader_cannot_be_ignored(tmp_path):
+def test_an_error_of_the_reader_is_told_unless_it_is_ignored(tmp_path):
     path = tmp_path / "robot.urdf"
-    path.write_text('<!-- linkwright: ignore-file -->\n<robot name="r"/>\n')
-    found = check(path, settings=Settings(select=(), ignore=("URDF",)))
-    assert [each.code for each in found] == ["URDF106"]
+    path.write_text('<robot name="r"/>\n')
+    for settings in (Settings(), Settings(select=()), Settings(select=("LW2",))):
+        assert [each.code for each in check(path, settings=settings)] == ["URDF106"]
+    assert check(path, settings=Settings(ignore=("URDF",))) == []
+    assert check(path, settings=Settings(per_file_ignores=(("robot.*", ("URDF106",)),))) == []
+    (said,) = check(path, settings=Settings(severity={"URDF1": Severity.INFO}))
+    assert said.severity is Severity.INFO
+    path.write_text('<!-- linkwright: ignore-file URDF106 -->\n<robot name="r"/>\n')
+    assert check(path, settings=Settings()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "code"),
+    [
+        ("robot.urdf", "<robot", "XML2"),
+        (
+            "robot.urdf.xacro",
+            '<robot name="r" xmlns:xacro="x"><xacro:include filename="none.xacro"/></robot>',
+            "XML101",
+        ),
+        ("robot.urdf.xacro", '<robot name="r" xmlns:xacro="x"><link name="${none}"/></robot>', "XAC201"),
+        ("robot.urdf.xacro", '<robot name="r" xmlns:xacro="x"><link name="$(find none_such)"/></robot>', "PKG"),
+        ("robot.sdf", "<sdf version='1.9'><model name='m'/></sdf>", "SDF"),
+    ],
+)
+def test_errors_of_every_room_can_be_ignored_and_have_a_severity(tmp_path, name, text, code):
+    path = tmp_path / name
+    path.write_text(text)
+    found = [each for each in check(path) if each.code.startswith(code)]
+    assert found
+    assert found[0].severity is Severity.ERROR
+    assert not [each for each in check(path, settings=Settings(ignore=(code,))) if each.code.startswith(code)]
+    changed = check(path, settings=Settings(severity={code: Severity.WARNING}))
+    assert {each.severity for each in changed if each.code.startswith(code)} == {Severity.WARNING}

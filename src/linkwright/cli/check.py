@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -20,9 +20,11 @@ from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 from linkwright.diagnostics.translation import localized
 
 if TYPE_CHECKING:
+    from linkwright.descriptions.argument_sets import ArgumentSet, ArgumentSets
     from linkwright.lint.apply import Mended
     from linkwright.lint.engine import Checked
     from linkwright.lint.settings import Settings
+    from linkwright.lint.targets import Targets
     from linkwright.packages import PackageFinder
 
 
@@ -99,6 +101,7 @@ class _Words:
     config: Path | None
     package: bool
     finders: dict[Path, PackageFinder] = field(default_factory=dict)
+    callers: list[ArgumentSets] = field(default_factory=list)
 
     def finder(self, file: Path) -> PackageFinder:
         """Where the packages are for a file; one finder for each folder, because a search takes time."""
@@ -108,6 +111,14 @@ class _Words:
         if folder not in self.finders:
             self.finders[folder] = PackageFinder(start=[folder, Path.cwd()])
         return self.finders[folder]
+
+    def sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
+        """The values that callers give to a file's arguments; what calls is read once for all files."""
+        from linkwright.descriptions.argument_sets import ArgumentSets
+
+        if not self.callers:
+            self.callers.append(ArgumentSets(packages))
+        return self.callers[0].of(file, self.finder(file))
 
     def unknown_selector(self) -> str | None:
         """The finding on a selector that selects nothing, or None."""
@@ -159,8 +170,8 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
     found: dict[tuple[str, object, str], Diagnostic] = {}
     checked = None
     for file in targets.files:
-        checked, trouble = _examine(file, words)
-        said = checked.diagnostics if file in paths else _of_a_folder(checked.diagnostics)
+        checked, trouble = _examine(file, words, targets)
+        said = checked.diagnostics if file in targets.named else _of_a_folder(checked.diagnostics)
         _add(found, (*trouble, *said))
     for folder in targets.packages:
         settings, trouble = words.settings(folder)
@@ -186,21 +197,34 @@ def _add(found: dict[tuple[str, object, str], Diagnostic], more: Iterable[Diagno
             found[key] = replace(diagnostic, element=None) if isinstance(diagnostic, Finding) else diagnostic
 
 
-def _examine(file: Path, words: _Words, text: str | None = None) -> tuple[Checked, tuple[Diagnostic, ...]]:
+def _examine(
+    file: Path, words: _Words, targets: Targets, text: str | None = None
+) -> tuple[Checked, tuple[Diagnostic, ...]]:
+    """Check a file with the arguments of the command line, or else with those that it is given elsewhere."""
+    from linkwright.lint.argument_sets import SetCheck
     from linkwright.lint.engine import examine
     from linkwright.lint.rule import Scope
     from linkwright.xmltree import Overlay
 
     settings, trouble = words.settings(file)
-    checked = examine(
-        file,
-        arguments=words.values,
-        packages=words.finder(file),
-        settings=settings,
-        overlay=None if text is None else Overlay({file: text}),
-        scopes=(Scope.DESCRIPTION,),
-    )
-    return checked, trouble
+
+    def with_values(values: Mapping[str, str]) -> Checked:
+        return examine(
+            file,
+            arguments=values,
+            packages=words.finder(file),
+            settings=settings,
+            overlay=None if text is None else Overlay({file: text}),
+            scopes=(Scope.DESCRIPTION,),
+        )
+
+    if words.values:
+        return with_values(words.values), trouble
+    check = SetCheck(file, words.finder(file), settings, with_values, is_named=file in targets.named)
+    configured = settings.arguments_of(file)
+    if configured:
+        return check.with_configured(configured), trouble
+    return check.with_callers(lambda: words.sets(file, targets.packages)), trouble
 
 
 def _fix(paths: Sequence[Path], words: _Words, *, unsafe: bool, write: bool) -> list[Mended]:
@@ -211,7 +235,7 @@ def _fix(paths: Sequence[Path], words: _Words, *, unsafe: bool, write: bool) -> 
     from linkwright.xmltree import Overlay
 
     def file_again(file: Path, text: str | None) -> Iterable[Diagnostic]:
-        return _examine(file, words, text)[0].diagnostics
+        return _examine(file, words, targets, text)[0].diagnostics
 
     def package_again(folder: Path, text: str | None) -> Iterable[Diagnostic]:
         overlay = None if text is None else Overlay({folder / MANIFEST: text})

@@ -40,7 +40,7 @@ tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "toml
 CONFIGURATION = "linkwright.toml"
 _PROJECT = "pyproject.toml"
 _PROJECT_TABLE = ("tool", "linkwright")
-KEYS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options")
+KEYS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options", "arguments")
 
 _HEADER = re.compile(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
 _PLACE = re.compile(r"\(at line (\d+), column (\d+)\)")
@@ -146,6 +146,7 @@ class _Reader:
             tuple(self._per_file(self._table("per-file-ignores", table))),
             dict(self._options(self._table("options", table))),
             folder,
+            tuple(self._arguments(self._table("arguments", table))),
         )
 
     def _table(self, key: str, table: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -187,6 +188,20 @@ class _Reader:
     def _per_file(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[str, ...]]]:
         for pattern, value in table.items():
             yield pattern, self._selectors(("per-file-ignores", pattern), value)
+
+    def _arguments(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Mapping[str, str], ...]]]:
+        for pattern, value in table.items():
+            sets = value if isinstance(value, list) else [value]
+            if all(isinstance(each, dict) and all(map(_is_plain, each.values())) for each in sets):
+                yield pattern, tuple({name: _as_argument(each[name]) for name in each} for each in sets)
+            else:
+                self._wrong(
+                    ("arguments", pattern),
+                    phrase("is neither a set of values nor a list of sets"),
+                    phrase(
+                        'write {written} = [{{ prefix = "left_" }}, {{ prefix = "right_" }}]', written=f'"{pattern}"'
+                    ),
+                )
 
     def _options(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, OptionValue]]]:
         for key, value in table.items():
@@ -242,6 +257,16 @@ def _fits(option: Option, value: object) -> bool:
     if kind is list:
         return isinstance(value, list) and all(isinstance(each, str) for each in value)
     return isinstance(value, kind) and isinstance(value, bool) == (kind is bool)
+
+
+def _is_plain(value: object) -> bool:
+    """Whether a value can be that of an argument."""
+    return isinstance(value, (str, int, float))
+
+
+def _as_argument(value: str | float) -> str:
+    """A value as a command line has it."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _written(key: str) -> str:

@@ -12,6 +12,7 @@ from linkwright.descriptions import examine as examine_description
 from linkwright.descriptions.description import TRUE_OF_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
 from linkwright.lint.finding import Finding
+from linkwright.lint.missing_packages import judged
 from linkwright.lint.registry import all_rules, find_rule, unusable_rules
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
@@ -96,7 +97,7 @@ def examine(
     try:
         description = examine_description(path, arguments=arguments, packages=finder, overlay=overlay, partly=True)
     except LinkwrightError as error:
-        return Checked(path, None, (*trouble, *error.diagnostics), None)
+        return Checked(path, None, (*trouble, *as_set(error.diagnostics, settings)), None)
     subject = Subject(description, finder, settings)
     found = _run(subject, scopes, _of_library(subject) if subject.is_library else description.diagnostics)
     return Checked(path, subject.robot, (*trouble, *found), subject)
@@ -113,15 +114,14 @@ def _examine_world(
     try:
         described = examine_world(path, arguments=arguments, packages=finder, overlay=overlay)
     except LinkwrightError as error:
-        return Checked(path, None, (*trouble, *error.diagnostics), None)
+        return Checked(path, None, (*trouble, *as_set(error.diagnostics, settings)), None)
     said = list(described.diagnostics)
     if described.sdf is not None:
         from linkwright.lint.worlds import check_sdf, one_for_each_world
         from linkwright.sdf.resources import ResourceFinder
 
         said = one_for_each_world([*said, *check_sdf(described.sdf, ResourceFinder(finder))])
-    kept = [each for each in said if _is_wanted(each, settings)]
-    found = in_order(_with_severities(kept, settings), str(path))
+    found = in_order(as_set(said, settings), str(path))
     return Checked(path, None, (*trouble, *found), None, described.sdf)
 
 
@@ -129,8 +129,7 @@ def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic]
     """The findings of the rules and the earlier ones, filtered by settings and comments, in order."""
     suppressions = Suppressions(subject, subject.settings)
     found = _without_replaced([*said, *_find(subject, scopes, suppressions)], subject.settings)
-    kept = [each for each in suppressions.apply(found) if _is_wanted(each, subject.settings)]
-    return in_order(_with_severities(kept, subject.settings), str(subject.path))
+    return in_order(as_set(suppressions.apply(found), subject.settings), str(subject.path))
 
 
 def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
@@ -204,24 +203,27 @@ def _finder(path: Path, packages: Packages) -> PackageFinder:
     return PackageFinder(start=[path.absolute().parent, Path.cwd()], extra=packages)
 
 
+def as_set(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Diagnostic]:
+    """The diagnostics that the settings let through, as severe as they say."""
+    for diagnostic in judged(diagnostics):
+        if _is_wanted(diagnostic, settings):
+            severity = settings.severity_of(diagnostic.code, diagnostic.severity)
+            yield diagnostic if severity is diagnostic.severity else replace(diagnostic, severity=severity)
+
+
 def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
     """Whether the settings let a diagnostic through.
 
-    An error of the reader or of xacro always comes through: without it nothing would tell why there is no robot.
+    An error of the reader or of xacro need not be selected: without it nothing would tell why there is no robot.
     """
     rule = find_rule(diagnostic.code)
-    if rule is None and diagnostic.severity is Severity.ERROR:
-        return True
-    selected = settings.selects(diagnostic.code) if rule is None else settings.runs(rule)
+    if rule is not None:
+        selected = settings.runs(rule)
+    elif diagnostic.severity is Severity.ERROR:
+        selected = not settings.is_ignored(diagnostic.code)
+    else:
+        selected = settings.selects(diagnostic.code)
     return selected and not (diagnostic.span and settings.ignores(diagnostic.code, diagnostic.span.file))
-
-
-def _with_severities(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Diagnostic]:
-    for diagnostic in diagnostics:
-        severity = diagnostic.severity
-        if find_rule(diagnostic.code) is not None or severity is not Severity.ERROR:
-            severity = settings.severity_of(diagnostic.code, severity)
-        yield diagnostic if severity is diagnostic.severity else replace(diagnostic, severity=severity)
 
 
 def _without_replaced(diagnostics: list[Diagnostic], settings: Settings) -> list[Diagnostic]:

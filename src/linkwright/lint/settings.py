@@ -40,6 +40,7 @@ class Settings:
         severity: selector -> severity of the findings it means.
         per_file_ignores: pairs of a pattern of paths and the selectors not to report in files that match it.
         options: rule name -> option -> value.
+        arguments: pairs of a pattern of paths and the sets of values that descriptions which match it are checked with.
         folder: what the patterns of paths are relative to; None where there is no configuration file.
     """
 
@@ -50,6 +51,7 @@ class Settings:
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
     options: Mapping[str, Mapping[str, OptionValue]] = field(default_factory=dict)
     folder: Path | None = None
+    arguments: tuple[tuple[str, tuple[Mapping[str, str], ...]], ...] = ()
 
     def runs(self, rule: Switched) -> bool:
         """Whether a rule is to run at all."""
@@ -69,18 +71,30 @@ class Settings:
             wanted = 1
         return wanted > specificity(self.ignore, code)
 
+    def is_ignored(self, code: str) -> bool:
+        """Whether findings of a code are ignored, by a selector that says more of it than one that selects it."""
+        wanted = specificity((*(self.select or ()), *self.extend_select), code)
+        return specificity(self.ignore, code) > 0 and specificity(self.ignore, code) >= wanted
+
     def ignores(self, code: str, file: str) -> bool:
         """Whether findings of a code are not reported in one file."""
         if not self.per_file_ignores:
             return False
-        path = Path(file).absolute()
-        if self.folder is not None and path.is_relative_to(self.folder):
-            path = path.relative_to(self.folder)
         return any(
             specificity(selectors, code)
             for pattern, selectors in self.per_file_ignores
-            if fnmatchcase(path.as_posix(), pattern) or fnmatchcase(path.name, pattern)
+            if self._is_meant(Path(file), pattern)
         )
+
+    def arguments_of(self, file: Path) -> tuple[Mapping[str, str], ...]:
+        """The sets of values that a description's arguments are given; none where the settings do not say."""
+        return tuple(values for pattern, sets in self.arguments if self._is_meant(file, pattern) for values in sets)
+
+    def _is_meant(self, file: Path, pattern: str) -> bool:
+        path = file.absolute()
+        if self.folder is not None and path.is_relative_to(self.folder):
+            path = path.relative_to(self.folder)
+        return fnmatchcase(path.as_posix(), pattern) or fnmatchcase(path.name, pattern)
 
     def severity_of(self, code: str, otherwise: Severity) -> Severity:
         """How severe findings of a code are."""

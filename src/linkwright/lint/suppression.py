@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, phrase
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.registry import find_rule
@@ -99,8 +99,6 @@ class Suppressions:
         )
 
     def _suppresses(self, diagnostic: Diagnostic) -> bool:
-        if not isinstance(diagnostic, Finding) and diagnostic.severity is Severity.ERROR:
-            return False  # without it nothing would tell why there is no robot
         return any(
             directive.suppresses(diagnostic.code, offset)
             for file, offset in _places(diagnostic)

@@ -26,6 +26,8 @@ _ATTRIBUTE = re.compile(r"""\b(name|default)\s*=\s*["']([^"']+)["']""")
 _GIVEN = re.compile(r"\$\(arg\s+(\S+?)\s*\)")
 _OPTIONAL = re.compile(r"\$\(optenv\s+\S+\s+([^)]*)\)")
 _DECLARATIONS = frozenset({"xacro:include", "xacro:macro", "xacro:property", "xacro:arg"})
+_WITHOUT_LINKS = frozenset({"gazebo", "material", "ros2_control", "transmission"})
+"""What a part of a robot may hold that others include under a name which no text search finds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +37,12 @@ class Targets:
     Attributes:
         files: the descriptions, each once.
         packages: the folders of the packages to check, each once.
+        named: the files that the user named, which are not found in a folder.
     """
 
     files: tuple[Path, ...]
     packages: tuple[Path, ...]
+    named: frozenset[Path] = frozenset()
 
 
 def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
@@ -64,7 +68,7 @@ def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
             package = enclosing_package((path if path.is_dir() else path.parent).absolute())
             if package is not None:
                 packages[package[1]] = None
-    return Targets(tuple(files), tuple(packages))
+    return Targets(tuple(files), tuple(packages), frozenset(path for path in paths if not path.is_dir()))
 
 
 def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
@@ -120,4 +124,8 @@ def _describes_robot(path: Path) -> bool:
 def _has_content(root: Element) -> bool:
     """Whether there is more than declarations: a wrapper that only includes others counts as well."""
     tags = {element.tag for element in root.elements()}
-    return bool(tags - _DECLARATIONS) or tags == {"xacro:include"} or tags == {"xacro:include", "xacro:arg"}
+    return (
+        bool(tags - _DECLARATIONS - _WITHOUT_LINKS)
+        or tags == {"xacro:include"}
+        or tags == {"xacro:include", "xacro:arg"}
+    )

@@ -211,6 +211,7 @@ class UnusedMaterial(Rule):
 
     code = "LW507"
     name = "material-unused"
+    needs_all_sets = True
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:

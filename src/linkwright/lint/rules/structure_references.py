@@ -59,6 +59,7 @@ class GazeboReferenceUnknown(Rule):
 
     code = "LW120"
     name = "gazebo-reference-unknown"
+    needs_all_sets = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every reference to nothing."""

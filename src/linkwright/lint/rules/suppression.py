@@ -27,6 +27,7 @@ class UnusedSuppression(Rule):
 
     code = "LW001"
     name = "unused-suppression"
+    needs_all_sets = True
     default = False
     scope = Scope.COMMENTS
 

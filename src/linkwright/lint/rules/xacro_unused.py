@@ -49,6 +49,7 @@ class UnusedProperty(XacroRule):
 
     code = "LW701"
     name = "unused-property"
+    needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_open or facts.is_library:
@@ -95,6 +96,7 @@ class UnusedArgument(XacroRule):
 
     code = "LW702"
     name = "unused-argument"
+    needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.arguments_open:
@@ -143,6 +145,7 @@ class UnusedMacro(XacroRule):
 
     code = "LW703"
     name = "unused-macro"
+    needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_library or facts.calls_open:
@@ -179,6 +182,7 @@ class UnusedInclude(XacroRule):
 
     code = "LW704"
     name = "unused-include"
+    needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_library or any(file.is_open or file.calls_open for file in facts.files.values()):
@@ -224,6 +228,7 @@ class UnusedMacroParameter(XacroRule):
 
     code = "LW705"
     name = "unused-macro-parameter"
+    needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.calls_open:

@@ -35,9 +35,9 @@ def read_xml(source: SourceText) -> CallingFile:
             file.declare(element.attributes["name"], default, tuple(_offered(element)))
         elif element.tag == "include" and "file" in values:
             given = {
-                child.attributes.get("name", ""): markup_text(child.attributes.get("value", ""), source.name)
+                child.attributes.get("name", ""): markup_text(child.attributes["value"], source.name)
                 for child in element.elements()
-                if child.tag in ("arg", "let")
+                if child.tag in ("arg", "let") and "value" in child.attributes
             }
             file.inclusions.append(Inclusion(values["file"], given))
         for key, value in element.attributes.items():

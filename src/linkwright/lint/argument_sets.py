@@ -1,0 +1,268 @@
+"""Checking a description with every set of values that its arguments are given, and telling each finding once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from linkwright.descriptions import examine as examine_description
+from linkwright.descriptions.argument_sets import ArgumentSet
+from linkwright.descriptions.description import TRUE_OF_PARTS
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Phrase,
+    Severity,
+    Span,
+    counted,
+    joined,
+    phrase,
+    quoted_names,
+)
+from linkwright.diagnostics.phrase import as_phrase
+from linkwright.lint.engine import Checked, as_set, in_order
+from linkwright.lint.registry import find_rule
+from linkwright.lint.settings import Settings
+from linkwright.packages import PackageFinder
+
+UNDECLARED = "XAC211"
+UNUSED = "XAC215"
+_NEEDED = "LINT303"
+_MISSING_FILES = frozenset({"XML101", "XAC506"})
+_FEW = 4
+"""So many arguments are named."""
+_NO_VALUES = ArgumentSet({})
+
+Key = tuple[str, Span | None, object]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Run:
+    """One check.
+
+    Attributes:
+        given: the values.
+        checked: what came of it.
+        errors: those of the expansion and of the reader.
+    """
+
+    given: ArgumentSet
+    checked: Checked
+    errors: frozenset[Key]
+
+    def is_fine(self, common: frozenset[Key]) -> bool:
+        """Whether it has no errors but those that all runs have, none of which what is open may have made."""
+        return self.errors <= common and not (self.given.open and any(_may_hang_on(code) for code, *_ in self.errors))
+
+
+@dataclass(eq=False)
+class SetCheck:
+    """The check of one description.
+
+    Args:
+        path: the file.
+        finder: where packages are.
+        examine: checks the file with some values.
+        settings: those in force for the file.
+        is_named: whether the user named the file, who then wants to know why it cannot be expanded as it stands.
+    """
+
+    path: Path
+    finder: PackageFinder
+    settings: Settings
+    examine: Callable[[Mapping[str, str]], Checked]
+    is_named: bool
+
+    def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
+        """The check with the sets of a configuration, which stand for everything that callers give."""
+        return self._together([self._run(ArgumentSet(values)) for values in sets], ())
+
+    def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
+        """The check with the defaults and the sets that callers give; `find_sets` is asked only where it matters."""
+        default = self._run(_NO_VALUES)
+        if (self.is_named and not default.errors) or not _takes_arguments(default.checked):
+            return default.checked
+        sets = find_sets()
+        if not any(each.values or each.open for each in sets):
+            return default.checked if sets or self.is_named else self._without_callers(default)
+        known = [self._run(each) for each in sets if each.is_complete and each.values]
+        runs = [default, *known]
+        common = frozenset.intersection(*(run.errors for run in runs))
+        others: list[_Run] = []
+        if not known or not all(run.is_fine(common) for run in known):
+            others = [self._run(each) for each in sets if not each.is_complete and each.values]
+            common = frozenset.intersection(*(run.errors for run in (*runs, *others)))
+        tried = [*known, *others]
+        uses_defaults = any(each.is_complete and not each.values for each in sets)
+        kept = [run for run in known if not _is_excused(run, tried, common)]
+        if default.is_fine(common) or uses_defaults:
+            kept.insert(0, default)
+        kept = kept or [run for run in others if run.is_fine(common)]
+        if not kept and any(each.open for each in sets):
+            return self._remarked(default, common, sets)
+        if not kept or default in kept:
+            return self._together(kept or [default], ())
+        return self._together(kept, self._needs(kept[0], default, common, sets))
+
+    def _run(self, given: ArgumentSet) -> _Run:
+        checked = self.examine(given.values)
+        if given.values:  # a caller may give what other descriptions take
+            found = tuple(each for each in checked.diagnostics if each.code != UNUSED)
+            checked = replace(checked, diagnostics=found)
+        errors = frozenset(
+            _place(each)
+            for each in checked.diagnostics
+            if each.severity is Severity.ERROR and find_rule(each.code) is None
+        )
+        return _Run(given, checked, errors)
+
+    # --- what is told -----------------------------------------------------------------------------------------
+
+    def _together(self, runs: Sequence[_Run], more: Iterable[Diagnostic]) -> Checked:
+        """The findings of several runs, each once, and the robot of the first that has one."""
+        told: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
+        for run in runs:
+            for key, each in _numbered(run.checked.diagnostics):
+                told.setdefault(key, (each, []))[1].append(run)
+        found: list[Diagnostic] = [*as_set(more, self.settings)]
+        for diagnostic, having in told.values():
+            if len(having) == len(runs):
+                found.append(diagnostic)
+            elif not _holds_for_all_sets(diagnostic):
+                found.append(replace(diagnostic, notes=(*diagnostic.notes, _condition(having[0], runs))))
+        best = next((run.checked for run in runs if run.checked.robot is not None), runs[0].checked)
+        return replace(best, diagnostics=tuple(in_order(found, str(self.path))))
+
+    def _needs(
+        self, working: _Run, default: _Run, common: frozenset[Key], sets: Sequence[ArgumentSet]
+    ) -> Iterator[Diagnostic]:
+        """The remark that the defaults alone do not make a robot."""
+        names = self._needed(working.given.values, common)
+        shown = " ".join(f"{name}:={working.given.values[name]}" for name in names[:_FEW])
+        notes = [Note(phrase("it gets {values} here, for instance", values=shown), working.given.span)]
+        if len(sets) > 1:
+            notes.append(Note(phrase("it is checked with the {count} sets of values that are given", count=len(sets))))
+        yield _needs_arguments(default.checked, names, tuple(notes))
+
+    def _needed(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
+        """The arguments without which these values make no robot: the others are left out one by one."""
+        kept = dict(values)
+        for name in values:
+            fewer = {each: value for each, value in kept.items() if each != name}
+            if self._expands(fewer, common):
+                kept = fewer
+        return list(kept)
+
+    def _expands(self, values: Mapping[str, str], common: frozenset[Key]) -> bool:
+        try:
+            found = examine_description(self.path, arguments=values, packages=self.finder, partly=True).diagnostics
+        except LinkwrightError as error:
+            found = error.diagnostics
+        return all(each.severity is not Severity.ERROR or _place(each) in common for each in found)
+
+    def _remarked(self, default: _Run, common: frozenset[Key], sets: Sequence[ArgumentSet]) -> Checked:
+        """The check with the defaults where callers give values that nobody can tell."""
+        names = dict.fromkeys(name for each in sets for name in each.open)
+        span = next(each.span for each in sets if each.open)
+        notes = (Note(phrase("their values are only known when this runs"), span),)
+        return self._only(
+            default, lambda error: _place(error) in common and not _may_hang_on(error.code), list(names), notes
+        )
+
+    def _without_callers(self, default: _Run) -> Checked:
+        """The check with the defaults where nothing calls the description; what nobody declares, somebody gives."""
+        names = dict.fromkeys(name for each in default.checked.diagnostics if (name := _asked(each)))
+        if not names:
+            return default.checked
+        return self._only(default, lambda error: _asked(error) is None, list(names), ())
+
+    def _only(
+        self, default: _Run, is_told: Callable[[Diagnostic], bool], names: Sequence[str], notes: tuple[Note, ...]
+    ) -> Checked:
+        found = [each for each in default.checked.diagnostics if _place(each) not in default.errors or is_told(each)]
+        hint = phrase(
+            'give values in linkwright.toml: [arguments] "{file}" = {{ {name} = "..." }}',
+            file=self.path.name,
+            name=names[0],
+        )
+        found += as_set([_needs_arguments(default.checked, names, notes, hint)], self.settings)
+        return replace(default.checked, diagnostics=tuple(in_order(found, str(self.path))))
+
+
+def _takes_arguments(checked: Checked) -> bool:
+    """Whether arguments can change anything: a description that is not expanded, or asks for none, takes none."""
+    if checked.subject is None:
+        return checked.path.suffix == ".xacro"
+    sources = checked.subject.sources.values()
+    return any("arg" in each.source.text for each in sources if each.source is not None)
+
+
+def _place(diagnostic: Diagnostic) -> Key:
+    return diagnostic.code, diagnostic.span, "" if diagnostic.span else diagnostic.message
+
+
+def _numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnostic]]:
+    """Diagnostics by code, place and their number there: numbers and names in messages differ between sets."""
+    count: dict[Key, int] = {}
+    for each in diagnostics:
+        place = _place(each)
+        count[place] = count.get(place, 0) + 1
+        yield (*place[:2], (place[2], count[place])), each
+
+
+def _is_excused(run: _Run, tried: Sequence[_Run], common: frozenset[Key]) -> bool:
+    """Whether a set fails only for values that do not go together: what sets it apart works in another."""
+    if run.is_fine(common) or not run.given.varied:
+        return False
+    apart = {name: run.given.values[name] for name in run.given.varied}
+    return any(other.is_fine(common) and apart.items() <= other.given.values.items() for other in tried)
+
+
+def _holds_for_all_sets(diagnostic: Diagnostic) -> bool:
+    rule = find_rule(diagnostic.code)
+    return rule is not None and rule.needs_all_sets
+
+
+def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
+    """The values for which a finding is true that other sets do not show."""
+    values = run.given.values
+    own = [name for name in values if any(other.given.values.get(name) != values[name] for other in runs)]
+    if not own:
+        return Note(phrase("this is so without arguments"))
+    first = [name for name in own if name in run.given.varied] or own
+    shown = " ".join(f"{name}:={values[name]}" for name in first[:_FEW])
+    return Note(phrase("this is so with {values}", values=shown), run.given.span)
+
+
+def _asked(diagnostic: Diagnostic) -> str | None:
+    """The argument that a finding says nothing declares, unless it may be a misspelt one."""
+    if diagnostic.code != UNDECLARED or as_phrase(diagnostic.hint or "").template.startswith("did you mean"):
+        return None
+    return str(as_phrase(diagnostic.message).arguments.get("name", ""))
+
+
+def _may_hang_on(code: str) -> bool:
+    """Whether an error may be due to the value of an argument: a name, a file, or how the robot hangs together."""
+    if code.startswith("URDF"):
+        return code not in TRUE_OF_PARTS
+    return code in (UNDECLARED, *_MISSING_FILES)
+
+
+def _needs_arguments(
+    checked: Checked, names: Sequence[str], notes: tuple[Note, ...], hint: Phrase | None = None
+) -> Diagnostic:
+    shown = list(names[:_FEW])
+    what = quoted_names(shown, " and ") if len(names) == len(shown) else joined([quoted_names(shown), "..."])
+    message = counted(
+        "'{file}' needs the argument {names}",
+        "'{file}' needs the arguments {names}",
+        len(names),
+        file=checked.path.name,
+        names=what,
+    )
+    root = next(iter(checked.subject.sources.values())).root if checked.subject is not None else None
+    span = root.span() if root is not None else None
+    source = root.source if root is not None else None
+    return Diagnostic(_NEEDED, message, span, Severity.INFO, notes, hint, source)

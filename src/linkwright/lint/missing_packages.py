@@ -1,0 +1,32 @@
+"""Packages that are not here: those that a package says it depends on are missing on this machine, and no mistake."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, Severity, phrase
+from linkwright.diagnostics.phrase import as_phrase
+from linkwright.lint.package import PackageContext, find_package
+
+_MISSING = "PKG101"
+
+
+def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The diagnostics; a missing package is a warning where the ``package.xml`` of who names it declares it."""
+    packages: dict[Path, PackageContext | None] = {}
+    for each in diagnostics:
+        if each.code != _MISSING or each.span is None:
+            yield each
+            continue
+        folder = Path(each.span.file).parent
+        if folder not in packages:
+            packages[folder] = find_package(folder)
+        package = packages[folder]
+        name = str(as_phrase(each.message).arguments.get("name", ""))
+        if package is None or package.manifest is None or not package.manifest.declares(name):
+            yield each
+            continue
+        hint = phrase("install '{name}', or check it together with this package; what needs it is left out", name=name)
+        yield replace(each, severity=Severity.WARNING, hint=hint)

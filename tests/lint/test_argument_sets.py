@@ -1,0 +1,189 @@
+"""A description is checked with the values that its callers give, and each finding is told once."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from linkwright.cli import main
+
+XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>A robot.</description>
+<maintainer email="a@b.org">A</maintainer><license>MIT</license>{needs}</package>"""
+ARM = f"""<robot {XACRO} name="$(arg name)">
+  <xacro:arg name="name" default="arm"/>
+  <xacro:arg name="type" default="none"/>
+  <xacro:include filename="$(arg type).xacro"/>
+</robot>
+"""
+PART = '<robot><link name="base_link"/></robot>\n'
+LAUNCH = """
+import xacro
+from ament_index_python.packages import get_package_share_path
+from launch import LaunchDescription
+
+def generate_launch_description():
+    path = get_package_share_path('arm') / 'urdf' / 'arm.urdf.xacro'
+    for kind in [{kinds}]:
+        xacro.process_file(path, mappings={{'name': 'a', 'type': kind}})
+    return LaunchDescription([])
+"""
+
+
+@pytest.fixture
+def check(tmp_path, monkeypatch, capsys):
+    """Write files, check the folder, and return what is said: code, severity, file, message and notes."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(files, *words):
+        for name, text in {"arm/package.xml": MANIFEST.format(name="arm", needs=""), **files}.items():
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_text(text)
+        main(["check", *(words or ["."]), "--format", "json", "--ignore", "LW6", "--ignore", "LW8"])
+        return json.loads(capsys.readouterr().out)["diagnostics"]
+
+    return run
+
+
+def codes(found):
+    return [(each["severity"], each["code"]) for each in found]
+
+
+def test_what_fails_only_without_arguments_is_one_remark(check):
+    found = check(
+        {
+            "arm/urdf/arm.urdf.xacro": ARM,
+            "arm/urdf/small.xacro": PART,
+            "arm/urdf/big.xacro": PART,
+            "arm/launch/view.launch.py": LAUNCH.format(kinds="'small', 'big'"),
+        }
+    )
+    assert codes(found) == [("info", "LINT303")]
+    assert found[0]["message"] == "'arm.urdf.xacro' needs the arguments 'name' and 'type'"
+    assert [note["message"] for note in found[0]["notes"]] == [
+        "it gets name:=a type:=small here, for instance",
+        "it is checked with the 2 sets of values that are given",
+    ]
+    assert found[0]["notes"][0]["file"].endswith("view.launch.py")
+
+
+def test_a_value_that_is_given_and_fails_is_an_error_that_names_it(check):
+    found = check(
+        {
+            "arm/urdf/arm.urdf.xacro": ARM,
+            "arm/urdf/small.xacro": PART,
+            "arm/launch/view.launch.py": LAUNCH.format(kinds="'small', 'lost'"),
+        }
+    )
+    assert codes(found) == [("info", "LINT303"), ("error", "XML101")]
+    assert "this is so with type:=lost" in [note["message"] for note in found[1]["notes"]]
+
+
+def test_a_finding_of_all_sets_is_told_once_and_one_of_some_says_which(check):
+    flaw = '<link name="{name}"><collision><geometry><box size="0 1 1"/></geometry></collision></link>'
+    part = f'<robot><link name="base_link"/>{flaw}</robot>'
+    joint = '<joint name="j" type="fixed"><parent link="base_link"/><child link="{name}"/></joint>'
+    common = f"<robot>{flaw.format(name='c')}{joint.format(name='c')}</robot>"
+    arm = ARM.replace("</robot>", '<xacro:include filename="common.xacro"/></robot>')
+    found = check(
+        {
+            "arm/urdf/arm.urdf.xacro": arm,
+            "arm/urdf/common.xacro": common,
+            "arm/urdf/small.xacro": part.format(name="s").replace("</robot>", joint.format(name="s") + "</robot>"),
+            "arm/urdf/big.xacro": PART,
+            "arm/launch/view.launch.py": LAUNCH.format(kinds="'small', 'big'"),
+        },
+        ".",
+        "--select",
+        "LW401",
+    )
+    boxes = {each["file"].rpartition("/")[2]: each for each in found if each["code"] == "LW401"}
+    assert list(boxes) == ["common.xacro", "small.xacro"]
+    assert not any("this is so" in note["message"] for note in boxes["common.xacro"]["notes"])
+    assert "this is so with type:=small" in [note["message"] for note in boxes["small.xacro"]["notes"]]
+
+
+def test_the_configuration_has_the_last_word(check):
+    found = check(
+        {
+            "arm/urdf/arm.urdf.xacro": ARM,
+            "arm/urdf/small.xacro": PART,
+            "arm/launch/view.launch.py": LAUNCH.format(kinds="'lost'"),
+            "linkwright.toml": '[arguments]\n"arm/urdf/arm.urdf.xacro" = { name = "a", type = "small" }\n',
+        }
+    )
+    assert found == []
+
+
+def test_an_argument_that_nobody_declares_or_gives_is_a_remark_in_a_folder_and_an_error_for_the_file(check):
+    files = {"arm/urdf/arm.urdf.xacro": f'<robot {XACRO} name="r"><link name="$(arg prefix)base_link"/></robot>'}
+    found = check(files)
+    assert codes(found) == [("info", "LINT303")]
+    assert found[0]["hints"] == ['give values in linkwright.toml: [arguments] "arm.urdf.xacro" = { prefix = "..." }']
+    assert codes(check(files, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC211")]
+
+
+def test_a_misspelt_argument_stays_an_error(check):
+    robot = f"""<robot {XACRO} name="r"><xacro:arg name="prefix" default=""/>
+    <link name="$(arg prefix)base_link"/><link name="$(arg prefx)tool"/></robot>"""
+    assert ("error", "XAC211") in codes(check({"arm/urdf/arm.urdf.xacro": robot}))
+
+
+def test_a_caller_that_gives_nothing_makes_the_defaults_count(check):
+    test = """
+import xacro
+from ament_index_python.packages import get_package_share_path
+
+def test_expands():
+    xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro')
+"""
+    found = check({"arm/urdf/arm.urdf.xacro": ARM, "arm/test/test_arm.py": test})
+    assert {code for severity, code in codes(found) if severity == "error"} == {"XAC211", "XML101"}
+
+
+def test_values_that_are_only_known_at_run_time_are_named(check):
+    launch = LAUNCH.format(kinds="'small'").replace("'type': kind", "'type': ask()")
+    found = check({"arm/urdf/arm.urdf.xacro": ARM, "arm/launch/view.launch.py": launch})
+    assert codes(found) == [("info", "LINT303")]
+    assert found[0]["arguments"]["names"] == "'type'"
+
+
+def test_values_of_the_command_line_are_the_only_ones(check):
+    files = {"arm/urdf/arm.urdf.xacro": ARM, "arm/urdf/small.xacro": PART}
+    assert check(files, "arm/urdf/arm.urdf.xacro", "name:=a", "type:=small") == []
+    assert ("error", "XML101") in codes(check(files, "arm/urdf/arm.urdf.xacro", "name:=a", "type:=lost"))
+
+
+def test_a_value_that_works_beside_another_is_no_error(check):
+    launch = """
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+def generate_launch_description():
+    DeclareLaunchArgument('type', default_value='six', choices=['six', 'seven'])
+    DeclareLaunchArgument('dof', default_value='6', choices=['6', '7'])
+    Command(['xacro ', PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro']), ' name:=a',
+             ' type:=', LaunchConfiguration('type'), LaunchConfiguration('dof')])
+"""
+    files = {"arm/urdf/arm.urdf.xacro": ARM, "arm/launch/view.launch.py": launch}
+    arm = ARM.replace("$(arg type).xacro", "$(arg type)_$(arg dof).xacro")
+    files["arm/urdf/arm.urdf.xacro"] = arm.replace("</robot>", '<xacro:arg name="dof" default="0"/></robot>')
+    files["arm/urdf/arm.urdf.xacro"] = arm
+    files["arm/launch/view.launch.py"] = launch.replace(
+        "LaunchConfiguration('type'), ", "LaunchConfiguration('type'), ' dof:=', "
+    )
+    found = check({**files, "arm/urdf/six_6.xacro": PART, "arm/urdf/seven_7.xacro": PART})
+    assert codes(found) == [("info", "LINT303")]
+
+
+@pytest.mark.parametrize(("needs", "severity"), [("<exec_depend>far</exec_depend>", "warning"), ("", "error")])
+def test_a_missing_package_is_a_warning_where_it_is_declared(check, needs, severity):
+    robot = (
+        f"""<robot {XACRO} name="r"><xacro:include filename="$(find far)/far.xacro"/><link name="base_link"/></robot>"""
+    )
+    manifest = MANIFEST.format(name="arm", needs=needs)
+    found = check({"arm/package.xml": manifest, "arm/urdf/arm.urdf.xacro": robot})
+    assert (severity, "PKG101") in codes(found)
