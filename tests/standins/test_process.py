@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import textwrap
@@ -134,6 +135,39 @@ class TestRunning:
         assert said("-c", code, cwd=tmp_path) == "my_robot.msg.Count(number=3, names=['a'])"
         # Where Python takes the folders for packages.
         assert said("-c", code, cwd=tmp_path / "src") == "my_robot.msg.Count(number=3, names=['a'])"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
+class TestInterrupt:
+    def interrupted(self, tmp_path, code):
+        (tmp_path / "node.py").write_text("import rclpy, signal\n" + textwrap.dedent(code))
+        ended = run("node.py", cwd=tmp_path)
+        assert ended.returncode == -signal.SIGINT
+        return ended.stderr
+
+    def test_a_node_that_waits_ends_without_a_traceback(self, tmp_path):
+        code = """
+            import os, threading
+            rclpy.init()
+            threading.Timer(0.2, os.kill, [os.getpid(), signal.SIGINT]).start()
+            rclpy.spin(rclpy.create_node("mine"))
+            """
+        assert self.interrupted(tmp_path, code) == ""
+
+    def test_one_that_is_being_imported_ends_without_a_traceback(self, tmp_path):
+        (tmp_path / "parts.py").write_text("import signal\nsignal.raise_signal(signal.SIGINT)\n")
+        assert self.interrupted(tmp_path, "import parts") == ""
+
+    def test_code_of_the_user_is_named(self, tmp_path):
+        code = """
+            rclpy.init()
+            node = rclpy.create_node("mine")
+            node.create_timer(0.01, lambda: signal.raise_signal(signal.SIGINT))
+            rclpy.spin(node)
+            """
+        said = self.interrupted(tmp_path, code)
+        assert "node.py" in said
+        assert said.endswith("KeyboardInterrupt\n")
 
 
 class TestManners:

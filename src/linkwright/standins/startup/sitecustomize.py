@@ -18,6 +18,11 @@ _HERE = os.path.dirname(os.path.abspath(__file__))
 _TABLES = os.path.join(os.path.dirname(_HERE), "tables")
 _LINKWRIGHT = os.path.dirname(os.path.dirname(os.path.dirname(_HERE)))
 
+_OURS = os.path.join(_LINKWRIGHT, "linkwright", "")
+_SIGNALS = os.path.join("rclpy_api", "signals.py")
+"""The handler of signals, which is called wherever the program is."""
+_STANDARD_LIBRARY = os.path.join(os.path.dirname(os.__file__), "")
+
 _WITH_ANY_ROS = frozenset({"tf_transformations"})
 """Stand-ins that touch neither messages nor nodes, so that they may go with a real ROS."""
 
@@ -168,7 +173,13 @@ def _run_next_sitecustomize() -> None:
 
 
 def _tell_how_to_get(kind: type[BaseException], error: BaseException, traceback: object) -> None:
-    """Python's own last words about an error; where a module of ROS, or a name in it, is missing, what to do too."""
+    """Python's own last words about an error; where a module of ROS, or a name in it, is missing, what to do too.
+
+    Ctrl-C ends a node that waits for messages, or is still being imported, without a traceback. In the user's own code
+    the traceback is printed: it shows where the program was.
+    """
+    if kind is KeyboardInterrupt and _is_between_messages(traceback):
+        return
     sys.__excepthook__(kind, error, traceback)  # type: ignore[arg-type]  # naming its type would import a module
     name = getattr(error, "name", None)
     if isinstance(error, ImportError) and name and not _stand_ins.has_real_ros():
@@ -184,8 +195,22 @@ def _tell_how_to_get(kind: type[BaseException], error: BaseException, traceback:
             print(f"hint: {hint}", file=sys.stderr)
 
 
+def _is_between_messages(traceback: object) -> bool:
+    """Whether a traceback ends in code of ours and what that calls, or in a module that is being imported."""
+    is_ours, modules = False, 0
+    while traceback is not None:
+        code = traceback.tb_frame.f_code  # type: ignore[attr-defined]  # as above
+        traceback = traceback.tb_next  # type: ignore[attr-defined]
+        modules += code.co_name == "<module>"  # the program itself, and what it imports
+        if not code.co_filename.endswith(_SIGNALS):
+            ours = code.co_filename.startswith(_OURS)
+            is_ours = ours or (is_ours and code.co_filename.startswith((_STANDARD_LIBRARY, "<")))
+    return modules > 1 or is_ours
+
+
 _stand_ins = StandIns()
-sys.excepthook = _tell_how_to_get
 sys.meta_path.insert(0, SourceFolders(_stand_ins))
 sys.meta_path.append(_stand_ins)
-_run_next_sitecustomize()
+if __name__ == "sitecustomize":  # not where `linkwright.pytest_plugin` runs it, later than Python's start
+    sys.excepthook = _tell_how_to_get
+    _run_next_sitecustomize()
