@@ -1,0 +1,47 @@
+"""A pytest plugin: a plain ``python -m pytest`` imports ``rclpy``, ``launch`` and messages, as tests do under ROS 2.
+
+pytest loads it in every environment that has Linkwright. It offers what a shell of Linkwright offers by ``PYTHONPATH``,
+and imports nothing before a test asks for it. Where a real rclpy is installed it offers nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pytest
+
+_STARTUP = Path(__file__).parent / "standins" / "startup"
+_LINTER_MARKERS = {
+    "linter": "a check of style",
+    "copyright": "a check of the headers of files",
+    "flake8": "a check by flake8",
+    "pep257": "a check of docstrings",
+}
+"""Markers of the tests that ``ros2 pkg create`` writes; in ROS the linters' own plugins declare them."""
+
+
+def _offer_stand_ins() -> None:
+    """Do what Python does at its start where ``PYTHONPATH`` names the folder."""
+    if str(_STARTUP) in sys.path:
+        return
+    sys.path.append(str(_STARTUP))
+    loader = SourceFileLoader("linkwright_startup", str(_STARTUP / "sitecustomize.py"))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    loader.exec_module(module_from_spec(spec))
+
+
+_offer_stand_ins()  # before pytest imports a conftest.py
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Declare the linters' markers, and register the plugin of launch_pytest."""
+    for name, meaning in _LINTER_MARKERS.items():
+        config.addinivalue_line("markers", f"{name}: {meaning}")
+    if not config.pluginmanager.has_plugin("linkwright_pytest"):
+        config.pluginmanager.import_plugin("linkwright_pytest")

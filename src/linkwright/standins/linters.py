@@ -1,0 +1,145 @@
+"""The linters that the tests of a new Python package call: ``ament_flake8``, ``ament_pep257`` and ``ament_copyright``.
+
+The first two run flake8 and pydocstyle with the settings of ``ament_lint``. Where the program is not installed, the
+test that needs it is skipped, with a reason that says what to install.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+_LINE_LENGTH = 99
+_UNCHECKED_DOCSTRINGS = ("D100", "D101", "D102", "D103", "D104", "D105", "D106", "D107", "D203", "D212", "D404")
+"""Rules that ament leaves out: that there is a docstring at all, and one of each two that contradict each other."""
+_UNCHECKED_STYLE = ("B902", "C816", "I202", *_UNCHECKED_DOCSTRINGS)
+_SOURCES = frozenset({".c", ".cc", ".cmake", ".cpp", ".cxx", ".h", ".hh", ".hpp", ".hxx", ".py"})
+_HEADER_LENGTH = 4000
+"""Characters at the beginning of a file that hold its copyright notice and licence."""
+_COPYRIGHT = re.compile(r"copyright.*\d{4}|SPDX-FileCopyrightText:", re.IGNORECASE)
+_LICENSE = re.compile(
+    r"licensed under|SPDX-License-Identifier:|permission is hereby granted|redistribution and use|GNU \w* ?general",
+    re.IGNORECASE,
+)
+
+
+def flake8(argv: Sequence[str] | None = None) -> int:
+    """Run flake8 on a package; return 0 when it finds nothing, else 1.
+
+    Args:
+        argv: options and paths of the command ``ament_flake8``; the process's own when left out.
+    """
+    return flake8_with_errors(argv)[0]
+
+
+def flake8_with_errors(argv: Sequence[str] | None = None) -> tuple[int, list[str]]:
+    """Run flake8 on a package; return the exit status, and a line for each finding."""
+    parser = _parser("ament_flake8")
+    parser.add_argument("--config")
+    parser.add_argument("--linelength", type=int)
+    options = parser.parse_args(argv)
+    if options.config:
+        settings = [f"--config={options.config}"]
+    else:
+        settings = ["--isolated", f"--extend-ignore={','.join(_UNCHECKED_STYLE)}", f"--max-line-length={_LINE_LENGTH}"]
+        if find_spec("flake8_import_order") is not None:
+            settings.append("--import-order-style=google")
+    if options.linelength:
+        settings.append(f"--max-line-length={options.linelength}")
+    return _run("flake8", settings, [path for path in _files(options) if path.suffix == ".py"])
+
+
+def pep257(argv: Sequence[str] | None = None) -> int:
+    """Run pydocstyle on a package; return 0 when it finds nothing, else 1.
+
+    Args:
+        argv: options and paths of the command ``ament_pep257``; the process's own when left out.
+    """
+    parser = _parser("ament_pep257")
+    for name in ("--ignore", "--select", "--add-ignore", "--add-select"):
+        parser.add_argument(name, nargs="+", default=[])
+    parser.add_argument("--convention", default="ament")
+    options = parser.parse_args(argv)
+    if options.select:
+        settings = [f"--select={','.join(options.select)}"]
+    elif options.ignore or options.convention == "ament":
+        settings = [f"--ignore={','.join(options.ignore or _UNCHECKED_DOCSTRINGS)}"]
+    else:
+        settings = [f"--convention={options.convention}"]
+    settings += [f"--{name}={','.join(codes)}" for name, codes in _more_codes(options)]
+    return _run("pydocstyle", settings, [path for path in _files(options) if path.suffix == ".py"])[0]
+
+
+def copyright_headers(argv: Sequence[str] | None = None) -> int:
+    """Look for a copyright notice and a licence in each source file; return 0 when each has them, else 1.
+
+    Args:
+        argv: paths and options of the command ``ament_copyright``; the process's own when left out.
+    """
+    files = [path for path in _files(_parser("ament_copyright").parse_args(argv)) if not _is_setup_of_package(path)]
+    findings = []
+    for path in files:
+        header = path.read_text(encoding="utf-8", errors="replace")[:_HEADER_LENGTH]
+        if header and not _COPYRIGHT.search(header):
+            findings.append(f"{path}: could not find copyright notice")
+        elif header and not _LICENSE.search(header):
+            findings.append(f"{path}: could not find a licence that is known")
+    print("\n".join([*findings, f"{len(findings)} errors, checked {len(files)} files"]))
+    return int(bool(findings))
+
+
+def _parser(name: str) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(name)
+    parser.add_argument("paths", nargs="*", type=Path, default=[Path()])
+    parser.add_argument("--exclude", nargs="*", type=Path, default=[])
+    return parser
+
+
+def _more_codes(options: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
+    for name in ("add_ignore", "add_select"):
+        if codes := getattr(options, name):
+            yield name.replace("_", "-"), codes
+
+
+def _files(options: argparse.Namespace) -> list[Path]:
+    """Return the source files below the paths that are not excluded, hidden, or beside a file AMENT_IGNORE."""
+    excluded = {path.resolve() for path in options.exclude}
+    found: set[Path] = set()
+    for start in options.paths:
+        if start.is_file():
+            found.add(start)
+        for folder, folders, names in os.walk(start):
+            folders[:] = [] if "AMENT_IGNORE" in names else [name for name in folders if name[0] not in "._"]
+            found.update(Path(folder, name) for name in names if "AMENT_IGNORE" not in names)
+    kept = (path for path in found if path.suffix in _SOURCES)
+    return sorted(path for path in kept if excluded.isdisjoint((path.resolve(), *path.resolve().parents)))
+
+
+def _is_setup_of_package(path: Path) -> bool:
+    return path.name == "setup.py" and path.with_name("package.xml").is_file()
+
+
+def _run(module: str, settings: Sequence[str], files: Sequence[Path]) -> tuple[int, list[str]]:
+    """Run a linter on files; return its exit status and what it prints, or skip the test where it is not installed."""
+    if not files:
+        return 0, []
+    if find_spec(module) is None:
+        _skip(f"{module} is not installed; install it: {sys.executable} -m pip install {module}")
+    # The files are the user's own, and the program is one that they installed.
+    command = [sys.executable, "-m", module, *settings, *map(str, files)]
+    ended = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)  # noqa: S603
+    print(ended.stdout, end="")
+    print(ended.stderr, end="", file=sys.stderr)
+    return int(ended.returncode != 0), ended.stdout.splitlines()
+
+
+def _skip(reason: str) -> None:
+    import pytest  # which runs, as it is a test that calls a linter
+
+    pytest.skip(reason)

@@ -1,0 +1,134 @@
+"""The linters' tests that `linkwright pkg create` writes run by plain pytest, which imports our rclpy, too."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+
+GOOD = '''\
+# Copyright 2026 Ada
+# SPDX-License-Identifier: MIT
+
+"""A node."""
+
+import rclpy
+
+
+def start():
+    """Start it."""
+    rclpy.init()
+'''
+
+
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    """What ``pkg create`` writes."""
+    words = ["pkg", "create", "my_nodes", "--build-type", "ament_python", "--license", "MIT", "--node-name", "first"]
+    assert main([*words, "--destination-directory", str(tmp_path)]) == 0
+    return tmp_path / "my_nodes"
+
+
+def plain_pytest(package: Path, *words: str, **variables: str) -> tuple[int, str]:
+    """The status and output of ``python -m pytest``, without what a shell of Linkwright sets."""
+    environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "LINKWRIGHT_SITE")}
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "-p", "no:asyncio", *words],
+        cwd=package,
+        env={**environment, "COLUMNS": "200", **variables},
+        capture_output=True,
+        encoding="utf-8",
+        timeout=240,
+        check=False,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def hide(folder: Path, *names: str) -> str:
+    """A folder for PYTHONPATH with which modules of these names are not found."""
+    folder.mkdir()
+    code = f"import sys\nsys.modules.update(dict.fromkeys({names!r}))\n"
+    (folder / "sitecustomize.py").write_text(code)
+    return str(folder)
+
+
+def test_a_new_package_passes_its_own_tests(package: Path) -> None:
+    status, said = plain_pytest(package)
+    assert status == 0, said
+    assert "2 passed, 1 skipped" in said
+    assert "no copyright header yet" in said
+
+
+def test_rclpy_and_messages_are_imported_without_a_variable(package: Path) -> None:
+    (package / "test" / "test_node.py").write_text(
+        textwrap.dedent("""\
+        import rclpy
+        from geometry_msgs.msg import Twist
+        from launch import LaunchDescription
+
+
+        def test_node():
+            rclpy.init()
+            node = rclpy.create_node('here')
+            assert node.get_name() == 'here'
+            assert Twist().linear.x == 0.0
+            assert LaunchDescription().entities == []
+        """)
+    )
+    status, said = plain_pytest(package, "test/test_node.py")
+    assert status == 0, said
+
+
+def test_bad_style_fails_and_is_said(package: Path) -> None:
+    (package / "my_nodes" / "first.py").write_text(f"{GOOD}    x = {'1 + ' * 40}1\n")
+    status, said = plain_pytest(package, "test/test_flake8.py")
+    assert status == 1
+    assert "2 findings about code style" in said
+    assert "first.py:12:100: E501 line too long" in said
+    assert "first.py:12:5: F841" in said
+
+
+def test_a_docstring_that_does_not_end_fails(package: Path) -> None:
+    (package / "my_nodes" / "first.py").write_text(GOOD.replace("Start it.", "Start it"))
+    status, said = plain_pytest(package, "test/test_pep257.py")
+    assert status == 1
+    assert "D400" in said
+
+
+def test_headers_are_asked_for_once_the_skip_is_gone(package: Path) -> None:
+    (package / "my_nodes" / "first.py").write_text(GOOD)
+    test = package / "test" / "test_copyright.py"
+    test.write_text("\n".join(line for line in test.read_text().splitlines() if "skip" not in line) + "\n")
+    for path in package.rglob("test_*.py"):
+        path.write_text("# Copyright 2026 Ada. Licensed under the MIT License.\n" + path.read_text())
+    assert plain_pytest(package, "test/test_copyright.py")[0] == 0
+    (package / "my_nodes" / "second.py").write_text("x = 1\n")
+    (package / "my_nodes" / "third.py").write_text("# Copyright 2026 Ada\nx = 1\n")
+    status, said = plain_pytest(package, "test/test_copyright.py")
+    assert status == 1
+    assert "second.py: could not find copyright notice" in said
+    assert "third.py: could not find a licence that is known" in said
+
+
+@pytest.mark.parametrize("name", ["generated/AMENT_IGNORE", "_generated/x", ".generated/x"])
+def test_folders_that_ament_leaves_out_are_left_out(package: Path, name: str) -> None:
+    (package / name).parent.mkdir()
+    (package / name).touch()
+    (package / name).with_name("bad.py").write_text("import os\n")
+    status, said = plain_pytest(package, "test/test_flake8.py")
+    assert status == 0, said
+
+
+def test_a_linter_that_is_not_installed_skips_its_test_and_says_what_to_install(package: Path, tmp_path: Path) -> None:
+    hidden = hide(tmp_path / "hidden", "flake8", "pydocstyle")
+    status, said = plain_pytest(package, PYTHONPATH=hidden)
+    assert status == 0, said
+    assert "3 skipped" in said
+    assert "-m pip install flake8" in said
+    assert "-m pip install pydocstyle" in said
