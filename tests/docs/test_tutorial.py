@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-import re
 import shlex
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,6 +12,7 @@ import pytest
 from linkwright.cli import main
 from linkwright.descriptions import load
 from tests.docs.pages import DOCS, blocks
+from tests.docs.reader import write
 from tests.robots.workspaces import colcon_build
 
 LANGUAGES = {"en": DOCS / "tutorial.md", "zh": DOCS / "zh" / "tutorial.md"}
@@ -30,25 +31,9 @@ def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.
     assert main([*shlex.split(create)[1:], "--destination-directory", "src"]) == 0
     package = tmp_path / "src" / "my_robot_description"
     for block in blocks(LANGUAGES[request.param]):
-        path = package / block.title.removesuffix(", more")
-        if block.title == "package.xml, more":
-            last = "  <depend>xacro</depend>\n"
-            path.write_text(path.read_text(encoding="utf-8").replace(last, last + block.text), encoding="utf-8")
-        elif block.title.endswith(", more"):
-            text = path.read_text(encoding="utf-8")
-            path.write_text(text.replace("</robot>", block.text + _sisters(block.text) + "</robot>"), encoding="utf-8")
-        elif block.title:
-            path.parent.mkdir(exist_ok=True)
-            path.write_text(block.text, encoding="utf-8")
+        if block.title:
+            write(block, package)
     return package
-
-
-def _sisters(text: str) -> str:
-    """What the reader is asked to write alike: the right wheel after the left one, the back caster after the front."""
-    parts = "".join(re.findall(r"  <joint.*?</joint>\n|  <link.*?</link>\n", text, re.DOTALL))
-    if "left_" in parts:
-        return parts.replace("left", "right").replace("0.19", "-0.19")
-    return parts.replace("front", "back").replace("0.18", "-0.18") if "front_" in parts else ""
 
 
 def test_the_models(package: Path) -> None:
@@ -90,3 +75,9 @@ def test_colcon_installs_everything(package: Path) -> None:
     share = workspace / "install" / package.name / "share" / package.name
     for path in ("urdf/mbot_base.urdf", "urdf/mbot_base.xacro", "launch/display.launch.py", "rviz/urdf.rviz"):
         assert (share / path).is_file()
+
+
+@pytest.mark.slow
+def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+    home = follow(LANGUAGES["en"], {})
+    assert (home / "ros2_ws" / "install" / "my_robot_description").is_dir()

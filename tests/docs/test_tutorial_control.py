@@ -8,7 +8,7 @@ import os
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from linkwright.cli import main
 from linkwright.standins import process
 from linkwright.testing import SteppedSimulation
 from tests.docs.pages import DOCS, blocks, commands
+from tests.docs.reader import Known, write
 
 pytest.importorskip("mujoco")
 
@@ -36,15 +37,8 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert main([*shlex.split(create)[1:], "--destination-directory", str(folder / "src")]) == 0
     package = folder / "src" / "my_control"
     for block in blocks(page):
-        path = package / block.title.removesuffix(", more")
-        if block.title == "package.xml, more":
-            licence = "  <license>MIT</license>\n"
-            text = path.read_text(encoding="utf-8")
-            assert licence in text
-            path.write_text(text.replace(licence, licence + block.text), encoding="utf-8")
-        elif block.title:
-            path.parent.mkdir(exist_ok=True)
-            path.write_text(block.text, encoding="utf-8")
+        if block.title:
+            write(block, package)
     return package
 
 
@@ -142,3 +136,16 @@ def test_the_tests_of_the_page_pass(package: Path) -> None:
 def test_the_languages_show_the_same_files_and_commands() -> None:
     english, chinese = ([(each.title, each.text) for each in blocks(page)] for page in LANGUAGES.values())
     assert english == chinese
+
+
+@pytest.mark.slow
+def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+    follow(
+        LANGUAGES["en"],
+        {
+            "linkwright run my_control first_move": Known(),
+            "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Known(shows="stop"),
+            "linkwright run my_control one_metre --ros-args -p distance:=2.0": Known(hears="/odom"),
+            "linkwright run my_control stop_ahead": Known(hears="/scan"),
+        },
+    )

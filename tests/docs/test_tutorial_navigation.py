@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
 from linkwright.cli import main
 from tests.docs.pages import DOCS, blocks, commands
+from tests.docs.reader import Known
 
 LANGUAGES = {"en": DOCS / "tutorial-navigation.md", "zh": DOCS / "zh" / "tutorial-navigation.md"}
 
@@ -19,3 +25,19 @@ def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys):
     said = capsys.readouterr().out
     for argument in ("slam", "map", "nav2_params_file"):
         assert f"'{argument}'" in said
+
+
+@pytest.mark.slow
+def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+    to_the_bedroom, into_a_wall = (line for line in commands(LANGUAGES["en"]) if "send_goal" in line)
+    home = follow(
+        LANGUAGES["en"],
+        {
+            "linkwright launch my_robot_navigation navigation.launch.py": Known(complains="the goal (-0.90, 2.40)"),
+            to_the_bedroom: Known(shows="distance_remaining"),
+            into_a_wall: Known(shows="ABORTED", goes_on=False),
+            "linkwright shell -- python patrol.py": Known(shows="m to the bedroom"),
+            "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Known(shows="stop"),
+        },
+    )
+    assert (home / "my_house.pgm").stat().st_size > 1000

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from linkwright import standins
 from linkwright.cli import main
 from linkwright.nodes import EXECUTABLES
 from tests.docs.pages import DOCS, blocks, commands
+from tests.docs.reader import Known
 from tests.nodes.vision.seeking_robot import SeekingRobot
 
 LANGUAGES = {"en": DOCS / "tutorial-vision.md", "zh": DOCS / "zh" / "tutorial-vision.md"}
@@ -51,3 +53,14 @@ def test_the_program_of_the_page_drives_to_something_red(tmp_path: Path):
         test.advance(20.0)
         assert test.distance() < 1.2
         assert abs(test.commands.last.angular.z) < 0.2, "it is in the middle of the picture"
+
+
+@pytest.mark.slow
+def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+    follow(
+        LANGUAGES["en"],
+        {
+            "linkwright topic hz /yolo/detections": Known(shows="average rate"),
+            "linkwright shell -- python follow_colour.py": Known(hears="/yolo/detections"),
+        },
+    )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+import wave
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -16,6 +18,7 @@ from linkwright.nodes.voice.voice_commander import VoiceCommander
 from linkwright.speech.commands.command_file import parse_commands, read_command_file
 from linkwright.testing import AsyncSteppedSimulation
 from tests.docs.pages import DOCS, blocks, commands
+from tests.docs.reader import Known
 from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
 
 LANGUAGES = {"en": DOCS / "tutorial-voice.md", "zh": DOCS / "zh" / "tutorial-voice.md"}
@@ -114,3 +117,19 @@ def test_the_file_on_the_page_about_voice_is_right() -> None:
     ):
         assert found.understand(said) is not None, said
     assert "前进七米" in found.phrases("zh")
+
+
+@pytest.mark.slow
+def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path], tmp_path: Path) -> None:
+    with wave.open(str(tmp_path / "my_recording.wav"), "wb") as recording:  # two seconds in which nobody speaks
+        recording.setparams((1, 2, 16000, 0, "NONE", ""))
+        recording.writeframes(bytes(2 * 2 * 16000))
+    follow(
+        LANGUAGES["en"],
+        {
+            "linkwright topic echo /voice/command": Known(hears="/voice/command", shows="backward_by"),
+            "linkwright topic echo /cmd_vel": Known(hears="/cmd_vel", shows="linear"),
+            "linkwright models get vosk-en": Known(goes_on=False, may_fail=True),
+            "linkwright models get vosk-zh": Known(goes_on=False, may_fail=True),
+        },
+    )

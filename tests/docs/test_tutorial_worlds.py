@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import shlex
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from linkwright.cli import main
 from tests.docs.pages import DOCS, blocks
+from tests.docs.reader import write
 from tests.robots.workspaces import colcon_build
 
 LANGUAGES = {"en": DOCS / "tutorial-worlds.md", "zh": DOCS / "zh" / "tutorial-worlds.md"}
@@ -27,15 +29,8 @@ def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.
     assert main([*shlex.split(create)[1:], "--destination-directory", "src"]) == 0
     package = tmp_path / "src" / "my_worlds"
     for block in blocks(page):
-        path = package / block.title.removesuffix(", more")
-        if block.title == "package.xml, more":
-            licence = "  <license>MIT</license>\n"
-            text = path.read_text(encoding="utf-8")
-            assert licence in text
-            path.write_text(text.replace(licence, licence + block.text), encoding="utf-8")
-        elif block.title:
-            path.parent.mkdir(exist_ok=True)
-            path.write_text(block.text, encoding="utf-8")
+        if block.title:
+            write(block, package)
     return package
 
 
@@ -64,3 +59,8 @@ def test_colcon_installs_everything(package: Path) -> None:
     share = workspace / "install" / package.name / "share" / package.name
     assert (share / "worlds" / "yard.world").is_file()
     assert (share / "launch" / "load_mbot.launch.py").is_file()
+
+
+@pytest.mark.slow
+def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]) -> None:
+    follow(LANGUAGES["en"], {})

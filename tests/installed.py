@@ -1,0 +1,45 @@
+"""The wheel of this checkout, installed into empty environments as users do it."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.places import REPOSITORY
+
+_CONSTRAINTS = REPOSITORY / ".build" / "constraints.txt"
+
+
+def install(folder: Path, *others: str, extra: str = "all") -> Path:
+    """Make an environment in a folder, with the wheel and other packages, once for all workers of a test run.
+
+    Args:
+        folder: shared by the workers; it gets ``wheel/`` and ``environment/``.
+        others: what else is installed, such as ``pytest``.
+        extra: the extra of Linkwright.
+
+    Returns:
+        The environment's folder, whose ``bin`` has ``linkwright``.
+    """
+    folder.mkdir(exist_ok=True)
+    environment = folder / "environment"
+    with (folder / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (folder / "done").exists():
+            _uv("build", "--wheel", "--out-dir", str(folder / "wheel"), str(REPOSITORY))
+            _uv("venv", "--clear", "--python", sys.executable, str(environment))
+            (wheel,) = (folder / "wheel").glob("*.whl")
+            python = ("--python", str(environment), "--constraints", str(_CONSTRAINTS))
+            _uv("pip", "install", *python, f"{wheel}[{extra}]", *others)
+            (folder / "done").touch()
+    return environment
+
+
+def _uv(*words: str) -> None:
+    uv = shutil.which(os.environ.get("UV") or "uv") or str(REPOSITORY / ".build" / "uv" / "bin" / "uv")
+    done = subprocess.run([uv, *words, "--quiet"], capture_output=True, text=True, check=False, cwd="/")
+    assert done.returncode == 0, f"uv {' '.join(words)}:\n{done.stdout}{done.stderr}"
