@@ -16,6 +16,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.sdf.surfaces import USUAL_SURFACE
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.recovery import Recovery
 from linkwright.simulation.scene.surfaces import RESTITUTION_DATA
 
 _LEAST = 0.1
@@ -43,16 +44,24 @@ class Stepper:
             said: Array = np.array(model.geom_user)
             self._coefficients, self._thresholds = said[:, 0], said[:, 1]
         self._bounces = np.count_nonzero(self._coefficients) > 1
+        self._recovery = Recovery(model, data)
+
+    def expect_overlaps(self) -> None:
+        """Let what overlaps now part slowly."""
+        self._recovery.expect()
 
     def make_steps(self, count: int) -> None:
         """Make a number of time steps."""
-        if not self._bounces:
-            self._mujoco.mj_step(self._model, self._data, count)
-            return
-        for _ in range(count):
-            self._mujoco.mj_step(self._model, self._data)
-            if self._data.ncon:
+        while count and (self._bounces or self._recovery.is_expected):
+            if self._recovery.is_expected:
+                self._recovery.step()
+            else:
+                self._mujoco.mj_step(self._model, self._data)
+            if self._bounces and self._data.ncon:
                 self._push_off()
+            count -= 1
+        if count:
+            self._mujoco.mj_step(self._model, self._data, count)
 
     def _push_off(self) -> None:
         """Give bodies that have just hit each other the velocity with which they bounce off."""

@@ -25,7 +25,8 @@ from linkwright.simulation.scene.figures import let_walk, put_kinematic
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
-from linkwright.simulation.solving import Solving, wake
+from linkwright.simulation.sleep import Sleep
+from linkwright.simulation.solving import Solving
 
 NANOSECONDS = 1_000_000_000
 
@@ -82,7 +83,8 @@ class Simulation:
         self.step = whole_step(self.scene.step, self.world)
         self.time = 0
         self.schedule = Schedule()
-        self._solving = Solving(self.schedule)
+        self._sleep = Sleep(self.schedule)
+        self._solving = Solving(self.schedule, self._sleep)
         self._bodies: dict[str, int] = {}
         self._joints: dict[str, tuple[int, int]] = {}
         self._pushes: dict[str, dict[str, Array]] = {}
@@ -158,10 +160,17 @@ class Simulation:
                 start, speed = int(joint.qposadr[0]), int(joint.dofadr[0])
                 self.data.qpos[start : start + 7] = self.model.qpos0[start : start + 7]
                 self.data.qvel[speed : speed + 6] = 0.0
+                self._jumped(self.model.jnt_bodyid[joint.id])
         self._current = False
 
     def set_moved(self) -> None:
         """Note that positions or velocities of `data` were set; what depends on them is computed when it is needed."""
+        self._current = False
+
+    def _jumped(self, body: Any) -> None:
+        """Note that a body of MuJoCo's model was put elsewhere, where it may overlap with others."""
+        self._stepper.expect_overlaps()
+        self._sleep.stir(int(self.model.body_treeid[body]))
         self._current = False
 
     def set_altered(self) -> None:
@@ -221,9 +230,7 @@ class Simulation:
             return
         tree = int(self.model.body_treeid[self.model.body(link).id])
         if tree >= 0:
-            self.model.tree_sleep_policy[tree] = never
-            if self.data.tree_asleep[tree] >= 0:
-                wake(self.data)
+            self._sleep.keep_awake(tree)
 
     def renew(self) -> None:
         """Compile MuJoCo's model again if the scene has changed."""
@@ -250,6 +257,7 @@ class Simulation:
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
         self._stepper = Stepper(model, data)
+        self._sleep.take(model, data, self.time, self.step)
         self._solving.take(model, data, self.time, self.step)
 
     def reset(self) -> None:
@@ -257,6 +265,7 @@ class Simulation:
         self.refresh()
         self._solving.restart()  # before: MuJoCo places what stands still only where things may sleep
         self._mujoco.mj_resetData(self.model, self.data)
+        self._stepper.expect_overlaps()
         self._pushes.clear()
         self.time = 0
         self._current = False
@@ -407,6 +416,7 @@ class Simulation:
         scene_model = self.scene.models[name]
         moved = compose(pose, invert(scene_model.pose))
         if put_kinematic(scene_model.structure, moved, self.model, self.data):
+            self._stepper.expect_overlaps()
             self._current = False
             return
         if not self.moves_freely(name):
@@ -422,7 +432,7 @@ class Simulation:
         x, y, z, qx, qy, qz, qw = compose(pose, offset)
         joint.qpos[:] = (x, y, z, qw, qx, qy, qz)
         joint.qvel[:] = 0.0
-        self._current = False
+        self._jumped(self.body(root))
 
     def set_model_velocity(self, name: str, linear: Vector3, angular: Vector3) -> None:
         """Set the velocity of the first link of a free model: m/s, rad/s, in the axes of the world.
@@ -434,6 +444,7 @@ class Simulation:
         root, _ = self._root(name)
         turn = self.link_pose(root)[3:]
         self.data.joint(f"{root}#free").qvel[:] = (*linear, *rotate(quaternion_inverse(turn), angular))
+        self._sleep.stir(int(self.model.body_treeid[self.body(root)]))
         self._current = False
 
     def _root(self, name: str) -> tuple[str, Transform]:
@@ -462,7 +473,7 @@ class Simulation:
         self.refresh()
         joint = self.data.joint(name)
         joint.qpos[0], joint.qvel[0] = position, 0.0
-        self._current = False
+        self._jumped(self.model.jnt_bodyid[joint.id])
 
     def push_joint(self, name: str, force: float) -> None:
         """Set the torque in N m (force in N) on a joint of one axis; it acts until it is set anew."""
@@ -491,7 +502,7 @@ class Simulation:
         self.refresh()
         self.scene.spec.option.gravity = gravity
         self.model.opt.gravity[:] = gravity
-        wake(self.data)
+        self._sleep.wake()
 
 
 def _outlook(world: World) -> tuple[object, ...]:

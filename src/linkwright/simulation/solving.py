@@ -10,6 +10,7 @@ from typing import Any
 
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.schedule import Schedule, Task
+from linkwright.simulation.sleep import Sleep
 
 _MOTORS, _TREES = 16, 8
 """The least motors and trees of bodies with which it may be worth it."""
@@ -22,8 +23,6 @@ _LOOK = 20
 """Steps from one look to the next: in twice as few what rests may have fallen asleep."""
 _TOGETHER = 50
 """The number of checks for which all are solved for together before resting bodies are looked for again."""
-_AWAKE = -11
-"""The start of MuJoCo's counter for trees that may fall asleep: one more than ``mjMINAWAKE`` below zero."""
 
 
 class Solving:
@@ -31,10 +30,12 @@ class Solving:
 
     Args:
         schedule: that of the simulation.
+        sleep: of its bodies.
     """
 
-    def __init__(self, schedule: Schedule) -> None:
+    def __init__(self, schedule: Schedule, sleep: Sleep) -> None:
         self._schedule = schedule
+        self._sleep = sleep
         self._task: Task | None = None
         self._left = 0
         self._model: Any = None
@@ -80,11 +81,6 @@ class Solving:
             option.disableflags |= islands
         else:
             self._left = 0
-            wake(self._data)
+            self._sleep.rouse()
             option.enableflags |= sleep
             option.disableflags &= ~islands
-
-
-def wake(data: Any) -> None:
-    """Wake all bodies up, for as long as MuJoCo keeps them awake."""
-    data.tree_asleep[data.tree_asleep >= 0] = _AWAKE

@@ -14,7 +14,6 @@ from linkwright.geometry.single import compose, invert
 from linkwright.messages import get_message
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.solving import wake
 
 _LOOKS = 100.0
 """The rate in Hz of simulated time at which the child model is looked for."""
@@ -131,7 +130,6 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
     def _renew(self) -> None:
         self.simulation.set_altered()
         self.simulation.refresh()
-        wake(self.simulation.data)
 
     def _tell(self, *, attached: bool) -> None:
         self._is_attached, self._is_wanted = attached, False

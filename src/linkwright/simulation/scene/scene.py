@@ -42,6 +42,8 @@ _GREATEST_JUMP = 1.0
 A wheel alone weighs so little that 5 N m would turn it 14 rad/s faster in 1 ms, past what was wanted, and back in the
 next: it slips, leaves the ground and stays away from it. Motors with gears have rotors that weigh more than wheels.
 """
+SERVO = "#servo"
+"""What the names of the constraints of servos have behind those of their joints, before a number."""
 _SERVO_TIME = 0.02
 """The time constant of a servo in s."""
 
@@ -329,7 +331,7 @@ class Scene:
             The name of MuJoCo's constraint, the first of whose data is the position less that of the start.
         """
         self._motors += 1
-        equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT, name=f"{joint}#servo{self._motors}")
+        equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT, name=f"{joint}{SERVO}{self._motors}")
         equality.name1 = joint
         equality.data[:5] = 0.0
         equality.solref, equality.solimp[:2] = [_SERVO_TIME, 1.0], [0.99, 0.999]

@@ -38,6 +38,7 @@ from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.changes import Coming, changes_to, check, come_into, surroundings
 from linkwright.simulation.server.ground_contact import stand_up, touches_nothing
 from linkwright.simulation.server.motion import motion_of, resume
+from linkwright.simulation.server.overlaps import overlaps
 from linkwright.simulation.server.unsimulated import unsimulated, unsimulated_in
 from linkwright.simulation.simulation import Simulation
 
@@ -104,6 +105,7 @@ class SimulationServer:
     def start(self) -> None:
         """Start the plugins of the world and of its models."""
         self.tell(self.simulation.scene.diagnostics)
+        self.tell(overlaps(self.simulation))
         self._tell_unsimulated(unsimulated(self.simulation.world))
         self._load(_WORLD, of_world(self.simulation.world), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
@@ -144,6 +146,7 @@ class SimulationServer:
             raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
         self._exchange((), (Coming(model, name, pose, namespace),))
         stand_up(self.simulation, name)
+        self.tell(overlaps(self.simulation, (name,)))
         self.tell(touches_nothing(self.simulation, name), name)
         self._tell_unsimulated(unsimulated_in(model))
 
@@ -187,6 +190,7 @@ class SimulationServer:
         simulation.set_world(world, finder)
         simulation.place(changes.moved)
         self._exchange(changes.gone, (*renewed, *changes.new))
+        self.tell(overlaps(simulation, {*changes.moved, *(each.name for each in changes.new)}))
         self._of_world = {each.name for each in wanted.models}
         if not alike(before.plugins, wanted.plugins):
             self._end(self._plugins.pop(_WORLD, []))

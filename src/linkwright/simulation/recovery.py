@@ -1,0 +1,97 @@
+"""Bodies that begin inside each other part slowly.
+
+MuJoCo's contacts are damped springs: what begins 0.3 m inside the ground leaves it at 20 m/s. The same holds for
+joints that begin beyond their limits, and for couplings and loops that do not fit yet. Such a spring may accelerate
+bodies only up to a speed within a step: a depth that would give more is taken for the depth that gives it. What is less
+deep moves as ever, and what is at rest bears its load.
+
+gz's engine DART bounds the speed, too, ODE by ``contact_max_correcting_vel``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.scene import SERVO
+
+_PARTING = 0.3
+"""The greatest speed in m/s at which overlapping bodies part: one that leaves so rises by 5 mm."""
+_MOVING = 1.0
+"""The greatest speed in rad/s or m/s at which joints return to their limits, and couplings and loops close."""
+_CALM = 100
+"""The number of steps without any excess of depth after which it is no longer looked for."""
+
+
+class Recovery:
+    """Bounds the speed at which bodies part that overlap after a jump: at the start, and where they were put.
+
+    Args:
+        model: MuJoCo's model.
+        data: MuJoCo's data.
+    """
+
+    def __init__(self, model: Any, data: Any) -> None:
+        self._mujoco, self._model, self._data = load_mujoco(), model, data
+        self._left = 0
+        servos = [number for number in range(model.neq) if SERVO in model.equality(number).name]
+        self._free = np.ones(model.neq, dtype=bool)
+        self._free[servos] = False
+        self.expect()
+
+    @property
+    def is_expected(self) -> bool:
+        """Whether steps are to be made by `step`."""
+        return self._left > 0
+
+    def expect(self) -> None:
+        """Look for what overlaps from the next step on, until for some steps nothing does."""
+        self._left = _CALM
+
+    def step(self) -> None:
+        """Make one step."""
+        mujoco, model, data = self._mujoco, self._model, self._data
+        mujoco.mj_step1(model, data)
+        self._left -= 1
+        if data.nefc and self._bound():
+            self._left = _CALM
+        mujoco.mj_step2(model, data)
+
+    def _bound(self) -> bool:
+        """Take what is too deep for less deep; returns whether anything was."""
+        model, data, kinds = self._model, self._data, self._mujoco.mjtConstraint
+        types, numbers, contacts = data.efc_type, data.efc_id, data.contact
+        touching = contacts.efc_address >= 0
+        limits = np.flatnonzero(types == kinds.mjCNSTR_LIMIT_JOINT)
+        equal = np.flatnonzero(types == kinds.mjCNSTR_EQUALITY)
+        equal = equal[self._free[numbers[equal]]]
+        rows = np.concatenate([contacts.efc_address[touching], limits, equal])
+        springs = (contacts.solref[touching], model.jnt_solref[numbers[limits]], model.eq_solref[numbers[equal]])
+        greatest = np.full(len(rows), _MOVING)
+        greatest[: np.count_nonzero(touching)] = _PARTING
+        margins = data.efc_margin[rows]
+        depths = data.efc_pos[rows] - margins
+        most = self._most(np.concatenate(springs), -np.copysign(1.0, depths) * data.efc_vel[rows], greatest)
+        deep = np.abs(depths) > most
+        data.efc_pos[rows[deep]] = (margins + np.copysign(most, depths))[deep]
+        return bool(deep.any())
+
+    def _most(self, solref: Array, speeds: Array, greatest: Array) -> Array:
+        """The depths in m or rad with which springs are not faster after a step than they may be.
+
+        Args:
+            solref: time constants in s and damping ratios; where negative, stiffness and damping. Shape (springs, 2).
+            speeds: at which they get less deep now, in m/s or rad/s.
+            greatest: at which they may.
+        """
+        step = self._model.opt.timestep
+        first, second = solref.T
+        time = np.maximum(first, 2.0 * step)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            stiffness = np.where(first > 0.0, 1.0 / (time * second) ** 2, -first)
+            damping = np.where(first > 0.0, 2.0 / time, -second)
+            most: Array = ((greatest - speeds) / step + damping * speeds) / stiffness
+        return np.maximum(most, 0.0)

@@ -1,0 +1,118 @@
+"""When bodies may fall asleep: MuJoCo computes nothing for them then, and their velocity is zero.
+
+MuJoCo lets them as soon as they have been slow for ten steps. So is a pendulum where it turns round, and all that
+begins to move under a small force. Here they must not have moved for a while, measured by where they are. What lies on
+something may move a little in that time, as contacts never come quite to rest; what hangs, swings or floats may not.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.schedule import Schedule, Task
+
+_PERIOD = 50_000_000
+"""Nanoseconds from one look to the next."""
+_LOOKS = 5
+"""The number of looks in a row that must find a body at rest."""
+_LYING, _FREE = 3e-4, 1e-6
+"""The speeds in m/s or rad/s above which a body moves: one with contacts, and one without."""
+_HARDLY = 1e-30
+"""A speed at which nothing gets anywhere, and for which MuJoCo wakes a tree up before its next step."""
+
+
+class Sleep:
+    """Allows the trees of bodies of one simulation to fall asleep, or forbids it.
+
+    Args:
+        schedule: that of the simulation.
+    """
+
+    def __init__(self, schedule: Schedule) -> None:
+        self._mujoco = load_mujoco()
+        self._schedule = schedule
+        self._task: Task | None = None
+        self._model: Any = None
+        self._data: Any = None
+
+    def take(self, model: Any, data: Any, now: int, step: int) -> None:
+        """Set another model and its data.
+
+        Args:
+            model: MuJoCo's model.
+            data: MuJoCo's data.
+            now: simulated nanoseconds.
+            step: the time step in nanoseconds.
+        """
+        self._model, self._data = model, data
+        policies = self._mujoco.mjtSleepPolicy
+        self._may: Any = model.tree_sleep_policy == policies.mjSLEEP_AUTO_ALLOWED
+        self._seconds = step * max(1, round(_PERIOD / step)) * 1e-9
+        self._calm = np.zeros(model.ntree, dtype=np.int64)
+        self._before: Array = data.qpos.copy()
+        if self._task is not None:
+            self._task.cancelled, self._task = True, None
+        if self._may.any():
+            self._task = self._schedule.add(round(self._seconds * 1e9), self._look, now)
+            lengths: Array = np.array(model.dof_length)
+            self._lengths = np.where(lengths > 0.0, lengths, 1.0)
+            self._tree_of: Any = model.dof_treeid
+        self.wake()
+
+    def rouse(self) -> None:
+        """Wake all bodies up; what was at rest falls asleep again after MuJoCo's ten steps."""
+        data = self._data
+        if self._model.nv:
+            resting = (data.tree_asleep >= 0)[self._model.dof_treeid] & (data.qvel == 0.0)
+            data.qvel[resting] = _HARDLY
+
+    def wake(self) -> None:
+        """Wake all bodies up, and keep them awake until they have been at rest for a while again."""
+        self.rouse()
+        self._calm[:] = 0
+        self._allow()
+
+    def stir(self, tree: int) -> None:
+        """Wake a tree up that was put elsewhere or set in motion; -1 for one of the world, which never sleeps."""
+        if tree >= 0:
+            self._calm[tree] = 0
+            self._allow()
+            self.rouse()
+
+    def keep_awake(self, tree: int) -> None:
+        """Forbid a tree to fall asleep, and wake it up."""
+        self._may[tree] = False
+        self.wake()
+
+    def _allow(self) -> None:
+        policies = self._mujoco.mjtSleepPolicy
+        allowed = self._may & (self._calm >= _LOOKS)
+        self._model.tree_sleep_policy[:] = np.where(allowed, policies.mjSLEEP_AUTO_ALLOWED, policies.mjSLEEP_NEVER)
+
+    def _look(self) -> None:
+        model, data = self._model, self._data
+        if not data.ntree_awake:
+            return
+        way, now = np.empty(model.nv), data.qpos
+        self._mujoco.mj_differentiatePos(model, way, self._seconds, self._before, now)
+        self._before[:] = now
+        lying = np.zeros(model.ntree)
+        np.maximum.at(lying, self._tree_of, np.abs(way) * self._lengths)
+        free = np.zeros(model.ntree)
+        np.maximum.at(free, self._tree_of, np.maximum(np.abs(way), np.abs(data.qvel)))
+        rests = np.where(self._are_touching(), lying < _LYING, free < _FREE)
+        self._calm = np.where(rests, self._calm + 1, 0)
+        self._allow()
+
+    def _are_touching(self) -> Any:
+        """Whether each tree touches something."""
+        model, contacts = self._model, self._data.contact
+        geoms = contacts.geom[contacts.efc_address >= 0]
+        geoms = geoms[geoms >= 0]
+        touching = np.zeros(model.ntree + 1, dtype=bool)  # the last is for the world, whose tree is -1
+        touching[model.body_treeid[model.geom_bodyid[geoms]]] = True
+        return touching[:-1]

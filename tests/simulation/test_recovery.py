@@ -1,0 +1,148 @@
+"""What begins inside something else leaves it slowly, and is told of."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.simulation.server.overlaps import overlaps
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from tests.simulation.test_plugins import served
+from tests.simulation.worlds import GROUND, box, model, simulated
+
+SHAPES = {
+    "box": "<box><size>1 1 1</size></box>",
+    "ball": "<sphere><radius>0.5</radius></sphere>",
+    "cylinder": "<cylinder><radius>0.3</radius><length>1</length></cylinder>",
+    "capsule": "<capsule><radius>0.2</radius><length>0.6</length></capsule>",
+    "ellipsoid": "<ellipsoid><radii>0.3 0.4 0.5</radii></ellipsoid>",
+}
+FASTEST = 0.4
+"""A little more than the speed in m/s at which things part."""
+UPRIGHT = (
+    '<model name="arm"><link name="base"/>'
+    '<joint name="post" type="fixed"><parent>world</parent><child>base</child></joint>'
+)
+
+
+def free(name: str, shape: str, pose: str) -> str:
+    return (
+        f'<model name="{name}"><pose>{pose}</pose><link name="link"><inertial><mass>2</mass><inertia><ixx>0.2</ixx>'
+        f"<iyy>0.2</iyy><izz>0.2</izz></inertia></inertial><collision name='c'><geometry>{SHAPES[shape]}</geometry>"
+        "</collision></link></model>"
+    )
+
+
+def fastest(simulation: Simulation, seconds: float, *links: str) -> float:
+    """The greatest speed of links in m/s."""
+    greatest = 0.0
+    for _ in range(round(seconds * 100)):
+        simulation.advance(NANOSECONDS // 100)
+        greatest = max(greatest, *(float(np.linalg.norm(simulation.link_velocity(link)[0])) for link in links))
+    return greatest
+
+
+@pytest.mark.parametrize("step", [0.001, 0.01])
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("depth", [0.2, 0.6])
+def test_what_begins_in_the_ground_comes_out_slowly_and_stands_on_it(shape: str, depth: float, step: float):
+    simulation = simulated(GROUND, free("thing", shape, f"0 0 {0.5 - depth} 0 0 0"), step=step)
+    assert fastest(simulation, 3.5, "thing::link") < FASTEST
+    assert simulation.link_pose("thing::link")[2] == pytest.approx(0.5, abs=0.01)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_things_that_begin_in_each_other_part_slowly(shape: str):
+    simulation = simulated(free("one", shape, "0 0 5 0 0 0"), free("other", shape, "0.1 0.05 5 0 0 0"), gravity="0 0 0")
+    assert fastest(simulation, 4.0, "one::link", "other::link") < FASTEST
+    assert not overlaps(simulation)
+
+
+def test_what_is_put_into_a_wall_while_time_passes_leaves_it_slowly():
+    wall = box("wall", "3 0 1 0 0 0", "1 4 2").replace("<link", "<static>true</static><link", 1)
+    simulation = simulated(GROUND, wall, free("crate", "box", "0 0 0.5 0 0 0"))
+    simulation.advance(2 * NANOSECONDS)
+    simulation.set_model_pose("crate", (2.6, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0))
+    assert fastest(simulation, 3.0, "crate::link") < FASTEST
+    assert simulation.link_pose("crate::link")[0] == pytest.approx(2.0, abs=0.05)
+
+
+def hinged(limits: str, more: str = "") -> str:
+    """A link that turns about the vertical."""
+    inertia = "<inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>"
+    return (
+        f'{UPRIGHT}<link name="first">{inertia}</link><joint name="turn" type="revolute"><parent>base</parent>'
+        f"<child>first</child><axis><xyz>0 0 1</xyz>{limits}</axis></joint>{more}</model>"
+    )
+
+
+def test_a_joint_beyond_its_limit_returns_slowly():
+    simulation = simulated(
+        hinged("<limit><lower>1.2</lower><upper>2</upper></limit><dynamics><damping>0.5</damping></dynamics>")
+    )
+    speeds = []
+    for _ in range(200):
+        simulation.advance(NANOSECONDS // 100)
+        speeds.append(simulation.joint_state("arm::turn")[1])
+    assert 0.9 < max(speeds) < 1.05
+    assert simulation.joint_state("arm::turn")[0] == pytest.approx(1.2, abs=0.01)
+
+
+def test_a_servo_is_as_fast_as_ever_while_something_else_parts():
+    simulation = simulated(
+        GROUND, free("deep", "box", "9 0 -0.4 0 0 0"), hinged("<limit><lower>-9</lower><upper>9</upper></limit>")
+    )
+    servo = simulation.add_servo("arm::turn", speed=3.0)
+    for _ in range(30):
+        servo.move(2.0, 0.01)
+        simulation.advance(NANOSECONDS // 100)
+    assert simulation.joint_state("arm::turn")[0] == pytest.approx(0.9, abs=0.2)
+
+
+def test_deep_things_take_the_same_bits_twice():
+    simulation = simulated(
+        GROUND, *[free(f"t{number}", shape, f"0.{number} 0 0 0.2 0 0") for number, shape in enumerate(SHAPES)]
+    )
+    simulation.advance(NANOSECONDS)
+    once = simulation.data.qpos.tobytes()
+    simulation.reset()
+    simulation.advance(NANOSECONDS)
+    assert simulation.data.qpos.tobytes() == once
+
+
+def test_the_bound_is_looked_for_no_more_once_nothing_is_deep():
+    simulation = simulated(GROUND, free("thing", "box", "0 0 0.3 0 0 0"))
+    assert simulation._stepper._recovery.is_expected
+    simulation.advance(2 * NANOSECONDS)
+    assert not simulation._stepper._recovery.is_expected
+
+
+def test_models_that_begin_in_each_other_are_told_the_deepest_first():
+    simulation = simulated(
+        GROUND,
+        free("low", "box", "0 0 0.2 0 0 0"),
+        free("lower", "box", "5 0 0.1 0 0 0"),
+        free("beside", "ball", "5.9 0 0.5 0 0 0"),
+        free("fine", "box", "9 0 0.495 0 0 0"),
+    )
+    told = [str(each.message) for each in overlaps(simulation)]
+    assert told == [
+        "'lower' begins 0.40 m inside 'ground'",
+        "'low' begins 0.30 m inside 'ground'",
+        "'beside' begins 0.10 m inside 'lower'",
+    ]
+    assert [str(each.message) for each in overlaps(simulation, {"beside"})] == told[2:]
+
+
+def test_many_overlaps_are_counted():
+    simulation = simulated(GROUND, *[free(f"b{each}", "box", f"{2 * each} 0 0.2 0 0 0") for each in range(11)])
+    told = overlaps(simulation)
+    assert len(told) == 9
+    assert str(told[-1].message) == "3 other pairs of models overlap"
+
+
+async def test_overlaps_are_logged_at_the_start_and_when_something_is_put_in():
+    async with served(GROUND, free("low", "box", "0 0 0.2 0 0 0")) as (server, _, log):
+        assert any("'low' begins 0.30 m inside 'ground'" in line.text for line in log)
+        server.spawn(model(free("new", "ball", "0 0 0 0 0 0")), "new", (0.0, 0.0, 0.6, 0.0, 0.0, 0.0, 1.0))
+        assert any("'new' begins 0.60 m inside 'low'" in line.text for line in log)
