@@ -100,8 +100,7 @@ class Servo:
         self._simulation = simulation
         self._joint = joint
         self._name = name
-        limit = simulation.scene.joints[joint].axes[0][0].limit.velocity
-        speed = min(speed, limit) if isfinite(limit) and limit > 0.0 else speed
+        speed = min(speed, simulation.scene.speed_limit(joint))
         self._speed = speed if isfinite(speed) else _SERVO_SPEED
         self.restart()
 

@@ -4,7 +4,10 @@ MuJoCo's contacts are soft and take the speed of what hits hard: at the time ste
 lets a ball rise as high as its coefficient of restitution says. So what hits is pushed off again behind the step in
 which it does, by impulses: Newton's law of impact, with Coulomb's friction.
 
-Source of the figures: drops of balls and boxes from 0.3, 1 and 3 m with coefficients of 0.3 to 1, at 1 ms.
+Bodies are also put where they would be if they had parted when they met, not at the end of the step, in which they go
+on into each other: else a ball of 0.2 rose a fifth too low from 1 m.
+
+Source of the figures: drops of balls, boxes, cylinders and capsules from 0.3, 1 and 3 m, coefficients of 0.2, 0.5 and 0.9.
 """
 
 from __future__ import annotations
@@ -81,12 +84,18 @@ class Stepper:
         ways = np.concatenate([self._ways(contacts[index]) for index, _ in hits])
         answers = np.zeros_like(ways)
         self._mujoco.mj_solveM(model, data, answers, ways)
+        now = ways @ data.qvel
         impulses = _fitted(
             ways @ answers.T,
-            ways @ data.qvel,
+            now,
             [(speed, float(contacts[index].friction[0]) if contacts[index].dim > 1 else 0.0) for index, speed in hits],
         )
-        data.qvel += impulses @ answers
+        gained = impulses @ answers
+        data.qvel += gained
+        struck = [index for index, _ in hits]
+        depths = -contacts.dist[struck] - now[::3] * model.opt.timestep
+        since = float(np.clip(depths / -speeds[rows[struck]], 0.0, 2.0 * model.opt.timestep).min())
+        self._mujoco.mj_integratePos(model, data.qpos, gained, since)  # as if they had parted when they met
 
     def _ways(self, contact: Any) -> Array:
         """The Jacobian of a contact along its normal and tangents, shape (3, degrees of freedom)."""

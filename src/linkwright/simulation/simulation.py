@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from math import inf
+from math import inf, isfinite
 from typing import Any
 
 import numpy as np
@@ -476,9 +476,26 @@ class Simulation:
         self._jumped(self.model.jnt_bodyid[joint.id])
 
     def push_joint(self, name: str, force: float) -> None:
-        """Set the torque in N m (force in N) on a joint of one axis; it acts until it is set anew."""
+        """Set the torque in N m (force in N) on a joint of one axis; it acts until it is set anew.
+
+        It is bounded by the joint's ``<effort>``, and by what brings it to its ``<velocity>`` within a step.
+        """
         self.refresh()
-        self.data.joint(name).qfrc_applied[0] = force
+        self.data.joint(name).qfrc_applied[0] = self._bounded(name, force)
+
+    def _bounded(self, name: str, force: float) -> float:
+        """A force on a joint within its limits, as gz's engine DART has it; 0 and less are no limits."""
+        model, speed_limit = self.model, self.scene.speed_limit(name)
+        number = model.joint(name).id
+        if model.jnt_actfrclimited[number]:
+            lower, upper = model.jnt_actfrcrange[number].tolist()
+            force = min(max(force, lower), upper)
+        if isfinite(speed_limit):
+            _, speed = self.joint_state(name)
+            mass = 1.0 / float(model.dof_invweight0[model.jnt_dofadr[number]])
+            needed = mass * NANOSECONDS / self.step  # for a difference of 1 rad/s (1 m/s) within a step
+            force = min(max(force, min(-(speed_limit + speed) * needed, 0.0)), max((speed_limit - speed) * needed, 0.0))
+        return force
 
     def push(
         self,

@@ -192,5 +192,6 @@ class GzJointVelocity(_JointController[VelocityParameters]):
 
     def _turn(self, velocity: float) -> None:
         self._wanted = velocity
-        for motor in self._motors:
-            motor.target = velocity
+        for joint, motor in zip(self._joints, self._motors, strict=False):
+            greatest = self.simulation.scene.speed_limit(joint)
+            motor.target = min(max(velocity, -greatest), greatest)

@@ -305,6 +305,11 @@ class Scene:
         self.let_roll(joint, min(limit / _GREATEST_JUMP, gain))
         return str(actuator.name)
 
+    def speed_limit(self, joint: str) -> float:
+        """The greatest speed of a joint of one axis in rad/s (m/s) by its limits; infinite where they have none."""
+        said = self.joints[joint].axes[0][0].limit.velocity if joint in self.joints else inf
+        return said if said > 0.0 else inf
+
     def let_roll(self, joint: str, rotor: float = 0.0) -> None:
         """Let a wheel roll without slipping.
 

@@ -1,0 +1,94 @@
+"""What pushes joints is bounded by their limits of effort and velocity."""
+
+from __future__ import annotations
+
+from math import asin, inf
+
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from tests.simulation.test_plugins import served
+from tests.simulation.worlds import simulated
+
+COMMAND = "/bob"
+CONTROLLER = (
+    '<plugin filename="gz-sim-joint-position-controller-system" name="gz::sim::systems::JointPositionController">'
+    "<joint_name>turn</joint_name><topic>bob</topic><p_gain>1000</p_gain><i_gain>0</i_gain><d_gain>50</d_gain></plugin>"
+)
+MOTOR = (
+    '<plugin filename="gz-sim-joint-controller-system" name="gz::sim::systems::JointController">'
+    "<joint_name>turn</joint_name><initial_velocity>4</initial_velocity></plugin>"
+)
+
+
+def arm(limit: str, plugin: str = "", axis: str = "0 1 0", more: str = "") -> str:
+    """A link with 1 kg at 1 m from the axis that it turns about."""
+    inertia = "<inertia><ixx>1e-3</ixx><iyy>1e-3</iyy><izz>1e-3</izz></inertia>"
+    return (
+        '<model name="arm"><pose>0 0 3 0 0 0</pose><link name="base"/>'
+        f'<link name="bob"><pose>0 0 -1 0 0 0</pose><inertial><mass>1</mass>{inertia}</inertial></link>'
+        '<joint name="post" type="fixed"><parent>world</parent><child>base</child></joint>'
+        '<joint name="turn" type="revolute"><pose>0 0 1 0 0 0</pose><parent>base</parent><child>bob</child>'
+        f"<axis><xyz>{axis}</xyz><limit><lower>-100</lower><upper>100</upper>{limit}</limit>{more}</axis></joint>"
+        f"{plugin}</model>"
+    )
+
+
+def speed_when_pushed(simulation: Simulation, force: float, seconds: float = 0.5) -> float:
+    for _ in range(round(seconds * 1000)):
+        simulation.push_joint("arm::turn", force)
+        simulation.advance(NANOSECONDS // 1000)
+    return simulation.joint_state("arm::turn")[1]
+
+
+async def test_a_controller_lifts_no_more_than_the_effort_of_the_joint():
+    async with served(arm("<effort>5</effort>", CONTROLLER, more="<dynamics><damping>5</damping></dynamics>")) as (
+        server,
+        graph,
+        _,
+    ):
+        node = graph.create_node("operator")
+        node.create_publisher(get_message("std_msgs/msg/Float64"), COMMAND, 10).publish(
+            get_message("std_msgs/msg/Float64")(data=1.5)
+        )
+        await graph.settle()
+        server.advance(4 * NANOSECONDS)
+        assert server.simulation.joint_state("arm::turn")[0] == pytest.approx(asin(5 / 9.81), abs=0.02)
+
+
+@pytest.mark.parametrize("force", [3.0, -3.0])
+def test_a_push_accelerates_by_the_effort_at_most(force: float):
+    simulation = simulated(arm("<effort>2</effort>"), gravity="0 0 0")
+    expected = 2.0 * 0.5 / 1.001
+    assert abs(speed_when_pushed(simulation, force)) == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize("force", [2.0, 100.0, 1e5, -1e5])
+def test_a_push_brings_a_joint_to_its_velocity_and_no_further(force: float):
+    simulation = simulated(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
+    assert abs(speed_when_pushed(simulation, force)) == pytest.approx(0.8, rel=0.01)
+
+
+def test_a_joint_that_is_faster_is_braked_by_no_bound():
+    simulation = simulated(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
+    simulation.data.joint("arm::turn").qvel[0] = 3.0
+    simulation.set_moved()
+    assert speed_when_pushed(simulation, 5.0, 0.1) == pytest.approx(3.0)
+    assert speed_when_pushed(simulation, -5.0, 0.1) == pytest.approx(2.5, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "limit", ["", "<effort>0</effort><velocity>0</velocity>", "<effort>-1</effort><velocity>-1</velocity>"]
+)
+def test_zero_and_less_are_no_limits(limit: str):
+    simulation = simulated(arm(limit), gravity="0 0 0")
+    assert speed_when_pushed(simulation, 10.0) == pytest.approx(5.0, rel=0.01)
+
+
+@pytest.mark.parametrize(("velocity", "wanted"), [(1.5, 1.5), (inf, 4.0)])
+async def test_a_motor_of_gz_turns_as_fast_as_the_joint_may(velocity: float, wanted: float):
+    limit = f"<velocity>{velocity}</velocity>"
+    async with served(arm(limit, MOTOR, axis="0 0 1")) as (server, _, _log):
+        server.advance(NANOSECONDS)
+        assert server.simulation.joint_state("arm::turn")[1] == pytest.approx(wanted, rel=0.01)
