@@ -7,7 +7,8 @@ which it does, by impulses: Newton's law of impact, with Coulomb's friction.
 Bodies are also put where they would be if they had parted when they met, not at the end of the step, in which they go
 on into each other: else a ball of 0.2 rose a fifth too low from 1 m.
 
-Source of the figures: drops of balls, boxes, cylinders and capsules from 0.3, 1 and 3 m, coefficients of 0.2, 0.5 and 0.9.
+Source of the figures: drops of balls, boxes, cylinders and capsules from 0.3, 1 and 3 m, with coefficients of 0.2, 0.5
+and 0.9.
 """
 
 from __future__ import annotations
