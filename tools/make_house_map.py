@@ -3,7 +3,9 @@
 Usage: python tools/make_house_map.py
 
 An exact laser at the height of mbot's looks around from many places in the house that can be reached from the origin.
-Its rays make cells free, and their ends make them occupied, as with a mapper that makes no errors.
+Its rays make cells free, and their ends make them occupied, as with a mapper that makes no errors. Cells at the edge of
+what it sees are occupied, too: beyond are the insides of furniture and the outside, and planners that cross unknown
+cells, as nav2's do, would lead out of the front door, round the house and through the wall behind a wardrobe.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
 from linkwright.navigation.grids.ray_counts import ray_counts
@@ -66,7 +69,15 @@ def house_map() -> Grid:
     # A ray that grazes a wall goes through its cells, too: what was hit as a rule is occupied.
     grid.cells[passes > 0] = FREE
     grid.cells[hits > 0.1 * passes] = OCCUPIED
+    grid.cells[(grid.cells == UNKNOWN) & _beside(grid.cells == FREE)] = OCCUPIED
     return grid
+
+
+def _beside(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The cells that touch one of some cells, at a side or a corner."""
+    rows, columns = cells.shape
+    around = np.pad(cells, 1)
+    return np.logical_or.reduce([around[y : y + rows, x : x + columns] for y in range(3) for x in range(3)])
 
 
 if __name__ == "__main__":

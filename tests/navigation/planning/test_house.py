@@ -1,0 +1,58 @@
+"""The map of our house: planners that cross unknown cells stay in what was seen."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwright.navigation.costmaps.costmap import INSCRIBED, UNKNOWN
+from linkwright.navigation.costmaps.inflation_layer import Inflation
+from linkwright.navigation.grids.distances import distance_field
+from linkwright.navigation.grids.grid import FREE, OCCUPIED, Grid
+from linkwright.navigation.grids.grid import UNKNOWN as UNSEEN
+from linkwright.navigation.maps.map_files import load_map
+from linkwright.navigation.planning.planner import run
+from linkwright.navigation.planning.potential import potential, prices
+from tests.places import GAZEBO_PACKAGE
+
+ROBOT = 0.22
+PLACES = {
+    "living room": (0.0, 0.0),
+    "bedroom": (-1.9, 1.6),
+    "hall": (0.0, 2.5),
+    "bath": (2.4, 2.4),
+    "kitchen": (2.3, -1.7),
+}
+DOORS = [(-1.5, 1.05), (0.9, 2.5), (1.55, -1.6)]
+"""Of bedroom, bath and kitchen."""
+
+
+def house() -> Grid:
+    return load_map(GAZEBO_PACKAGE / "maps" / "house.yaml")
+
+
+def reached(grid: Grid) -> np.ndarray:
+    """The cells that a planner gets to from the living room, unknown ones allowed."""
+    distances = distance_field(grid.cells == OCCUPIED, grid.resolution)
+    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, ROBOT)
+    costs = np.where(distances > 0.6, 0, costs).astype(np.uint8)
+    costs[(grid.cells == UNSEEN) & (costs < INSCRIBED)] = UNKNOWN
+    row, column = grid.cells_of(np.array(PLACES["living room"]))
+    return np.isfinite(run(potential(prices(costs), (int(row), int(column)))))
+
+
+def test_every_room_is_reached_and_nothing_that_was_not_seen():
+    grid = house()
+    there = reached(grid)
+    assert all(there[tuple(grid.cells_of(np.array(place)))] for place in PLACES.values())
+    assert (grid.cells[there] == FREE).all()
+
+
+def test_no_way_leads_round_the_house_where_doors_are_shut():
+    grid = house()
+    for door in DOORS:
+        row, column = grid.cells_of(np.array(door))
+        grid.cells[row - 8 : row + 9, column - 8 : column + 9] = OCCUPIED
+    there = reached(grid)
+    shut = [name for name, place in PLACES.items() if not there[tuple(grid.cells_of(np.array(place)))]]
+    assert shut == ["bedroom", "bath", "kitchen"]
+    assert (grid.cells[there] == FREE).all()
