@@ -3,23 +3,24 @@
 Usage: python tools/make_house_map.py
 
 An exact laser at the height of mbot's looks around from many places in the house that can be reached from the origin.
-Its rays make cells free, and their ends make them occupied, as with a mapper that makes no errors. Cells at the edge of
-what it sees are occupied, too: beyond are the insides of furniture and the outside, and planners that cross unknown
-cells, as nav2's do, would lead out of the front door, round the house and through the wall behind a wardrobe.
+Its rays make cells free, and their ends make them occupied, as with a mapper that makes no errors. Walls behind
+furniture are drawn as it sees them where there is none: planners that cross unknown cells, as nav2's do, would lead out
+of the front door, round the house and through the back of a wardrobe.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
 from linkwright.navigation.grids.ray_counts import ray_counts
 from linkwright.navigation.maps.map_files import SavedAs, save_map
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.worlds import World
 from linkwright.simulation.ray_casting import GROUPS, cast
 from linkwright.simulation.simulation import Simulation
 from linkwright.testing.scenes import read_world
@@ -31,6 +32,8 @@ RAYS = 2880
 REACH = 20.0
 APART = 10
 """Cells between two places from which it looks."""
+WALLS = "walls"
+"""The model of the walls."""
 INSIDE = np.array((4.9, 3.9))
 """Metres from the origin to the walls around the house, along x and y; its front door stands open."""
 
@@ -38,6 +41,14 @@ INSIDE = np.array((4.9, 3.9))
 def house_map() -> Grid:
     """The map: 5 cm cells, the frame of the world."""
     world = read_world(str(PACKAGE / "worlds" / "house.world")).world
+    grid = _seen(world)
+    bare = _seen(replace(world, models=tuple(each for each in world.models if each.name == WALLS)))
+    grid.cells[(grid.cells == UNKNOWN) & (bare.cells == OCCUPIED)] = OCCUPIED
+    return grid
+
+
+def _seen(world: World) -> Grid:
+    """What the laser sees of a world."""
     simulation = Simulation(world, ResourceFinder(PackageFinder(start=[PACKAGE])))
     grid = Grid(cells=np.full((180, 220), UNKNOWN, np.int8), resolution=0.05, x=-5.5, y=-4.5)
     shape = (grid.rows, grid.columns)
@@ -69,15 +80,7 @@ def house_map() -> Grid:
     # A ray that grazes a wall goes through its cells, too: what was hit as a rule is occupied.
     grid.cells[passes > 0] = FREE
     grid.cells[hits > 0.1 * passes] = OCCUPIED
-    grid.cells[(grid.cells == UNKNOWN) & _beside(grid.cells == FREE)] = OCCUPIED
     return grid
-
-
-def _beside(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The cells that touch one of some cells, at a side or a corner."""
-    rows, columns = cells.shape
-    around = np.pad(cells, 1)
-    return np.logical_or.reduce([around[y : y + rows, x : x + columns] for y in range(3) for x in range(3)])
 
 
 if __name__ == "__main__":
