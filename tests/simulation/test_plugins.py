@@ -172,7 +172,8 @@ async def test_what_is_not_simulated_is_listed_once():
     unknown = '<plugin name="a" filename="libvacuum.so"/>'
     known = '<plugin name="b" filename="gz-sim-physics-system"/>'
     async with served(robot(unknown, known), robot(unknown, name="two")) as (_, __, log):
-        assert [each.text for each in log] == ["plugins and sensors that are not simulated: libvacuum.so"]
+        told = [each.text for each in log if "not simulated" in each.text]
+        assert told == ["plugins and sensors that are not simulated: libvacuum.so"]
 
 
 async def test_a_model_that_goes_takes_its_nodes_along():

@@ -161,3 +161,9 @@ async def test_a_world_with_joints_is_followed(tmp_path):
         assert simulation.moves_freely("bob")
         await load(it, tmp_path, base, weight, anchor, swing)
         assert not simulation.moves_freely("bob")
+
+
+def test_a_joint_whose_child_is_the_world_holds_its_parent():
+    simulation = simulated(box("crate", "0 0 2 0 0 0"), joint("ball", "crate", "pin"), '<frame name="pin"/>')
+    simulation.advance(500_000_000)
+    assert simulation.model_pose("crate")[:3] == pytest.approx((0, 0, 2), abs=1e-3)

@@ -468,7 +468,7 @@ class Scene:
         if joint.joint.type == "fixed":
             yield self._equality(kinds.mjEQ_WELD, ends)
         elif joint.joint.type in ("revolute", "hinge", "continuous", "ball"):
-            into_child = invert(poses[joint.child])
+            into_child = IDENTITY if joint.child == WORLD else invert(poses[joint.child])
             for point in points[: 1 if joint.joint.type == "ball" else 2]:
                 equality = self._equality(kinds.mjEQ_CONNECT, ends)
                 moved = rotate(into_child[3:], point)

@@ -105,11 +105,11 @@ class SimulationServer:
     def start(self) -> None:
         """Start the plugins of the world and of its models."""
         self.tell(self.simulation.scene.diagnostics)
-        self.tell(overlaps(self.simulation))
         self._tell_unsimulated(unsimulated(self.simulation.world))
         self._load(_WORLD, of_world(self.simulation.world), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
+        self.tell(overlaps(self.simulation))  # not before: plugins attach what is meant to overlap
         self._changed()
 
     @property
