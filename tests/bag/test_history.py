@@ -9,10 +9,12 @@ import pytest
 
 from linkwright.bag import History, shrinking
 from linkwright.bag.shrinking import whole
-from linkwright.messages import TFMessage, TransformBatch, serialize
+from linkwright.bag.stillness import content_of
+from linkwright.messages import TFMessage, TransformBatch, deserialize, get_message, serialize
 from tests.waiting import wait_until
 
 SECOND = 1_000_000_000
+JointState = get_message("sensor_msgs/msg/JointState")
 
 
 class Clock:
@@ -139,3 +141,103 @@ def test_what_was_dropped_before_it_was_packed_does_no_harm(monkeypatch: pytest.
     packed(history, 210_000)
     assert [data[0] for _, _, data in history.messages(["/camera"], 0)] == [4]
     history.close()
+
+
+def states(clock: Clock, history: History, positions: list[float], *, start: float = 0.0) -> None:
+    """Joint states, a hundred in a second."""
+    for number, position in enumerate(positions):
+        clock.ns = int((start + number / 100) * SECOND)
+        state = JointState(name=["arm"], position=[position])
+        state.header.stamp.sec, state.header.stamp.nanosec = divmod(clock.ns, SECOND)
+        data = serialize(state)
+        history.add("/joint_states", data, content=content_of(JointState.TYPE_NAME, data))
+
+
+def told(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float]]:
+    """Position and stamp, in seconds, of joint states."""
+    read = [deserialize(whole(data), JointState) for _, _, data in messages]
+    return [(each.position[0], each.header.stamp.sec + each.header.stamp.nanosec / 1e9) for each in read]
+
+
+def test_a_robot_that_stands_still_takes_two_messages_in_ten_seconds() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    states(clock, history, [1.5] * 6000)
+    assert history.count == 12
+    size = history.size
+    states(clock, history, [1.5] * 900, start=60.0)
+    assert history.size == size + 2 * (size // 12)
+    # The state of any time in between is the same, with a stamp that is no older than that time.
+    for second in (0.5, 7.0, 29.99, 65.0):
+        ((position, stamp),) = told(history.state_at(["/joint_states"], int(second * SECOND)))
+        assert position == 1.5
+        assert stamp >= second
+
+
+def test_what_moves_again_is_kept_as_it_came() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    still, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
+    states(clock, history, [*still, *moves, *still])
+    assert history.count == 2 + 300 + 2
+    assert told(history.state_at(["/joint_states"], int(2.5 * SECOND)))[0][0] == 0.0
+    assert told(history.state_at(["/joint_states"], int(4.5 * SECOND)))[0] == pytest.approx((1.51, 4.5))
+    assert told(history.state_at(["/joint_states"], int(8.5 * SECOND)))[0][0] == 0.0
+    back_and_forth = History(10**8, clock)
+    states(clock, back_and_forth, [0.0, 1.0] * 100, start=20.0)
+    assert back_and_forth.count == 200
+
+
+def test_transforms_of_each_publisher_stand_still_by_themselves() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    for number in range(3000):
+        clock.ns = number * SECOND // 100
+        for child, x in (("wheel", 0.0), ("robot", number / 100)):
+            pose = np.array([[x, 0, 0, 0, 0, 0, 1.0]])
+            data = serialize(TFMessage(batch=TransformBatch(("base",), (child,), clock.ns, pose)))
+            history.add("/tf", data, content=content_of(TFMessage.TYPE_NAME, data))
+    assert history.count == 3000 + 2 * 3
+    for second in (5, 15, 28):
+        found = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], second * SECOND)]
+        newest = {batch.children[0]: batch.poses[0][0] for batch in found}
+        assert newest == {"wheel": 0.0, "robot": second}
+
+
+def test_events_without_a_stamp_are_all_kept() -> None:
+    assert content_of("std_msgs/msg/Bool", serialize(get_message("std_msgs/msg/Bool")(data=True))) is None
+
+
+@pytest.mark.parametrize("data", [b"", b"\0\1\0\0", b"\0\1\0\0\xff\0\0\0", b"\0\0\0\0\0\0\0\1" + bytes(80)])
+def test_bytes_that_are_no_transforms_have_no_content(data: bytes) -> None:
+    found = content_of(TFMessage.TYPE_NAME, data)
+    assert found is None or found.what == ""
+
+
+def test_pictures_that_fill_the_room_are_thinned_and_minutes_of_them_stay() -> None:
+    clock = Clock()
+    history = History(most := 4_000_000, clock)
+    noise = np.random.default_rng(1).bytes(15_000)  # 266 of them fill the room: nine seconds
+    for frame in range(30 * 300):
+        clock.ns = frame * SECOND // 30
+        history.add("/camera", noise)
+        if frame % 30 == 0:
+            history.add("/small", b"second")
+    assert history.size <= most
+    assert history.start_ns <= SECOND
+    stamps = [stamp / SECOND for _, stamp, _ in history.messages(["/camera"], 0)]
+    assert len(stamps) > 200
+    gaps = np.diff(stamps)
+    assert gaps[-20:].max() < 0.1, "the last second is as it came"
+    assert gaps.max() < 20
+    assert len(list(history.messages(["/small"], 0))) == 300, "what is small stays"
+    assert history.state_at(["/camera"], 100 * SECOND)
+
+
+def test_what_is_thinned_goes_back_ten_minutes_and_no_further() -> None:
+    clock = Clock()
+    history = History(1_000_000, clock)
+    for frame in range(2000):
+        clock.ns = frame * SECOND
+        history.add("/camera", bytes(15_000))
+    assert 500 <= (clock.ns - history.start_ns) / SECOND <= 600

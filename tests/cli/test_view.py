@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.view import usual_history
 from linkwright.hosting import bag_view, view
 from linkwright.hosting.plans import HostOptions
 from tests.viewer.features.test_timeline import recorded
@@ -81,17 +80,3 @@ def test_the_displays_of_an_rviz_file_are_shown(folder: Path, file: str, monkeyp
     assert main(["view", file, "-d", "v.rviz"]) == 0
     assert [each.rviz for each in asked] == [folder / "v.rviz"]
     assert view._config_of(folder / "v.rviz").options.text("Fixed Frame") == "odom"
-
-
-@pytest.mark.parametrize(("memory", "kept"), [(1, 256), (4, 500), (8, 1000), (64, 2000)])
-def test_so_much_of_the_last_minutes_is_kept_on_a_machine(
-    memory: int, kept: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    sizes = {"SC_PAGE_SIZE": 4000, "SC_PHYS_PAGES": memory * 250_000}
-    monkeypatch.setattr("os.sysconf", sizes.__getitem__, raising=False)
-    assert usual_history() == kept * 1_000_000
-
-
-def test_without_knowing_the_memory_the_least_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delattr("os.sysconf", raising=False)
-    assert usual_history() == 256_000_000

@@ -1,22 +1,42 @@
-"""The messages of the last minutes in memory, within a number of bytes, as a recording that can be played."""
+"""The messages of the last minutes in memory, within a number of bytes, as a recording that can be played.
+
+Two things make minutes of it. What stands still is kept sparsely: of messages that repeat but for their stamps the
+first, and a second one that is always the newest. Of large messages, pictures and clouds, the older ones are thinned
+when the room is full: the further back, the further apart.
+"""
 
 from __future__ import annotations
 
 import sys
 import threading
 from bisect import bisect_left, bisect_right
-from collections import deque
 from collections.abc import Callable, Collection, Iterator
+from heapq import heappop, heappush
 
 from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS, TRANSFORMS_NS, Recorded
 from linkwright.bag.shrinking import Packed, Shrinker, whole
+from linkwright.bag.stillness import Content
 from linkwright.messages import TFMessage, deserialize
+
+_SECOND = 1_000_000_000
 
 _OVERHEAD = 200
 """Bytes that a message takes besides its own: its tuple, two numbers, two places in lists."""
 
 _UNUSED = 1024
 """Places at the beginning of a list that are given back together."""
+
+_STILL_NS = 10_000_000_000
+"""After this time what stands still is kept anew: a state is found without looking further back."""
+
+_LARGE = 6000
+"""Mean bytes of a topic's messages, packed, from which on it is thinned before anything is dropped."""
+
+_LONGEST_NS = 600_000_000_000
+"""What is thinned goes back no further."""
+
+_FREED = 20
+"""The part of all room that thinning frees at once is one in so many."""
 
 _Kept = tuple[int, int, bytes]
 """A message: time of reception in ns since the epoch, number of messages before it, CDR bytes."""
@@ -33,15 +53,54 @@ class _Track:
         self.name = name
         self.kept: list[_Kept] = []
         self.first = 0
-        self.dropped = 0
+        self.size = 0
         self.before: dict[object, _Kept] = {}
+        self.is_queued = False
+        self._runs: dict[str, _Run] = {}
+        self._lasting: set[int] = set()
+
+    def __len__(self) -> int:
+        return len(self.kept) - self.first
+
+    @property
+    def can_be_thinned(self) -> bool:
+        """Whether it has enough large messages, and goes back not too far; transforms never."""
+        if len(self) < _FREED or self.size < _LARGE * len(self) or self.name in (TRANSFORMS, STATIC_TRANSFORMS):
+            return False
+        return self.kept[-1][0] - self.kept[self.first][0] < _LONGEST_NS
+
+    def append(self, stamp_ns: int, number: int, data: bytes) -> None:
+        """Add a message."""
+        self.kept.append((stamp_ns, number, data))
+        self.size += _size(data)
+
+    def repeat(self, stamp_ns: int, number: int, data: bytes, content: Content) -> int | None:
+        """Keep a message in the place of an equal one, if there is such; returns the bytes that it takes more, or None.
+
+        The first message of a run stays, and so does the time of the second, which is always the newest: whoever asks
+        for a time in between gets the state of then, with a stamp that is not too old.
+        """
+        run = self._runs.get(content.what)
+        if run is None or run.state != content.state or stamp_ns - run.since_ns >= _STILL_NS:
+            self._runs[content.what] = _Run(stamp_ns, content.state)
+            return None
+        place = None if run.second is None else self._place(run.second)
+        if place is None:
+            run.second = number
+            self._lasting.add(number)
+            return None
+        stamp_ns, number, replaced = self.kept[place]
+        self.kept[place] = stamp_ns, number, data
+        self.size += len(data) - len(replaced)
+        return len(data) - len(replaced)
 
     def drop(self) -> int:
         """Drop the oldest message; returns the bytes that are free now."""
         oldest = self.kept[self.first]
         self.kept[self.first] = (oldest[0], oldest[1], b"")
         self.first += 1
-        self.dropped += 1
+        self.size -= _size(oldest[2])
+        self._lasting.discard(oldest[1])
         if self.first >= _UNUSED:
             del self.kept[: self.first]
             self.first = 0
@@ -52,14 +111,46 @@ class _Track:
         self.before[key] = oldest
         return 0 if replaced is None else _size(replaced[2])
 
+    def thin(self, wanted: int) -> int:
+        """Drop messages whose neighbours are near for how long ago they are; returns the bytes that are free now."""
+        kept = self.kept[self.first :]
+        now_ns = kept[-1][0] + _SECOND
+        gaps = [
+            ((after[0] - before[0]) / (now_ns - each[0]), place)
+            for place, (before, each, after) in enumerate(zip(kept, kept[1:], kept[2:], strict=False), 1)
+        ]
+        gone: set[int] = set()
+        freed = 0
+        for _, place in sorted(gaps):
+            if freed >= wanted:
+                break
+            if place - 1 not in gone and place + 1 not in gone:
+                gone.add(place)
+                freed += _size(kept[place][2])
+        self._lasting.difference_update(kept[place][1] for place in gone)
+        self.kept = [each for place, each in enumerate(kept) if place not in gone]
+        self.first = 0
+        self.size -= freed
+        return freed
+
     def replace(self, number: int, packed: Packed) -> int:
         """Replace a message by its packed form, by its number; returns the bytes that are free now."""
-        place = bisect_left(self.kept, number, lo=self.first, key=lambda each: each[1])
-        if place == len(self.kept) or self.kept[place][1] != number:
+        place = self._place(number)
+        if place is None:
             return 0  # it was dropped meanwhile
         stamp_ns, _, data = self.kept[place]
         self.kept[place] = stamp_ns, number, packed
+        self.size -= len(data) - len(packed)
         return len(data) - len(packed)
+
+    def _place(self, number: int) -> int | None:
+        """Where a message is, by its number; None where it is no longer."""
+        place = bisect_left(self.kept, number, lo=self.first, key=lambda each: each[1])
+        return place if place < len(self.kept) and self.kept[place][1] == number else None
+
+    def lasting(self, start_ns: int, end_ns: int) -> list[_Kept]:
+        """Of the messages from one time to another those that came again and again after it."""
+        return [each for each in self.between(start_ns, end_ns) if each[1] in self._lasting]
 
     def until(self, at_ns: int, count: int) -> list[_Kept]:
         """The last messages up to a time, up to a number."""
@@ -70,6 +161,17 @@ class _Track:
         """The messages from one time to another, both included."""
         begin = bisect_left(self.kept, (start_ns,), lo=self.first)
         return self.kept[begin : bisect_right(self.kept, (end_ns, sys.maxsize), lo=self.first)]
+
+
+class _Run:
+    """Messages of a topic with one content: since when they come, and the number of the second."""
+
+    __slots__ = ("second", "since_ns", "state")
+
+    def __init__(self, since_ns: int, state: bytes) -> None:
+        self.since_ns = since_ns
+        self.state = state
+        self.second: int | None = None
 
 
 class History:
@@ -96,11 +198,15 @@ class History:
         self._now_ns = now_ns
         self._newest_ns = 0
         self._tracks: dict[str, _Track] = {}
-        self._order: deque[_Track] = deque()
+        self._oldest: list[tuple[int, str, _Track]] = []
+        self._largest: _Track | None = None
         self._shrinker = Shrinker(self._replace)
 
-    def add(self, topic: str, data: bytes, at_ns: int | None = None) -> None:
-        """Add a message received now, or at another time after those that are kept."""
+    def add(self, topic: str, data: bytes, at_ns: int | None = None, content: Content | None = None) -> None:
+        """Add a message received now, or at another time after those that are kept.
+
+        With its content, see `stillness`, it takes no room of its own where it only repeats what the ones before said.
+        """
         size = _size(data)
         if size > self.most_bytes:
             return
@@ -109,18 +215,54 @@ class History:
             track = self._tracks.get(topic)
             if track is None:
                 track = self._tracks[topic] = _Track(topic)
-            track.kept.append((self._newest_ns, self.count, data))
-            self._order.append(track)
+            more = None if content is None else track.repeat(self._newest_ns, self.count, data, content)
+            if more is not None:
+                self.size += more
+                return
+            track.append(self._newest_ns, self.count, data)
+            self._queue(track)
+            if self._largest is None or track.size > self._largest.size:
+                self._largest = track
             self.count += 1
             self.size += size
-            while self.size > self.most_bytes and self._order:
-                self.size -= self._order.popleft().drop()
+            while self.size > self.most_bytes and self._make_room():
+                pass
             number = self.count - 1
         self._shrinker.offer((track, number), data)
 
     def close(self) -> None:
         """Stop packing; the messages are kept as they are."""
         self._shrinker.close()
+
+    def _make_room(self) -> bool:
+        """Thin what is large, or drop the oldest message of all; returns whether there was anything."""
+        large = self._largest
+        if large is not None and large.size > self.most_bytes // 2 and large.can_be_thinned:
+            freed = large.thin(self.most_bytes // _FREED)
+            self.size -= freed
+            return freed > 0
+        oldest = self._first()
+        if oldest is None:
+            return False
+        self.size -= oldest.drop()
+        return True
+
+    def _queue(self, track: _Track) -> None:
+        """Note a track by its oldest message."""
+        if not track.is_queued and len(track) > 0:
+            track.is_queued = True
+            heappush(self._oldest, (track.kept[track.first][1], track.name, track))
+
+    def _first(self) -> _Track | None:
+        """The track with the oldest message of all; None where nothing is kept."""
+        while self._oldest:
+            number, _, track = self._oldest[0]
+            if len(track) > 0 and track.kept[track.first][1] == number:
+                return track
+            heappop(self._oldest)
+            track.is_queued = False
+            self._queue(track)
+        return None
 
     def _replace(self, key: tuple[_Track, int], packed: Packed) -> None:
         track, number = key
@@ -131,7 +273,7 @@ class History:
     def start_ns(self) -> int:
         """The time of the oldest message, nanoseconds since the epoch; now, where there is none."""
         with self.lock:
-            oldest = self._order[0] if self._order else None
+            oldest = self._first()
             return self.end_ns if oldest is None else oldest.kept[oldest.first][0]
 
     @property
@@ -153,7 +295,8 @@ class History:
                 if track is None:
                     continue
                 if name == TRANSFORMS:
-                    kept = track.between(at_ns - TRANSFORMS_NS, at_ns)
+                    near_ns = at_ns - TRANSFORMS_NS
+                    kept = track.lasting(near_ns - _STILL_NS, near_ns - 1) + track.between(near_ns, at_ns)
                 else:
                     kept = track.until(at_ns, sys.maxsize if name == STATIC_TRANSFORMS else 1)
                     before = [each for each in track.before.values() if each[0] <= at_ns]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import sys
 from contextlib import ExitStack
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.model_arguments import add_second_model, asked_pair, names_file
+from linkwright.hosting.last_minutes import DEFAULT_HISTORY
 
 if TYPE_CHECKING:
     from linkwright.hosting.plans import HostOptions
@@ -46,22 +46,10 @@ def add_viewer_options(parser: argparse.ArgumentParser) -> None:
         "--history",
         metavar="SIZE",
         type=size,
-        default=usual_history(),
+        default=DEFAULT_HISTORY,
         help="memory for what came in the last minutes, which the page can go back to, such as 1GB; 0 for none "
-        "(default: an eighth of the machine's, 256MB at least and 2GB at most)",
+        "(default: 256MB)",
     )
-
-
-_LEAST_HISTORY, _MOST_HISTORY, _PART = 256_000_000, 2_000_000_000, 8
-
-
-def usual_history() -> int:
-    """How many bytes of the last minutes are kept where nothing else is asked for, by the memory of the machine."""
-    try:
-        memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, ValueError, OSError):  # Windows does not have it
-        memory = 0
-    return min(_MOST_HISTORY, max(_LEAST_HISTORY, memory // _PART))
 
 
 _UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "GB": 10**9}

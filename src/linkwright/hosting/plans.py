@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.hosting.last_minutes import DEFAULT_HISTORY
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
 
 if TYPE_CHECKING:
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
 VIEWER = ("rviz2", "rviz2")
 """Package and executable of RViz, for which our viewer stands in."""
-DEFAULT_HISTORY = 256_000_000
-"""Bytes of the last minutes that a viewer keeps; the guide of the viewer says how long a time that is."""
 
 _GAZEBO_WINDOW = "gzclient"
 """The executable of Gazebo's window, whose place our viewer takes, too."""

@@ -16,6 +16,7 @@ from linkwright.graph.introspection.graph_queries import GraphQueries
 from linkwright.graph.time.clock import ROSClock
 from linkwright.packages import PackageFinder
 from linkwright.viewer.frames.history import FrameHistory
+from linkwright.viewer.published_topics import PublishedTopics
 from linkwright.viewer.web.audience import PageGroup
 from linkwright.viewer.web.files import Downloads, MeshFolders
 
@@ -111,6 +112,7 @@ class ViewerContext:
         pages: every open page.
         transforms: the history of transforms, to place messages by the time in their headers.
         graph_changes: tells that nodes or endpoints came or went.
+        published: the topics that others publish.
         meshes: the folders that pages may read from.
         downloads: files that were made for a page, to be fetched once.
         held_time: whether its clock shows the past.
@@ -124,6 +126,7 @@ class ViewerContext:
     pages: PageGroup
     transforms: FrameHistory
     graph_changes: GraphChanges
+    published: PublishedTopics
     meshes: MeshFolders = field(default_factory=MeshFolders)
     downloads: Downloads = field(default_factory=Downloads)
     held_time: HeldTime = field(default_factory=HeldTime)

@@ -225,13 +225,16 @@ class LiveHistory:
         history, fresh = self._kept, self._fresh
         self._fresh = []
         for topic, at_ns, message in fresh:
-            keep = partial(self._keep, history, topic, at_ns, message)
+            keep = partial(self._keep, history, topic, at_ns, message, thins=self.live)
             run_logged(self._handle.logger, f"keeping a message of '{topic}'", keep)
         return history
 
-    @staticmethod
-    def _keep(history: History, topic: str, at_ns: int, message: Any) -> None:
-        history.add(topic, bytes(message) if isinstance(message, _BYTES) else serialize(message), at_ns)
+    def _keep(self, history: History, topic: str, at_ns: int, message: Any, *, thins: bool) -> None:
+        """Keep a message; with `thins`, not for long where it repeats those before: what is played on needs each."""
+        from linkwright.bag.stillness import content_of
+
+        data = bytes(message) if isinstance(message, _BYTES) else serialize(message)
+        history.add(topic, data, at_ns, content_of(self._keepers[topic].type_name, data) if thins else None)
 
     def _subscriptions(self) -> list[Subscription[Any]]:
         return list(self._context.node.subscriptions)

@@ -23,6 +23,7 @@ from linkwright.viewer.features.timeline import TimelineFeature
 from linkwright.viewer.frames.history import FrameHistory
 from linkwright.viewer.protocol.message import ServerMessage, encode
 from linkwright.viewer.protocol.session import PROTOCOL_VERSION, Hello
+from linkwright.viewer.published_topics import PublishedTopics
 from linkwright.viewer.visualization.manager import Managers, VisualizationManager
 from linkwright.viewer.web.access import Gate
 from linkwright.viewer.web.audience import Audience, Page
@@ -109,6 +110,7 @@ class Viewer:
             pages=self._audience,
             transforms=FrameHistory(self._node),
             graph_changes=GraphChanges(self._node.graph),
+            published=PublishedTopics(self._node),
             **shared,
         )
         self._features: list[PageFeature] = []
@@ -165,6 +167,7 @@ class Viewer:
         self._leave_token()
         async with AsyncExitStack() as stack:  # each of these is done, also where one before it fails
             stack.callback(self._node.destroy_node)
+            stack.callback(self.context.published.close)
             if self._beside is not None:
                 stack.push_async_callback(self._audience.close)
             if self._server is not None:

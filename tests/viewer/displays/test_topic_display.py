@@ -9,6 +9,8 @@ import pytest
 
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.graph.endpoints.base import Endpoint
+from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
 from tests.skipping import skipping
@@ -287,3 +289,23 @@ async def test_a_publisher_that_offers_less_is_told_of_with_the_row_to_change(po
         await w.settle()
         level, text = w.status("PointStamped")["Topic"]
         assert (level, f"{remedy} below Topic" in text) == ("warn", True), text
+
+
+async def test_many_displays_that_wait_describe_no_endpoints_but_publishers(monkeypatch):
+    described: list[str] = []
+    info = Endpoint.info
+    monkeypatch.setattr(Endpoint, "info", lambda self: (described.append(self.kind), info(self))[1])
+    entry = FILE[FILE.index("    - Class") : FILE.index("  Global")]
+    many = "".join(entry.replace("/clicked_point", f"/point{i}") for i in range(40))
+    async with world(RvizConfig.parse(FILE.replace(entry, many))) as w:
+        other = w.graph.create_node("other").create_publisher(PointStamped, "/point7x", 10)
+        shown = [each for each in w.viewer.displays if each.CLASS.endswith("PointStamped")]
+        assert len(shown) == 40
+        await eventually(lambda: "/point7x" in shown[7].status[0].text)
+        assert described.count(EndpointKind.SUBSCRIPTION) == 0
+        before = len(described)
+        for display in shown:
+            display._tell_count()  # as each does every second
+        assert len(described) == before
+        other.destroy()
+        await eventually(lambda: "there is" not in shown[7].status[0].text)

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from linkwright.graph.endpoints.base import Endpoint
 from linkwright.graph.endpoints.bus import Bus
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.endpoints.transport import Transport
@@ -47,7 +48,11 @@ class GraphQueries:
 
     def endpoints(self) -> list[EndpointInfo]:
         """The endpoints of this process and, as far as discovery has come, of others."""
-        return [*(endpoint.info() for endpoint in self.bus.endpoints()), *self.remote_endpoints()]
+        return self._those(lambda _: True)
+
+    def publishers(self) -> list[EndpointInfo]:
+        """The publishers of all topics, in this process and outside."""
+        return self._those(lambda each: each.kind is _PUBLISHER)
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
         """The endpoints of other processes, as far as discovery has come."""
@@ -210,7 +215,12 @@ class GraphQueries:
         ]
 
     def _of_name(self, name: str, kind: EndpointKind) -> list[EndpointInfo]:
-        return [endpoint for endpoint in self.endpoints() if endpoint.kind is kind and endpoint.name == name]
+        return self._those(lambda each: each.kind is kind and each.name == name)
+
+    def _those(self, are_asked_for: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
+        """Endpoints that are asked for, here and outside; only these are described, which takes the time."""
+        own = (endpoint.info() for endpoint in self.bus.endpoints() if are_asked_for(endpoint))
+        return [*own, *(endpoint for endpoint in self.remote_endpoints() if are_asked_for(endpoint))]
 
 
 _LONGEST_WAIT_S = 0.1

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.graph import QoSProfile
+from linkwright.graph import InvalidTopicNameError, QoSProfile
 from linkwright.images import (
     COMPRESSED,
     BadImageError,
@@ -111,8 +111,8 @@ class ImageTopicDisplay(TopicDisplay):
         if not source.topic:
             return source
         try:
-            return source.carrying({carried for _, carried in self._publishers(source.topic)})
-        except ValueError:  # it is no name of a topic, which is told where it is subscribed to
+            return source.carrying({carried for _, carried in self.context.published.publishers(source.topic)})
+        except InvalidTopicNameError:  # it is no name of a topic, which is told where it is subscribed to
             return source
 
     def _tell_count(self) -> None:

@@ -319,27 +319,20 @@ class TopicDisplay(DataDisplay, ABC):
         if self._telling is None:
             self._telling = asyncio.get_running_loop().call_later(_COUNT_PERIOD, tell)
 
-    def _publishers(self, topic: str) -> list[tuple[str, str]]:
-        """Node and type of all publishers of a topic but this viewer's own, which are its tools."""
-        node = self.context.node
-        found = node.get_publishers_info_by_topic(topic)
-        return [(each.node_name, each.topic_type) for each in found if each.node_name != node.get_name()]
-
     def _silence(self) -> Phrase:
         """The reason why nothing is received, as far as the graph knows, and topics that have such messages."""
         message, topic, _ = self.subscription()
-        publishers = self._publishers(topic)
+        publishers = self.context.published.publishers(topic)
         types = {topic_type for _, topic_type in publishers}
         if types and message not in types:
             return phrase("the topic carries {types}, not {message}", types=joined(sorted(types)), message=message)
         if publishers:
             return phrase("nothing came yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
-        names = (name for name, found in self.context.node.get_topic_names_and_types() if message in found)
-        there = sorted(name for name in names if self._publishers(name))
-        from difflib import SequenceMatcher  # here, because most topics are there
-
-        there = sorted(there, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[:_MOST_OTHERS]
+        there = self.context.published.of_type(message)
         if there:
+            from difflib import SequenceMatcher  # here, because most topics are there
+
+            there = sorted(there, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[:_MOST_OTHERS]
             return phrase(
                 "nobody publishes the topic; there is {message} on {topics}", message=message, topics=joined(there)
             )

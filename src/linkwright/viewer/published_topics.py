@@ -1,0 +1,69 @@
+"""The topics that others publish, looked up once for all displays until the graph changes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwright.graph.introspection.answers import UNKNOWN_NODE
+
+if TYPE_CHECKING:
+    from linkwright.graph import Node
+
+
+class PublishedTopics:
+    """What the nodes of a graph publish, but for one of them: a viewer, whose publishers are its tools.
+
+    Displays without messages look every second why there are none, and a configuration has hundreds of them.
+
+    Args:
+        node: the viewer's node.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._is_current = False
+        self._watches = False
+        self._publishers: dict[str, list[tuple[str, str]]] = {}
+        self._topics: dict[str, list[str]] = {}
+
+    def publishers(self, topic: str) -> list[tuple[str, str]]:
+        """Node and type of each publisher of a topic, named as the viewer's node names it.
+
+        Raises:
+            InvalidTopicNameError: the name is not valid.
+        """
+        name = self._node.resolve_topic_name(topic)
+        self._look()
+        return self._publishers.get(name, [])
+
+    def of_type(self, message: str) -> list[str]:
+        """The topics that carry messages of a type, sorted."""
+        self._look()
+        return self._topics.get(message, [])
+
+    def close(self) -> None:
+        """Stop listening to the graph."""
+        if self._watches:
+            self._node.graph.unwatch(self._changed)
+            self._watches = False
+
+    def _changed(self) -> None:
+        self._is_current = False
+
+    def _look(self) -> None:
+        if not self._watches:
+            self._watches = True
+            self._node.graph.watch(self._changed)
+        if self._is_current:
+            return
+        self._is_current = True  # first: what changes while it looks is looked at the next time
+        publishers: dict[str, list[tuple[str, str]]] = {}
+        topics: dict[str, set[str]] = {}
+        own = self._node.get_name()
+        for each in self._node.graph.publishers():
+            node = (each.node or UNKNOWN_NODE).name
+            if node != own:
+                publishers.setdefault(each.name, []).append((node, each.type_name))
+                topics.setdefault(each.type_name, set()).add(each.name)
+        self._publishers = publishers
+        self._topics = {message: sorted(names) for message, names in topics.items()}
