@@ -130,5 +130,5 @@ def test_a_linter_that_is_not_installed_skips_its_test_and_says_what_to_install(
     status, said = plain_pytest(package, PYTHONPATH=hidden)
     assert status == 0, said
     assert "3 skipped" in said
-    assert "-m pip install flake8" in said
-    assert "-m pip install pydocstyle" in said
+    assert "flake8 is not installed beside pytest" in said
+    assert "pydocstyle is not installed beside pytest" in said

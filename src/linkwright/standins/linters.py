@@ -1,7 +1,7 @@
 """The linters that the tests of a new Python package call: ``ament_flake8``, ``ament_pep257`` and ``ament_copyright``.
 
 The first two run flake8 and pydocstyle with the settings of ``ament_lint``. Where the program is not installed, the
-test that needs it is skipped, with a reason that says what to install.
+test that needs it is skipped, with a reason that names the program.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def _run(module: str, settings: Sequence[str], files: Sequence[Path]) -> tuple[i
     if not files:
         return 0, []
     if find_spec(module) is None:
-        _skip(f"{module} is not installed; install it: {sys.executable} -m pip install {module}")
+        _skip(f"{module} is not installed beside pytest")
     # The files are the user's own, and the program is one that they installed.
     command = [sys.executable, "-m", module, *settings, *map(str, files)]
     ended = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)  # noqa: S603
