@@ -110,11 +110,12 @@ def _fault_of(session: Session, text: str, scope: Scope) -> Fault | None:
 def check_urdf(text: str) -> None:
     """A robot that is read can be written and read again as the same robot."""
     try:
-        reading = read(parse_as_urdfdom(text, "robot.urdf"))
+        document, warnings = parse_as_urdfdom(text, "robot.urdf")
+        reading = read(document)
     except LinkwrightError as error:
         _check_printable(error)
         return
-    for diagnostic in reading.diagnostics:
+    for diagnostic in (*warnings, *reading.diagnostics):
         assert render(diagnostic)
         assert to_data(diagnostic)["line"]
     robot = reading.robot

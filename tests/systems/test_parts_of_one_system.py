@@ -13,6 +13,7 @@ from tests.systems.sitecustomize import FUNCTIONS, MODULES, SIGNAL_FUNCTIONS, SO
 
 ROOT = Path(linkwright.__file__).parent
 OF_ONE_SYSTEM = {
+    "diagnostics/installation.py": "platform",
     "os": {*FUNCTIONS.split(), "kill", "set_blocking", "startfile"},
     "select": {"epoll", "kqueue", "poll"},
     "signal": {*SIGNAL_FUNCTIONS, "SIGHUP", "SIGKILL", "SIGQUIT", "SIGUSR1", "SIGUSR2"},
@@ -26,7 +27,6 @@ FOLDERS = ("/proc", "/dev/", "/sys/", "/tmp", "/bin/", "/usr/")
 KNOWN: dict[str, str] = {
     "cli/bag/keys.py": "add_reader getpgrp platform remove_reader tcgetpgrp termios tty",
     "cli/completion/graph_names.py": "start_new_session",
-    "cli/view.py": "sysconf",
     "doctor/report.py": "fcntl if_nameindex platform",
     "graph/time/fine_alarms.py": "O_CLOEXEC O_NONBLOCK PyDLL add_reader platform",
     "hosting/viewer_host.py": "platform",
@@ -46,6 +46,7 @@ KNOWN: dict[str, str] = {
     "shell/session.py": "/bin/sh /dev/tty CDLL platform preexec_fn setpgid",
     "simulation/rendering/opengl.py": "platform",
     "sweep/workers.py": "get_context platform pthread_sigmask",
+    "viewer/web/kept_tokens.py": "O_NOFOLLOW O_NONBLOCK getuid",
     "viewer/web/server.py": "O_NONBLOCK",
     "vision/datasets/workers.py": "get_context",
     "wire/background.py": "register_at_fork",

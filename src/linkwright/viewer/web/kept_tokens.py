@@ -85,7 +85,8 @@ def _is_private(facts: os.stat_result) -> bool:
     """Whether nobody but this user can have read or written a file; Windows guards the user's folders itself."""
     if not stat.S_ISREG(facts.st_mode):
         return False
-    return os.name != "posix" or (facts.st_uid == os.getuid() and not facts.st_mode & 0o077)
+    user = getattr(os, "getuid", None)
+    return user is None or (facts.st_uid == user() and not facts.st_mode & 0o077)
 
 
 def _write(port: int, made: float, kept: PortToken) -> None:
