@@ -13,7 +13,6 @@ from tests.systems.sitecustomize import FUNCTIONS, MODULES, SIGNAL_FUNCTIONS, SO
 
 ROOT = Path(linkwright.__file__).parent
 OF_ONE_SYSTEM = {
-    "diagnostics/installation.py": "platform",
     "os": {*FUNCTIONS.split(), "kill", "set_blocking", "startfile"},
     "select": {"epoll", "kqueue", "poll"},
     "signal": {*SIGNAL_FUNCTIONS, "SIGHUP", "SIGKILL", "SIGQUIT", "SIGUSR1", "SIGUSR2"},
@@ -27,6 +26,7 @@ FOLDERS = ("/proc", "/dev/", "/sys/", "/tmp", "/bin/", "/usr/")
 KNOWN: dict[str, str] = {
     "cli/bag/keys.py": "add_reader getpgrp platform remove_reader tcgetpgrp termios tty",
     "cli/completion/graph_names.py": "start_new_session",
+    "diagnostics/installation.py": "platform",
     "doctor/report.py": "fcntl if_nameindex platform",
     "graph/time/fine_alarms.py": "O_CLOEXEC O_NONBLOCK PyDLL add_reader platform",
     "hosting/viewer_host.py": "platform",
