@@ -253,14 +253,19 @@ describe("the connection", () => {
     });
 
     it("asks again, never with the same number, while nobody answers, and at once when it is seen again", async () => {
+      // The real one computes in threads, which the clock of the test does not wait for.
+      const subtle = { importKey: () => Promise.resolve({}), sign: () => Promise.resolve(new ArrayBuffer(32)) };
+      const { crypto } = globalThis;
+      vi.stubGlobal("crypto", { subtle, getRandomValues: (bytes: Uint8Array<ArrayBuffer>) => crypto.getRandomValues(bytes) });
       const { connection, asked } = await comingBack(() => Promise.reject(new Error("nobody")));
       await vi.advanceTimersByTimeAsync(10_000);
-      await vi.waitFor(() => expect(asked.length).toBeGreaterThan(3));
+      expect(asked.length).toBeGreaterThan(3);
       expect(connection.state).toBe("ended");
       expect(new Set(asked).size).toBe(asked.length);
       const before = asked.length;
       connection.hurry();
-      await vi.waitFor(() => expect(asked).toHaveLength(before + 1));
+      await vi.advanceTimersByTimeAsync(0);
+      expect(asked).toHaveLength(before + 1);
     });
   });
 
