@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import os
 import shlex
-import subprocess
-import sys
 
+from linkwright.cli.becoming import become
 from linkwright.cli.view import add_viewer_options
-from linkwright.diagnostics import foreign, phrase
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -52,21 +49,4 @@ def run(arguments: argparse.Namespace) -> int:
         from linkwright.nodes.process import main
 
         return main(arguments.package, arguments.executable, words)
-    return _become([*prefix, *program.command, *words], program.environment)
-
-
-def _become(command: list[str], environment: dict[str, str]) -> int:
-    """Go on as another program."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    try:
-        if os.name == "posix":
-            os.execvpe(command[0], command, environment)  # noqa: S606 - what the user asks to run
-        return subprocess.run(command, env=environment, check=False).returncode  # noqa: S603 - as above
-    except OSError as error:
-        from linkwright.diagnostics import Diagnostic, LinkwrightError
-
-        message = phrase(
-            "'{command}' cannot be run: {strerror}", command=command[0], strerror=foreign(error.strerror or error)
-        )
-        raise LinkwrightError(Diagnostic("CLI110", message)) from error
+    return become([*prefix, *program.command, *words], program.environment)

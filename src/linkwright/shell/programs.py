@@ -22,6 +22,7 @@ PROGRAMS = {
     "urdf_to_graphviz": ("linkwright.cli.tools", "urdf_to_graphviz"),
     "urdf_to_graphiz": ("linkwright.cli.tools", "urdf_to_graphviz"),
     "rviz2": ("linkwright.cli.tools", "rviz2"),
+    "launch_test": ("linkwright.cli.tools", "launch_test"),
     "colcon": ("linkwright.cli.tools", "colcon"),
     "linkwright": ("linkwright", None),
 }

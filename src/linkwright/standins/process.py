@@ -8,6 +8,9 @@ from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
+from linkwright.packages.manifest import MANIFEST, package_name
+from linkwright.standins import table
+
 _STARTUP = Path(__file__).parent / "startup"
 
 _NEEDED = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cyclonedds", "zenoh", "xxhash")
@@ -30,9 +33,12 @@ def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
 
     Returns:
         A copy with ``PYTHONPATH`` led by `standin_path`, and ``LINKWRIGHT_SITE``: the folders of the packages that the
-        stand-ins need, for interpreters that do not have them. Calling it again changes nothing more.
+        stand-ins need, for interpreters that do not have them. Calling it again changes nothing more. Sources of a
+        package that has a stand-in, such as a clone of rclpy in the workspace, are left out unless the user put them
+        there: they are not built, and would hide it.
     """
     result = dict(os.environ if base is None else base)
+    _leave_out_hiding_sources(result)
     _prepend(result, "PYTHONPATH", [standin_path()])
     result["LINKWRIGHT_SITE"] = os.pathsep.join(_site_folders())
     return result
@@ -62,6 +68,19 @@ def _interpreter(variables: Mapping[str, str]) -> str:
         if candidate.exists():
             return str(candidate)
     return sys.executable
+
+
+def _leave_out_hiding_sources(variables: dict[str, str]) -> None:
+    wanted = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    entries = variables.get("PYTHONPATH", "").split(os.pathsep)
+    hiding = [entry for entry in entries if entry and entry not in wanted and _hides_stand_in(Path(entry))]
+    if hiding:
+        variables["PYTHONPATH"] = os.pathsep.join(entry for entry in entries if entry not in hiding)
+
+
+def _hides_stand_in(folder: Path) -> bool:
+    names = {package_name(each) for each in (folder, folder.parent) if (each / MANIFEST).is_file()}
+    return not names.isdisjoint(table.packages()) if names else False
 
 
 def _prepend(variables: dict[str, str], name: str, folders: Sequence[str]) -> None:

@@ -69,6 +69,10 @@ def _rviz2(words: Sequence[str]) -> int:
     return linkwright(["run", "rviz2", "rviz2", *words])
 
 
+def _launch_test(words: Sequence[str]) -> int:
+    return linkwright(["test", *words], program="launch_test")
+
+
 def _colcon(words: Sequence[str]) -> int:
     try:
         from colcon_core.command import main as colcon  # type: ignore[import-untyped]  # it ships no types
@@ -88,6 +92,7 @@ TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "check_urdf": _check_urdf,
     "urdf_to_graphviz": _urdf_to_graphviz,
     "rviz2": _rviz2,
+    "launch_test": _launch_test,
     "colcon": _colcon,
 }
 """Name -> what takes its arguments and gives its exit status."""

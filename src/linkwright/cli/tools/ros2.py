@@ -25,6 +25,7 @@ COMMANDS = (
     "pkg",
     "run",
     "service",
+    "test",
     "topic",
     "wtf",
 )

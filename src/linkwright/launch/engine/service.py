@@ -14,6 +14,7 @@ from linkwright.launch.model import events
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.event_handlers import OnIncludeLaunchDescription
+from linkwright.launch.model.launch_utilities import get_loop
 
 if TYPE_CHECKING:
     from linkwright.launch.engine.session import LaunchSession
@@ -113,7 +114,12 @@ class LaunchService:
         Raises:
             RuntimeError: it runs already, or this is not the main thread.
         """
-        return asyncio.run(self.run_async(shutdown_when_idle=shutdown_when_idle))
+        loop = get_loop()
+        asyncio.set_event_loop(loop)  # and it stays that of the thread, as in ROS
+        try:
+            return loop.run_until_complete(self.run_async(shutdown_when_idle=shutdown_when_idle))
+        finally:
+            _end_tasks(loop)
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
         """`run` as a coroutine, on the running loop."""
@@ -147,6 +153,23 @@ class LaunchService:
                 self.__task = None
                 self.__context.detach()
         return 0 if succeeded else 1
+
+
+def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
+    """Cancel what still runs on a loop that goes on to be used."""
+    if loop.is_running():
+        return
+    left = asyncio.all_tasks(loop)
+    for task in left:
+        task.cancel()
+    loop.run_until_complete(asyncio.gather(*left, return_exceptions=True))
+    loop.run_until_complete(loop.shutdown_asyncgens())
+
+
+class ServiceOfProcesses(LaunchService):
+    """Runs every node as a process, so that tests see its output and its exit status."""
+
+    _isolates_nodes = True
 
 
 def _starting_folders() -> list[Path]:

@@ -10,18 +10,12 @@ from typing import Any
 
 import pytest
 
-from linkwright.launch.engine.service import LaunchService
+from linkwright.launch.engine.service import LaunchService, ServiceOfProcesses
 from linkwright.launch.model.context import LaunchContext
 
 _OPTIONS = "_launch_options"
 _SCOPE = "_launch_scope"
 _SCOPES = ("function", "class", "module", "package", "session")
-
-
-class _ServiceForTests(LaunchService):
-    """Runs every node as a process, so that tests see its output and its exit status."""
-
-    _isolates_nodes = True
 
 
 @dataclass(frozen=True)
@@ -109,7 +103,7 @@ def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
 
 def _launch_service(event_loop: asyncio.AbstractEventLoop) -> Iterator[LaunchService]:  # noqa: ARG001 - outlasts it
     """The service that launches the description."""
-    service = _ServiceForTests()
+    service = ServiceOfProcesses()
     yield service
     finish(service, "when the fixture launch_service ended")
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from linkwright.launch.engine.service import LaunchService
-from linkwright.launch.model.actions.testing import ReadyToTest
+from linkwright.launch.model.actions.testing import ReadyToTest, ready_actions
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.entity import LaunchDescriptionEntity
 from linkwright.standins.launch_pytest_api.fixtures import (
@@ -93,7 +93,7 @@ def _launch(
     service: LaunchService, loop: asyncio.AbstractEventLoop, description: LaunchDescription, options: LaunchOptions
 ) -> None:
     """Begin a launch, and return once its `ReadyToTest` was visited."""
-    actions = list(_ready_actions(description.entities))
+    actions = list(ready_actions(description.entities))
     if len(actions) > 1:
         pytest.fail(f"launch fixture '{options.fixture}': only one ReadyToTest action may be in it", pytrace=False)
     if not actions:
@@ -109,16 +109,6 @@ def _launch(
         waiting.cancel()
         run.result()  # raises what run_async raised
         pytest.fail(f"launch fixture '{options.fixture}': the launch ended before it was ready to test", pytrace=False)
-
-
-def _ready_actions(entities: Iterable[LaunchDescriptionEntity]) -> Iterator[ReadyToTest]:
-    """The `ReadyToTest` actions among entities and all that is inside them."""
-    for entity in entities:
-        if isinstance(entity, ReadyToTest):
-            yield entity
-        yield from _ready_actions(entity.describe_sub_entities())
-        for _, inside in entity.describe_conditional_sub_entities():
-            yield from _ready_actions(inside)
 
 
 # --- the tests ----------------------------------------------------------------------------------------------

@@ -1,31 +1,67 @@
-"""A pytest plugin that brings ``launch_pytest`` to the tests that import it; pytest finds it where the stand-ins are.
+"""A pytest plugin that brings ``launch_pytest`` and ``launch_testing`` to the tests that import them.
 
-It imports nothing else before that, and steps back where the real ``launch_pytest`` is installed.
+pytest finds it where the stand-ins are. It imports nothing else before that, and steps back where the real ones are
+installed.
 """
 
 from __future__ import annotations
 
 import importlib
 import sys
+from importlib.machinery import PathFinder
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
 
 _PLUGIN = "launch_pytest"
+_ITEMS = "launch_testing.pytest.hooks"
+_DESCRIPTION = b"generate_test_description"
+_MARKERS = (
+    "launch(fixture, shutdown=False): a test beside a launch (launch_pytest)",
+    "launch_test: mark of generate_test_description of a file of launch tests (launch_testing)",
+    "rostest: the same for launch_testing_ros",
+)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare launch_testing's option."""
+    if not _is_real("launch_testing"):
+        parser.addoption("--launch-args", action="append", nargs="*", default=[], help="arguments of launch tests")
+
+
+def pytest_addhooks(pluginmanager: pytest.PytestPluginManager) -> None:
+    """Declare launch_testing's hook, which conftest.py files may have."""
+    if not _is_real("launch_testing"):
+        pluginmanager.add_hookspecs(_Hooks)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the marker known, since a module's own markers are looked at while it is imported."""
-    if not config.pluginmanager.has_plugin(_PLUGIN):
-        config.addinivalue_line("markers", "launch(fixture, shutdown=False): a test beside a launch (launch_pytest)")
+    """Make the markers known, since a module's own markers are looked at while it is imported."""
+    for marker in _MARKERS:
+        config.addinivalue_line("markers", marker)
+
+
+class _Hooks:
+    @pytest.hookspec(firstresult=True)
+    def pytest_launch_collect_makemodule(self, path: Path, parent: pytest.Collector, entrypoint: object) -> Any:
+        """Make a collector of the tests of a file."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> Any:
+    """Collect a file whose ``generate_test_description`` is marked as one launch test."""
+    if _is_real("launch_testing") or _DESCRIPTION not in module_path.read_bytes():
+        return None
+    return importlib.import_module(_ITEMS)._collect_marked(module_path, parent)
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makeitem(collector: Any, name: str, obj: object) -> Any:
     """Register the plugin when the first test is collected after ``launch_pytest`` was imported."""
-    module = sys.modules.get(_PLUGIN)
     manager = collector.config.pluginmanager
-    if not str(getattr(module, "__file__", "")).endswith(".txt"):  # not imported, or the real one
+    if not _is_ours(sys.modules.get(_PLUGIN)):
         return None
     if any(manager.has_plugin(each) or manager.is_blocked(each) for each in (_PLUGIN, f"{_PLUGIN}.plugin")):
         return None
@@ -33,3 +69,13 @@ def pytest_pycollect_makeitem(collector: Any, name: str, obj: object) -> Any:
 
     manager.register(plugin, _PLUGIN)
     return plugin.pytest_pycollect_makeitem(collector, name, obj)
+
+
+def _is_ours(module: ModuleType | None) -> bool:
+    return str(getattr(module, "__file__", "")).endswith(".txt")
+
+
+def _is_real(package: str) -> bool:
+    """Whether a package is installed, so that ours is not used."""
+    found = PathFinder.find_spec(package)
+    return found is not None and found.origin is not None and not found.origin.endswith(".txt")

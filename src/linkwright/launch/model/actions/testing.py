@@ -1,25 +1,26 @@
 """Actions of ``launch_testing`` that launch files of tests have in them.
 
-The tests themselves are run by ``launch_testing``; here such a launch file can be launched as any other.
+Such a launch file can be launched as any other. Its tests are run by ``launch_test``; see
+`linkwright.standins.launch_testing_api`.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
+from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
+from linkwright.launch.model.actions.events import EmitEvent
 from linkwright.launch.model.actions.execute import ExecuteProcess
+from linkwright.launch.model.actions.timer import TimerAction
+from linkwright.launch.model.entity import LaunchDescriptionEntity
 from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.substitution import SomeSubstitutionsType
 
 if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
-    from linkwright.launch.model.description import LaunchDescription
-
-F = TypeVar("F", bound=Callable[..., Any])
-
-_WAIT = "import signal, threading; signal.signal(signal.SIGINT, lambda *_: exit(0)); threading.Event().wait()"
 
 
 @expose_action("ready_to_test")
@@ -40,22 +41,80 @@ class ReadyToTest(Action):
             callback()
 
 
-class KeepAliveProc(ExecuteProcess):
-    """A process that does nothing until the launch ends, so that it does not end by itself."""
+def ready_actions(entities: Iterable[LaunchDescriptionEntity]) -> Iterator[ReadyToTest]:
+    """The `ReadyToTest` actions among entities and all that is inside them."""
+    for entity in entities:
+        if isinstance(entity, ReadyToTest):
+            yield entity
+        yield from ready_actions(entity.describe_sub_entities())
+        for _, inside in entity.describe_conditional_sub_entities():
+            yield from ready_actions(inside)
 
-    def __init__(self, **kwargs: Any) -> None:
-        super().__init__(cmd=[sys.executable, "-c", _WAIT], name="keep_alive", **kwargs)
+
+class Test(ExecuteProcess):
+    """A process that is a test.
+
+    Args:
+        timeout: seconds after which it is ended.
+        kill_timeout: accepted for ROS's sake, which does not use it either.
+        kwargs: see `ExecuteProcess`.
+    """
+
+    __test__ = False  # pytest would take it for tests
+
+    def __init__(
+        self,
+        *,
+        timeout: float | SomeSubstitutionsType | None = None,
+        kill_timeout: float | SomeSubstitutionsType = 5.0,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self._timeout = timeout
+        self._timer: TimerAction | None = None
+
+    @property
+    def timeout(self) -> Any:
+        """Seconds after which it is ended, as they were given."""
+        return self._timeout
+
+    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
+        """Start it, and the time that it has."""
+        entities = list(super().execute(context) or ())
+        if self._timeout is not None:
+            end = EmitEvent(event=events.ShutdownProcess(process_matcher=events.matches_action(self)))
+            self._timer = TimerAction(period=self._timeout, actions=[end])
+            entities.append(self._timer)
+        return entities
+
+    def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        """The entities to be visited now that it has ended; its time no longer counts."""
+        if self._timer is not None:
+            self._timer.cancel()
+        return super().exited(event, context)
 
 
-def keep_alive(test_description: F) -> F:
-    """Decorates the function that makes a description: what it makes does not end by itself."""
-    import functools
+class GTest(Test):
+    """A compiled test.
 
-    @functools.wraps(test_description)
-    def wrapper(*args: Any, **kwargs: Any) -> Any:
-        made = test_description(*args, **kwargs)
-        description: LaunchDescription = made[0] if isinstance(made, tuple) else made
-        description.add_action(KeepAliveProc())
-        return made
+    Args:
+        path: the program.
+        kwargs: see `Test`.
+    """
 
-    return wrapper  # type: ignore[return-value]  # wraps gives it the signature of F
+    def __init__(self, *, path: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(cmd=[path], **kwargs)
+        self.path = path
+
+
+class PyTest(Test):
+    """A test that pytest runs.
+
+    Args:
+        path: the file.
+        kwargs: see `Test`.
+    """
+
+    def __init__(self, *, path: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(cmd=[sys.executable, "-m", "pytest", path], **kwargs)
+        self.path = path

@@ -1,0 +1,29 @@
+"""Going on as another program, which then gets the signals and has the exit status."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+
+
+def become(command: list[str], environment: Mapping[str, str]) -> int:
+    """Go on as another program; on Windows, run it and return its exit status.
+
+    Raises:
+        LinkwrightError: CLI110, it cannot be run.
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    try:
+        if os.name == "posix":
+            os.execvpe(command[0], command, environment)  # noqa: S606 - what the user asks to run
+        return subprocess.run(command, env=environment, check=False).returncode  # noqa: S603 - as above
+    except OSError as error:
+        message = phrase(
+            "'{command}' cannot be run: {strerror}", command=command[0], strerror=foreign(error.strerror or error)
+        )
+        raise LinkwrightError(Diagnostic("CLI110", message)) from error

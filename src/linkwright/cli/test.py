@@ -1,0 +1,44 @@
+"""``linkwright test``: run the tests of a file for launch_testing, as ``launch_test`` does."""
+
+from __future__ import annotations
+
+import argparse
+import os
+
+from linkwright.cli.becoming import become
+
+_PROGRAM = "from launch_testing.launch_test import main; main()"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.usage = f"{parser.prog} [options] FILE [NAME:=VALUE ...]"
+    parser.add_argument("file", metavar="FILE", help="a file with generate_test_description and tests")
+    parser.add_argument("words", metavar="NAME:=VALUE", nargs="*", help="arguments of its launch description")
+    parser.add_argument(
+        "-s",
+        "--show-args",
+        "--show-arguments",
+        action="store_true",
+        help="list the arguments of the description and end",
+    )
+    parser.add_argument("--junit-xml", metavar="REPORT", help="write a report for CI servers to a file")
+    parser.add_argument("--package-name", metavar="NAME", help="the package that the report names")
+    parser.add_argument("-v", "--verbose", action="store_true", help="tell in detail what the launcher does")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the tests; returns 0 if all passed. They run in a process of their own, with the stand-ins."""
+    from linkwright.packages import PackageFinder
+    from linkwright.packages.programs.workspace_environment import workspace_environment
+    from linkwright.shell.programs import offer_programs, offer_ros_variables
+    from linkwright.standins import process
+
+    offer_ros_variables(os.environ)
+    offer_programs(os.environ)
+    options = [f"--{name.replace('_', '-')}" for name in ("show_args", "verbose") if getattr(arguments, name)]
+    for name in ("junit_xml", "package_name"):
+        if getattr(arguments, name) is not None:
+            options += [f"--{name.replace('_', '-')}", getattr(arguments, name)]
+    command = process.python_command(["-c", _PROGRAM, arguments.file, *arguments.words, *options])
+    return become(command, process.environment(workspace_environment(PackageFinder(), os.environ)))

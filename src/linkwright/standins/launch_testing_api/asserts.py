@@ -1,0 +1,188 @@
+"""Assertions about what processes wrote and how they ended (``launch_testing.asserts``)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from linkwright.launch.model.actions.execute import ExecuteLocal
+from linkwright.standins.launch_testing_api.processes import ProcessRecords, name_of, resolveProcesses
+from linkwright.standins.launch_testing_api.text import build_text_match
+from linkwright.standins.terminal_color import remove_ansi_escape_sequences
+
+EXIT_OK = 0
+EXIT_SIGINT = 130
+EXIT_SIGQUIT = 131
+EXIT_SIGKILL = 137
+EXIT_SIGSEGV = 139
+EXIT_FORCED = 1
+"""Of a process that a launch on Windows ended."""
+
+_STREAMS = ("stdout", "stderr")
+_LINES_AROUND = 3
+_FINE = (EXIT_OK,) if os.name != "nt" else (EXIT_OK, EXIT_FORCED)
+
+
+def assertExitCodes(
+    proc_info: ProcessRecords,
+    allowable_exit_codes: Sequence[int] = _FINE,
+    process: ExecuteLocal | str | None = None,
+    cmd_args: str | Sequence[str] | None = None,
+    *,
+    strict_proc_matching: bool = True,
+) -> None:
+    """Raise AssertionError unless processes ended with one of some exit codes.
+
+    Args:
+        proc_info: how processes ended.
+        allowable_exit_codes: the codes.
+        process: an action, or a part of the name of a process; None for all processes.
+        cmd_args: arguments of the process, see `resolveProcesses`.
+        strict_proc_matching: whether a name must be that of one process only.
+    """
+    for code in allowable_exit_codes:
+        _check(isinstance(code, int), f"Provided exit code {code} is not an int")
+    for each in resolveProcesses(
+        proc_info, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching
+    ):
+        info = proc_info[each]
+        _check(info.returncode in allowable_exit_codes, f"Proc {info.process_name} exited with code {info.returncode}")
+
+
+def assertInStream(
+    proc_output: ProcessRecords,
+    expected_output: Any,
+    process: ExecuteLocal | str | None,
+    cmd_args: str | Sequence[str] | None = None,
+    *,
+    output_filter: Callable[[str], str] | None = None,
+    strict_proc_matching: bool = True,
+    strip_ansi_escape_sequences: bool = True,
+    stream: str = "stderr",
+) -> None:
+    """Raise AssertionError unless a process wrote something.
+
+    Args:
+        proc_output: what processes wrote.
+        expected_output: a text, a regular expression, or several of them in order.
+        process: an action, or a part of the name of a process; None for any process.
+        cmd_args: arguments of the process, see `resolveProcesses`.
+        output_filter: what is made of the output before it is looked at.
+        strict_proc_matching: whether a name must be that of one process only.
+        strip_ansi_escape_sequences: whether colours are taken out before.
+        stream: ``stdout`` or ``stderr``.
+
+    Raises:
+        ValueError: `output_filter` cannot be called, or there is no such stream.
+        NoMatchingProcessException: no such process wrote anything.
+    """
+    found = resolveProcesses(proc_output, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching)
+    if output_filter is not None and not callable(output_filter):
+        raise ValueError("output_filter is not callable")
+    if stream not in _STREAMS:
+        raise ValueError("Invalid value for stream; must be 'stdout' or 'stderr'")
+    match = build_text_match(expected_output)
+    for each in found:
+        written = text_of(proc_output[each], stream)
+        if strip_ansi_escape_sequences:
+            written = remove_ansi_escape_sequences(written)
+        if match(written if output_filter is None else output_filter(written)) is not None:
+            return
+    names = ", ".join(sorted(map(name_of, found)))
+    raise AssertionError(f"Did not find '{expected_output}' in output for any of the matching processes: {names}")
+
+
+def assertInStdout(
+    proc_output: ProcessRecords,
+    expected_output: Any,
+    process: ExecuteLocal | str | None,
+    cmd_args: str | Sequence[str] | None = None,
+    **kwargs: Any,
+) -> None:
+    """`assertInStream` for standard output."""
+    assertInStream(proc_output, expected_output, process, cmd_args, stream="stdout", **kwargs)
+
+
+def assertInStderr(
+    proc_output: ProcessRecords,
+    expected_output: Any,
+    process: ExecuteLocal | str | None,
+    cmd_args: str | Sequence[str] | None = None,
+    **kwargs: Any,
+) -> None:
+    """`assertInStream` for standard error."""
+    assertInStream(proc_output, expected_output, process, cmd_args, stream="stderr", **kwargs)
+
+
+def assertDefaultStream() -> str:
+    """Return the stream that `assertInStream` looks at by default."""
+    return "stderr"
+
+
+def text_of(written: Sequence[Any], stream: str | None = None) -> str:
+    """Return what a process wrote to a stream, or to both, as one text."""
+    kept = (each for each in written if stream is None or getattr(each, f"from_{stream}"))
+    return b"".join(each.text for each in kept).decode(errors="replace")
+
+
+@contextmanager
+def assertSequentialStdout(
+    proc_output: ProcessRecords, process: ExecuteLocal | str, cmd_args: str | Sequence[str] | None = None
+) -> Iterator[SequentialTextChecker]:
+    """Give what looks for texts in the output of one process, each after the one before it.
+
+    Args:
+        proc_output: what processes wrote.
+        process: an action, or a part of the name of a process.
+        cmd_args: arguments of the process, see `resolveProcesses`.
+    """
+    (found,) = resolveProcesses(proc_output, process=process, cmd_args=cmd_args)
+    yield SequentialTextChecker([text_of([each]) for each in proc_output[found]])
+
+
+class SequentialTextChecker:
+    """Looks for texts, each after the one before it.
+
+    Args:
+        output: what was written, in pieces; a text is looked for in single pieces.
+    """
+
+    def __init__(self, output: Sequence[str]) -> None:
+        self._output = list(output)
+        self._piece = 0
+        self._offset = 0
+
+    def assertInText(self, msg: str) -> None:
+        """Raise AssertionError unless the text comes after what was found before."""
+        offset = self._offset
+        for piece in range(self._piece, len(self._output)):
+            at = self._output[piece].find(msg, offset)
+            if at >= 0:
+                self._piece, self._offset = piece, at + len(msg)
+                return
+            offset = 0
+        raise AssertionError(
+            f"'{msg}' not found in sequence after previous match.  "
+            f"The output near the last matched line:\n{self.get_nearby_lines()}"
+        )
+
+    assertInStdout = assertInText
+
+    def get_nearby_lines(self) -> str:
+        """Return the lines around what was found last: it, two before it and two after it."""
+        text = "".join(self._output)
+        at = sum(map(len, self._output[: self._piece])) + self._offset
+        begin = at
+        for _ in range(_LINES_AROUND):
+            begin = max(text.rfind("\n", 0, begin), 0)
+        end = at
+        for _ in range(_LINES_AROUND):
+            end = max(text.find("\n", end + 1), end)
+        return text[begin + 1 if begin else 0 : end]
+
+
+def _check(holds: bool, message: str) -> None:
+    if not holds:
+        raise AssertionError(message)

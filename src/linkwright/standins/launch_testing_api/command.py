@@ -1,0 +1,99 @@
+"""The command ``launch_test``: run the tests of a file beside their launch (``launch_testing.launch_test``)."""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from linkwright.launch.arguments import argument_listing
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.launch.ros2launch_api import parse_launch_arguments
+from linkwright.standins.launch_testing_api.results import unittestResultsToXml
+from linkwright.standins.launch_testing_api.runner import LaunchTestRunner
+from linkwright.standins.launch_testing_api.test_runs import LoadTestsFromPythonModule
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument("launch_test_file", help="the file with generate_test_description and tests")
+    parser.add_argument("--package-name", help="the package that the tests belong to, for the report")
+    parser.add_argument("-v", "--verbose", action="store_true", help="tell in detail what the launcher does")
+    parser.add_argument(
+        "-s",
+        "--show-args",
+        "--show-arguments",
+        action="store_true",
+        help="list the arguments of the description and end",
+    )
+    parser.add_argument("launch_arguments", nargs="*", metavar="NAME:=VALUE", help="arguments of the description")
+    parser.add_argument("--junit-xml", dest="xmlpath", metavar="FILE", help="write a report for CI servers to a file")
+
+
+def parse_arguments() -> tuple[argparse.ArgumentParser, argparse.Namespace]:
+    """Return the parser of the command, and what it made of ``sys.argv``."""
+    parser = argparse.ArgumentParser(prog="launch_test", description="Run the tests of a file beside their launch.")
+    add_arguments(parser)
+    return parser, parser.parse_args()
+
+
+def run(
+    parser: argparse.ArgumentParser,
+    args: argparse.Namespace,
+    test_runner_cls: type[LaunchTestRunner] = LaunchTestRunner,
+) -> int:
+    """Run the tests of a file.
+
+    Args:
+        parser: tells what is wrong with the arguments.
+        args: what `add_arguments` declares.
+        test_runner_cls: runs the tests.
+
+    Returns:
+        0 if all tests passed, 1 if not.
+    """
+    path = Path(args.launch_test_file).absolute()
+    if not path.is_file():
+        parser.error(f"Test file '{args.launch_test_file}' does not exist")
+    package = args.package_name or path.stem
+    module = _loaded(package, path)
+    if not hasattr(module, "generate_test_description"):
+        parser.error(f"Test file '{args.launch_test_file}' has no function generate_test_description")
+    runs = LoadTestsFromPythonModule(module, name=f"{package}.{path.stem}.launch_tests")
+    runner = test_runner_cls(test_runs=runs, launch_file_arguments=args.launch_arguments, debug=args.verbose)
+    try:
+        parse_launch_arguments(args.launch_arguments)
+        runner.validate()
+    except Exception as error:  # noqa: BLE001 - launch_testing raises no class of its own
+        parser.error(str(error))
+    if args.show_args:
+        print_arguments_of_launch_description(launch_description=runs[0].get_launch_description())
+        return 0
+    results: dict[Any, Any] = runner.run()
+    if args.xmlpath:
+        report = unittestResultsToXml(name=f"{package}.{path.stem}", test_results=results)
+        report.write(args.xmlpath, encoding="utf-8", xml_declaration=True)
+    return 0 if all(result.wasSuccessful() for result in results.values()) else 1
+
+
+def print_arguments_of_launch_description(*, launch_description: LaunchDescription) -> None:
+    """Print the arguments of a description."""
+    print(argument_listing(launch_description))
+
+
+def main() -> None:
+    """Run the command, and end with its exit status: 0 or 1, 2 for wrong usage."""
+    parser, args = parse_arguments()
+    sys.exit(run(parser, args))
+
+
+def _loaded(name: str, path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"'{path}' is no Python file", path=str(path))
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

@@ -1,0 +1,147 @@
+"""What marks the functions and classes of a launch test (``launch_testing``'s decorators)."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import threading
+import time
+import unittest
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, TypeVar
+
+F = TypeVar("F", bound=Callable[..., Any])
+C = TypeVar("C")
+
+PARAMETRIZED = "__parametrized__"
+MARKERS = "__markers__"
+AFTER_SHUTDOWN = "__post_shutdown_test__"
+TIMEOUT = "__ready_to_test_action_timeout__"
+
+
+def parametrize(argnames: str, argvalues: Iterable[Any]) -> Callable[[Callable[..., Any]], Callable[[], Any]]:
+    """Decorate ``generate_test_description`` so that it is launched for several values of its arguments.
+
+    Args:
+        argnames: the names of the arguments, with commas between them.
+        argvalues: a value for each launch; a tuple of them for several arguments.
+    """
+    names = [name.strip() for name in argnames.split(",") if name.strip()]
+    values = [each if isinstance(each, tuple) else (each,) for each in argvalues]
+
+    def decorate(function: Callable[..., Any]) -> Callable[[], Any]:
+        @functools.wraps(function)
+        def descriptions() -> Iterator[tuple[Callable[..., Any], dict[str, Any]]]:
+            for each in values:
+                given = dict(zip(names, each, strict=False))
+                made = functools.partial(function, **given)
+                functools.update_wrapper(made, function)
+                yield made, given
+
+        setattr(descriptions, PARAMETRIZED, True)
+        return descriptions
+
+    return decorate
+
+
+def post_shutdown_test() -> Callable[[type[C]], type[C]]:
+    """Decorate a class of tests that run once the launch has ended; TypeError for what is no class."""
+
+    def decorate(test_item: type[C]) -> type[C]:
+        if not isinstance(test_item, type):
+            raise TypeError("postcondition_test should decorate test classes")
+        setattr(test_item, AFTER_SHUTDOWN, True)
+        return test_item
+
+    return decorate
+
+
+def ready_to_test_action_timeout(timeout: float) -> Callable[[F], F]:
+    """Decorate ``generate_test_description``: how many seconds are waited for its `ReadyToTest`."""
+
+    def decorate(function: F) -> F:
+        setattr(function, TIMEOUT, timeout)
+        return function
+
+    return decorate
+
+
+def keep_alive(test_description: F) -> F:
+    """Decorate ``generate_test_description``: the launch goes on when no process runs any more, until the tests end."""
+    if not hasattr(test_description, MARKERS):
+        setattr(test_description, MARKERS, {})
+    getattr(test_description, MARKERS)["keep_alive"] = True
+    return test_description
+
+
+def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[F], F]:
+    """Decorate a test that is tried again where an assertion fails.
+
+    Args:
+        times: how often it is tried.
+        delay: seconds between two tries.
+    """
+    if times <= 0:
+        raise AssertionError("times must be positive")
+
+    def decorate(test: F) -> F:
+        if next(iter(inspect.signature(test).parameters), None) != "self":
+            raise AssertionError("retry_on_failure decorates methods of tests")
+
+        @functools.wraps(test)
+        def tried(self: Any, *args: Any, **kwargs: Any) -> Any:
+            for _ in range(times - 1):
+                try:
+                    result = test(self, *args, **kwargs)
+                    if not isinstance(self, unittest.TestCase) or _has_passed(self):
+                        return result
+                except AssertionError:
+                    pass
+                _forget_failures(self)
+                if delay is not None:
+                    time.sleep(delay)
+            return test(self, *args, **kwargs)
+
+        return tried  # type: ignore[return-value]  # wraps gives it the signature of F
+
+    return decorate
+
+
+def _has_passed(test: Any) -> bool:
+    """Whether no subtest of a test has failed; unittest keeps that to itself."""
+    outcome = test._outcome
+    return outcome is None or bool(outcome.success)
+
+
+def _forget_failures(test: Any) -> None:
+    outcome = getattr(test, "_outcome", None)
+    if outcome is None:
+        return
+    if hasattr(outcome, "errors"):  # before Python 3.11
+        outcome.errors.clear()
+    elif outcome.result is not None:
+        outcome.result.errors.clear()
+        outcome.result.failures.clear()
+    outcome.success = True
+
+
+class ReadyAggregator:
+    """Calls a function once its own has been called so many times.
+
+    Args:
+        ready_fn: what is called.
+        num_to_aggregate: how many calls it takes.
+    """
+
+    def __init__(self, ready_fn: Callable[[], object], num_to_aggregate: int) -> None:
+        self._ready = ready_fn
+        self._missing = num_to_aggregate
+        self._lock = threading.Lock()
+
+    def ready_fn(self) -> None:
+        """Count a call; may be called from any thread."""
+        with self._lock:
+            self._missing -= 1
+            is_last = self._missing == 0
+        if is_last:
+            self._ready()

@@ -1,0 +1,109 @@
+"""Which processes of a launch a test means (``launch_testing.util``)."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Collection, Iterable, Sequence
+from typing import Any, Protocol
+
+from linkwright.launch.model.actions.execute import ExecuteLocal, ExecuteProcess
+from linkwright.launch.model.substitution import Substitution, TextSubstitution
+
+NO_CMD_ARGS: Any = object()
+"""Stands for a command without arguments, where arguments are asked for."""
+
+_WAIT = "import signal, threading; signal.signal(signal.SIGINT, lambda *_: exit(0)); threading.Event().wait()"
+
+
+class NoMatchingProcessException(Exception):
+    """No process is the one that was asked for."""
+
+
+class ProcessRecords(Protocol):
+    """What was recorded of processes."""
+
+    def processes(self) -> Collection[ExecuteLocal]:
+        """The actions of the processes."""
+
+    def __getitem__(self, key: Any) -> Any:
+        """What was recorded of one."""
+
+
+def KeepAliveProc() -> ExecuteProcess:
+    """Return a process that does nothing until the launch ends, so that the launch does not end before the tests."""
+    return ExecuteProcess(cmd=[sys.executable, "-c", _WAIT])
+
+
+def resolveProcesses(
+    info_obj: ProcessRecords,
+    *,
+    process: ExecuteLocal | str | None = None,
+    cmd_args: str | Sequence[str] | None = None,
+    strict_proc_matching: bool = True,
+) -> list[ExecuteLocal]:
+    """Return the actions of the processes that are meant, at least one.
+
+    Args:
+        info_obj: what was recorded.
+        process: an action, or a part of the name of a process; None for all processes.
+        cmd_args: arguments that the command has, beside a name; `NO_CMD_ARGS` for a command without any.
+        strict_proc_matching: whether a name must be that of one process only.
+
+    Raises:
+        NoMatchingProcessException: there is none.
+        Exception: there are several with the name.
+        TypeError: `process` is something else.
+    """
+    known = list(info_obj.processes())
+    if process is None:
+        if not known:
+            raise NoMatchingProcessException("No data recorded for any process")
+        return known
+    if isinstance(process, ExecuteLocal):
+        if process not in known:
+            raise NoMatchingProcessException(f"No data recorded for proc {_called(process)}")
+        return [process]
+    if not isinstance(process, str):
+        raise TypeError(f"proc argument must be 'ExecuteProcess' or 'str' not {type(process)}")
+    words = [cmd_args] if isinstance(cmd_args, str) else cmd_args
+    found = [each for each in known if process in name_of(each) and _has_words(each, words)]
+    if found and not (strict_proc_matching and len(found) > 1):
+        return found
+    names = ", ".join(sorted(map(_called, known)))
+    if not found:
+        raise NoMatchingProcessException(
+            f"Did not find any processes matching name '{process}' and args '{words}'. Procs: {names}"
+        )
+    raise Exception(  # noqa: TRY002 - launch_testing raises it
+        f"Found multiple processes matching name '{process}' and cmd_args '{words}'. Procs: {names}"
+    )
+
+
+def name_of(action: ExecuteLocal) -> str:
+    """Return the name of a process in the log; an empty text before it has started."""
+    return str((action.process_details or {}).get("name") or action.process_description.final_name or "")
+
+
+def _has_words(action: ExecuteLocal, words: Sequence[str] | None) -> bool:
+    command = (action.process_details or {}).get("cmd", [])
+    if words is None:
+        return True
+    if words is NO_CMD_ARGS:
+        return len(command) == 1
+    return all(word in command[1:] for word in words)
+
+
+def _called(action: ExecuteLocal) -> str:
+    """Name and arguments of a process, for messages."""
+    details = action.process_details
+    if details:
+        return " ".join([details["name"], *details["cmd"][1:]])
+    words = [_plain(parts) for parts in action.process_description.cmd]
+    known = [word for word in words if word is not None]
+    return " ".join(known) if len(known) == len(words) else "Unknown - Process not launched yet"
+
+
+def _plain(parts: Iterable[Substitution]) -> str | None:
+    """A word of a command; None where only the launch knows it."""
+    texts = [part.text for part in parts if isinstance(part, TextSubstitution)]
+    return "".join(texts) if len(texts) == len(list(parts)) else None

@@ -1,0 +1,173 @@
+"""One process of a launch, as a test sees it (``launch_testing.tools.process``)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from linkwright.launch.engine.service import LaunchService
+from linkwright.launch.model import events
+from linkwright.launch.model.actions.execute import ExecuteProcess
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.standins.launch_testing_api.asserts import text_of
+from linkwright.standins.launch_testing_api.records import ActiveIoHandler, ActiveProcInfoHandler
+
+
+class Outcome:
+    """Whether a wait was successful, and what had been written by then.
+
+    Args:
+        is_true: whether it was.
+        output: the text.
+    """
+
+    def __init__(self, is_true: bool, output: str | None) -> None:
+        self._is_true = is_true
+        self._output = output
+
+    def __bool__(self) -> bool:
+        return self._is_true
+
+    def __repr__(self) -> str:
+        return f"<{self._is_true}: {self._output!r}>"
+
+
+class ProcessProxy:
+    """A process: whether it runs, what it wrote, how it ended.
+
+    Args:
+        process_action: the action that starts it.
+        proc_info: how processes are.
+        proc_output: what processes wrote.
+        output_filter: what is made of the output before it is looked at.
+
+    Raises:
+        TypeError: an argument is something else.
+    """
+
+    def __init__(
+        self,
+        process_action: ExecuteProcess,
+        proc_info: ActiveProcInfoHandler,
+        proc_output: ActiveIoHandler,
+        *,
+        output_filter: Callable[[str], str] | None = None,
+    ) -> None:
+        _check_type(process_action, ExecuteProcess, "process_action")
+        _check_type(proc_info, ActiveProcInfoHandler, "proc_info")
+        _check_type(proc_output, ActiveIoHandler, "proc_output")
+        _check_callable(output_filter, "output_filter")
+        self._process_action = process_action
+        self._proc_info = proc_info
+        self._proc_output = proc_output
+        self._output_filter = output_filter
+
+    @property
+    def target_process_action(self) -> ExecuteProcess:
+        """The action that starts it."""
+        return self._process_action
+
+    @property
+    def stdout(self) -> str:
+        """What it wrote to standard output."""
+        return self._text("stdout")
+
+    @property
+    def stderr(self) -> str:
+        """What it wrote to standard error."""
+        return self._text("stderr")
+
+    @property
+    def output(self) -> str:
+        """What it wrote to both, in the order in which it came."""
+        return self._text(None)
+
+    @property
+    def running(self) -> bool:
+        """Whether it has started and not ended."""
+        return isinstance(self._event, events.ProcessStarted)
+
+    @property
+    def terminated(self) -> bool:
+        """Whether it has ended."""
+        return isinstance(self._event, events.ProcessExited)
+
+    @property
+    def exit_code(self) -> int:
+        """How it ended."""
+        code: int = self._proc_info[self._process_action].returncode
+        return code
+
+    def wait_for_shutdown(self, timeout: float | None = None) -> bool:
+        """Wait until it has ended, and return whether it did in time (seconds; None to wait without end)."""
+        with self._proc_info.proc_event:
+            return self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout=timeout)
+
+    def wait_for_output(self, condition: Callable[[str], Any] | None = None, timeout: float | None = None) -> Outcome:
+        """Wait until it has written something, and return whether it did in time.
+
+        Args:
+            condition: what has to be true of all that it wrote; any output will do without one.
+            timeout: seconds; None to wait without end.
+        """
+        _check_callable(condition, "condition")
+        written: str | None = None
+
+        def is_there() -> bool:
+            nonlocal written
+            if not self.running:
+                return False
+            written = self.output
+            return condition is None or bool(condition(written))
+
+        with self._proc_output.io_event:
+            found = self._proc_output.io_event.wait_for(is_there, timeout=timeout)
+            return Outcome(found, written)
+
+    @property
+    def _event(self) -> object:
+        known = self._proc_info.processes()
+        return self._proc_info[self._process_action] if self._process_action in known else None
+
+    def _text(self, stream: str | None) -> str:
+        text = text_of(self._proc_output[self._process_action], stream)
+        return text if self._output_filter is None else self._output_filter(text)
+
+
+@contextmanager
+def launch_process(
+    launch_service: LaunchService,
+    process_action: ExecuteProcess,
+    proc_info: ActiveProcInfoHandler,
+    proc_output: ActiveIoHandler,
+    **kwargs: Any,
+) -> Iterator[ProcessProxy]:
+    """Start a process in a launch that runs, and end it afterwards where it still runs.
+
+    Args:
+        launch_service: runs the launch.
+        process_action: the action that starts it.
+        proc_info: how processes are.
+        proc_output: what processes wrote.
+        kwargs: for `ProcessProxy`.
+    """
+    _check_type(process_action, ExecuteProcess, "process_action")
+    launch_service.include_launch_description(LaunchDescription([process_action]))
+    process = ProcessProxy(process_action, proc_info, proc_output, **kwargs)
+    try:
+        yield process
+    finally:
+        if not process.terminated:
+            matcher = events.matches_action(process_action)
+            launch_service.emit_event(events.ShutdownProcess(process_matcher=matcher))
+
+
+def _check_type(value: object, kind: type, name: str) -> None:
+    if not isinstance(value, kind):
+        raise TypeError(f"'{name}' must be of type {kind.__name__}, not {type(value).__name__}")
+
+
+def _check_callable(value: object, name: str) -> None:
+    if value is not None and not callable(value):
+        raise TypeError(f"Expected '{name}' to be callable but got '{value!r}'")

@@ -1,0 +1,129 @@
+"""The pytest plugin of ``launch_testing``: a marked file of launch tests is one test of pytest.
+
+The mark is one of ``generate_test_description``: ``@pytest.mark.launch_test``, or ``rostest`` of launch_testing_ros.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.standins.launch_testing_api.runner import LaunchTestRunner
+from linkwright.standins.launch_testing_api.test_runs import LoadTestsFromPythonModule, TestRun
+
+
+@pytest.hookspec(firstresult=True)
+def pytest_launch_collect_makemodule(path: Path, parent: pytest.Collector, entrypoint: object) -> object:
+    """Make a collector of the tests in a file with ``generate_test_description``, for plugins that have their own."""
+
+
+MARKS = ("launch_test", "rostest")
+
+
+class LaunchTestFailure(Exception):
+    """Tests of a launch have failed.
+
+    Attributes:
+        message: that they have.
+        results: launch -> results of its tests.
+    """
+
+    def __init__(self, message: str, results: dict[TestRun, Any]) -> None:
+        super().__init__(message)
+        self.message = message
+        self.results = results
+
+    @property
+    def report(self) -> str:
+        """What each test that failed says."""
+        parts = []
+        for result in self.results.values():
+            for case, text in (*result.errors, *result.failures):
+                name = case.id() if hasattr(case, "id") else str(case)
+                line = "=" * max(len(name) + 6, 3)
+                parts.append(f"{line}\nFAIL: {name}\n{'-' * len(line)}\n{text}")
+        return "\n".join(parts)
+
+
+class LaunchTestItem(pytest.Item):
+    """All tests of a file, with their launches.
+
+    Attributes:
+        load: makes the tests anew, for plugins that run a test several times.
+        runner_cls: runs them.
+    """
+
+    load: Callable[[], list[TestRun]]
+    runner_cls: type[LaunchTestRunner]
+
+    @classmethod
+    def from_parent(  # type: ignore[override]  # pytest's own way for items with more arguments
+        cls,
+        parent: pytest.Collector,
+        *,
+        name: str,
+        load: Callable[[], list[TestRun]],
+        runner_cls: type[LaunchTestRunner] = LaunchTestRunner,
+    ) -> LaunchTestItem:
+        """Make it, as pytest wants it."""
+        made: LaunchTestItem = super().from_parent(parent, name=name)
+        made.load, made.runner_cls = load, runner_cls
+        return made
+
+    def runtest(self) -> None:
+        """Run it.
+
+        Raises:
+            LaunchTestFailure: a test has failed.
+        """
+        words = [word for words in self.config.getoption("--launch-args") for word in words]
+        runner = self.runner_cls(self.load(), words, debug=self.config.get_verbosity() > 1)
+        runner.validate()
+        results = runner.run()
+        if not all(result.wasSuccessful() for result in results.values()):
+            raise LaunchTestFailure("some test cases have failed", results)
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], *args: Any, **kwargs: Any) -> Any:
+        """What is printed of a failure: what the tests say."""
+        if isinstance(excinfo.value, LaunchTestFailure):
+            return excinfo.value.report
+        return super().repr_failure(excinfo, *args, **kwargs)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Where it is, and what it is called."""
+        return self.path, 0, f"launch tests: {self.name}"
+
+
+class LaunchTestModule(pytest.File):
+    """A file of launch tests."""
+
+    module: Any
+
+    def makeitem(self, *args: Any, **kwargs: Any) -> LaunchTestItem:
+        """Make the test of the file."""
+        return LaunchTestItem.from_parent(*args, **kwargs)
+
+    def collect(self) -> Iterator[LaunchTestItem]:
+        """Give the one test of the file."""
+        name = self.module.__name__
+        yield self.makeitem(name=name, parent=self, load=lambda: LoadTestsFromPythonModule(self.module, name=name))
+
+
+def collect_marked(path: Path, parent: pytest.Collector) -> LaunchTestModule | None:
+    """Return the launch tests of a file; None where it has none that are marked, or cannot be imported."""
+    usual = pytest.Module.from_parent(parent, path=path)
+    try:
+        module = usual.obj
+    except (usual.CollectError, pytest.skip.Exception):
+        return None  # pytest tells when it collects the file
+    marks = list(getattr(getattr(module, "generate_test_description", None), "pytestmark", ()))
+    if not any(mark.name in MARKS for mark in marks):
+        return None
+    made = LaunchTestModule.from_parent(parent, path=path)
+    made.module = module
+    for mark in marks:
+        made.add_marker(getattr(pytest.mark, mark.name).with_args(*mark.args, **mark.kwargs))
+    return made

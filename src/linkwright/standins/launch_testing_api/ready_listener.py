@@ -1,0 +1,30 @@
+"""An event handler that reacts to a text of a process (``launch_testing.event_handlers``)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.launch.model import events
+from linkwright.launch.model.process_event_handlers import OnProcessIO
+
+
+class StdoutReadyListener(OnProcessIO):
+    """Visits actions when a process writes a text to standard output.
+
+    Args:
+        target_action: the action whose process is meant; all by default.
+        ready_txt: the text.
+        actions: what is visited then.
+    """
+
+    def __init__(self, *, target_action: Any = None, ready_txt: str, actions: Any) -> None:
+        self._actions = actions
+
+        def react(event: events.ProcessIO) -> Any:
+            return actions if ready_txt in event.text.decode(errors="replace") else None
+
+        super().__init__(target_action=target_action, on_stdout=react)
+
+    def describe(self) -> tuple[str, Any]:
+        """What it is, and the actions."""
+        return super().describe()[0], self._actions

@@ -1,0 +1,255 @@
+"""What processes of a launch wrote and how they ended, kept for tests (``launch_testing``'s handlers).
+
+The active handlers are for tests that run beside the launch: they can be waited on. The plain ones inside them are for
+tests that run after it.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from linkwright.launch.model import events
+from linkwright.launch.model.actions.execute import ExecuteLocal
+from linkwright.standins.launch_testing_api.asserts import assertInStream
+from linkwright.standins.launch_testing_api.processes import NoMatchingProcessException, name_of, resolveProcesses
+
+
+class IoHandler:
+    """What processes wrote, in the order in which it came."""
+
+    def __init__(self) -> None:
+        self._all: list[events.ProcessIO] = []
+        self._by_name: dict[str, list[events.ProcessIO]] = {}
+
+    def track(self, process_name: str) -> None:
+        """Note a process that may write nothing."""
+        self._by_name.setdefault(process_name, [])
+
+    def append(self, process_io: events.ProcessIO) -> None:
+        """Note what a process wrote."""
+        self._all.append(process_io)
+        self._by_name.setdefault(process_io.process_name, []).append(process_io)
+
+    def __iter__(self) -> Iterator[events.ProcessIO]:
+        return iter(self._all)
+
+    def processes(self) -> list[Any]:
+        """Return the actions of the processes that wrote something."""
+        return [written[0].action for written in self._by_name.values() if written]
+
+    def process_names(self) -> list[str]:
+        """Return the names of all processes."""
+        return list(self._by_name)
+
+    def __getitem__(self, key: str | ExecuteLocal) -> list[events.ProcessIO]:
+        """Return what a process wrote, by its name or its action; KeyError where it is not known."""
+        return list(self._by_name[key if isinstance(key, str) else name_of(key)])
+
+
+class ProcInfoHandler:
+    """The last event of each process: that it started, or that it ended."""
+
+    def __init__(self) -> None:
+        self._by_action: dict[Any, events.RunningProcessEvent] = {}
+
+    def append(self, process_info: events.RunningProcessEvent) -> None:
+        """Note an event."""
+        self._by_action[process_info.action] = process_info
+
+    def __iter__(self) -> Iterator[events.RunningProcessEvent]:
+        return iter(list(self._by_action.values()))
+
+    def processes(self) -> list[Any]:
+        """Return the actions of all processes."""
+        return list(self._by_action)
+
+    def process_names(self) -> list[str]:
+        """Return the names of all processes."""
+        return [name_of(action) for action in self._by_action]
+
+    def __getitem__(self, key: str | ExecuteLocal) -> Any:
+        """Return the event of a process, by a part of its name or its action; KeyError where it is not known."""
+        if not isinstance(key, str):
+            return self._by_action[key]
+        for action, event in self._by_action.items():
+            if key in name_of(action):
+                return event
+        raise KeyError(key)
+
+
+class ActiveIoHandler:
+    """What processes wrote so far, to be waited on.
+
+    Attributes:
+        io_event: notified when a process has written something.
+    """
+
+    def __init__(self) -> None:
+        self.io_event = threading.Condition()
+        self._io_handler = IoHandler()
+
+    def track(self, process_name: str) -> None:
+        """Note a process that may write nothing."""
+        with self.io_event:
+            self._io_handler.track(process_name)
+            self.io_event.notify_all()
+
+    def append(self, process_io: events.ProcessIO) -> None:
+        """Note what a process wrote."""
+        with self.io_event:
+            self._io_handler.append(process_io)
+            self.io_event.notify_all()
+
+    def __iter__(self) -> Iterator[events.ProcessIO]:
+        with self.io_event:
+            return iter(list(self._io_handler))
+
+    def processes(self) -> list[Any]:
+        """Return the actions of the processes that wrote something."""
+        with self.io_event:
+            return self._io_handler.processes()
+
+    def process_names(self) -> list[str]:
+        """Return the names of all processes."""
+        with self.io_event:
+            return self._io_handler.process_names()
+
+    def __getitem__(self, key: str | ExecuteLocal) -> list[events.ProcessIO]:
+        """Return what a process wrote, by its name or its action; KeyError where it is not known."""
+        with self.io_event:
+            return self._io_handler[key]
+
+    def assertWaitFor(self, *args: Any, **kwargs: Any) -> None:
+        """Raise AssertionError unless `waitFor` finds the output."""
+        if not self.waitFor(*args, **kwargs):
+            raise AssertionError("Waiting for output timed out")
+
+    def waitFor(
+        self,
+        expected_output: Any,
+        process: ExecuteLocal | str | None = None,
+        cmd_args: str | Sequence[str] | None = None,
+        *,
+        strict_proc_matching: bool = True,
+        output_filter: Callable[[str], str] | None = None,
+        timeout: float | None = 10,
+        strip_ansi_escape_sequences: bool = True,
+        stream: str = "stderr",
+    ) -> bool:
+        """Wait for an output, and return whether it came in time.
+
+        Args:
+            expected_output: a text, a regular expression, or several of them in order.
+            process: an action, or a part of the name of a process; None for all processes.
+            cmd_args: arguments of the process, see `resolveProcesses`.
+            strict_proc_matching: whether a name must be that of one process only.
+            output_filter: what is made of the output before it is looked at.
+            timeout: seconds; None to wait without end.
+            strip_ansi_escape_sequences: whether colours are taken out before.
+            stream: ``stdout`` or ``stderr``.
+
+        Raises:
+            Exception: no process of this name wrote anything.
+        """
+
+        def is_there() -> bool:
+            try:
+                assertInStream(
+                    self._io_handler,  # the lock is held
+                    expected_output,
+                    process,
+                    cmd_args,
+                    output_filter=output_filter,
+                    strict_proc_matching=strict_proc_matching,
+                    strip_ansi_escape_sequences=strip_ansi_escape_sequences,
+                    stream=stream,
+                )
+            except (NoMatchingProcessException, AssertionError):
+                return False
+            return True
+
+        with self.io_event:
+            found = self.io_event.wait_for(is_there, timeout=timeout)
+            if not found:
+                resolveProcesses(self._io_handler, process=process, cmd_args=cmd_args, strict_proc_matching=False)
+        return found
+
+
+class ActiveProcInfoHandler:
+    """How processes are so far, to be waited on.
+
+    Attributes:
+        proc_event: notified when a process has started or ended.
+    """
+
+    def __init__(self) -> None:
+        self.proc_event = threading.Condition()
+        self._proc_info_handler = ProcInfoHandler()
+
+    def append(self, process_info: events.RunningProcessEvent) -> None:
+        """Note an event."""
+        with self.proc_event:
+            self._proc_info_handler.append(process_info)
+            self.proc_event.notify_all()
+
+    def __iter__(self) -> Iterator[events.RunningProcessEvent]:
+        with self.proc_event:
+            return iter(self._proc_info_handler)
+
+    def processes(self) -> list[Any]:
+        """Return the actions of all processes."""
+        with self.proc_event:
+            return self._proc_info_handler.processes()
+
+    def process_names(self) -> list[str]:
+        """Return the names of all processes."""
+        with self.proc_event:
+            return self._proc_info_handler.process_names()
+
+    def __getitem__(self, key: str | ExecuteLocal) -> Any:
+        """Return the event of a process, by a part of its name or its action; KeyError where it is not known."""
+        with self.proc_event:
+            return self._proc_info_handler[key]
+
+    def assertWaitForStartup(
+        self,
+        process: ExecuteLocal | str,
+        cmd_args: str | Sequence[str] | None = None,
+        *,
+        timeout: float | None = 10,
+    ) -> None:
+        """Wait until a process has started; raise AssertionError where it does not in time."""
+        self._wait(process, cmd_args, events.RunningProcessEvent, "start", timeout)
+
+    def assertWaitForShutdown(
+        self,
+        process: ExecuteLocal | str,
+        cmd_args: str | Sequence[str] | None = None,
+        *,
+        timeout: float | None = 10,
+    ) -> None:
+        """Wait until a process has ended; raise AssertionError where it does not in time."""
+        self._wait(process, cmd_args, events.ProcessExited, "finish", timeout)
+
+    def _wait(
+        self,
+        process: ExecuteLocal | str,
+        cmd_args: str | Sequence[str] | None,
+        kind: type[events.RunningProcessEvent],
+        verb: str,
+        timeout: float | None,
+    ) -> None:
+        handler = self._proc_info_handler
+
+        def has_happened() -> bool:
+            try:
+                (found,) = resolveProcesses(handler, process=process, cmd_args=cmd_args)
+            except NoMatchingProcessException:
+                return False
+            return isinstance(handler[found], kind)
+
+        with self.proc_event:
+            if not self.proc_event.wait_for(has_happened, timeout=timeout):
+                raise AssertionError(f"Timed out waiting for process '{process}' to {verb}")

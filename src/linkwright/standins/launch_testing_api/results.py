@@ -1,0 +1,163 @@
+"""Results of tests, and the XML that CI servers read (``launch_testing.test_result`` and ``junitxml``)."""
+
+from __future__ import annotations
+
+import time
+import unittest
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any, Protocol
+from xml.etree import ElementTree as ET
+
+Case = unittest.TestCase
+
+
+class _Run(Protocol):
+    def all_cases(self) -> Iterable[Case]:
+        """The tests of a run."""
+
+
+class TestResult(unittest.TextTestResult):
+    """Results of tests that ran, with the tests themselves and how long each took."""
+
+    __test__ = False  # pytest would take it for tests
+
+    def __init__(self, stream: Any = None, descriptions: Any = None, verbosity: Any = None, **kwargs: Any) -> None:
+        super().__init__(stream, descriptions, verbosity, **kwargs)
+        self._seconds: dict[Any, float] = {}
+        self._begun: dict[Any, float] = {}
+
+    @property
+    def testCases(self) -> Collection[Any]:
+        """The tests that ran."""
+        return list(self._begun)
+
+    @property
+    def testTimes(self) -> dict[Any, float]:
+        """How many seconds each took."""
+        return {case: self._seconds.get(case, 0.0) for case in self._begun}
+
+    def startTest(self, test: Case) -> None:
+        """Note when a test begins."""
+        self._begun[test] = time.monotonic()
+        super().startTest(test)
+
+    def stopTest(self, test: Case) -> None:
+        """Note how long it took."""
+        self._seconds[test] = time.monotonic() - self._begun[test]
+        super().stopTest(test)
+
+    def append(self, results: TestResult) -> None:
+        """Add the results of further tests."""
+        self._begun.update(results._begun)
+        self._seconds.update(results._seconds)
+        self.testsRun += results.testsRun
+        for name in ("failures", "errors", "skipped", "expectedFailures", "unexpectedSuccesses"):
+            getattr(self, name).extend(getattr(results, name))
+
+
+class _NotRun(unittest.TestResult):
+    """Results of tests that did not run."""
+
+    def __init__(self, test_run: _Run) -> None:
+        super().__init__()
+        self.testCases = list(test_run.all_cases())
+        self.testsRun = len(self.testCases)
+
+    @property
+    def testTimes(self) -> dict[Any, float]:
+        """No time for each."""
+        return dict.fromkeys(self.testCases, 0)
+
+
+class FailResult(_NotRun):
+    """Results of tests whose launch ended before they did: each has failed.
+
+    Args:
+        test_run: the tests.
+        message: why.
+    """
+
+    def __init__(self, test_run: _Run, message: str) -> None:
+        super().__init__(test_run)
+        for case in self.testCases:
+            self.addFailure(case, (Exception, Exception(message), None))  # type: ignore[arg-type]  # no traceback
+
+    def wasSuccessful(self) -> bool:
+        """False, without any test too."""
+        return False
+
+
+class SkipResult(_NotRun):
+    """Results of tests whose launch is skipped.
+
+    Args:
+        test_run: the tests.
+        skip_reason: why.
+    """
+
+    def __init__(self, test_run: _Run, skip_reason: str = "") -> None:
+        super().__init__(test_run)
+        for case in self.testCases:
+            self.addSkip(case, skip_reason)
+
+
+def unittestResultsToXml(
+    *, name: str = "launch_test", test_results: Mapping[Any, Any] | None = None
+) -> ET.ElementTree[ET.Element]:
+    """Return a document ``testsuites`` for the results of several launches.
+
+    Args:
+        name: of the document.
+        test_results: a launch, or its name -> its results.
+    """
+    results = test_results or {}
+    seconds = sum(sum(each.testTimes.values()) for each in results.values())
+    counts = {"tests": 0, "failures": 0, "errors": 0}
+    for each in results.values():
+        counts["tests"] += each.testsRun
+        counts["failures"] += len(each.failures)
+        counts["errors"] += len(each.errors)
+    root = ET.Element("testsuites", {"name": name, **_texts(counts), "time": _seconds(seconds)})
+    root.extend(unittestResultToXml(str(run), each) for run, each in results.items())
+    return ET.ElementTree(root)
+
+
+def unittestResultToXml(name: str, test_result: Any) -> ET.Element:
+    """Return an element ``testsuite`` for the results of a launch."""
+    counts = {
+        "tests": test_result.testsRun,
+        "failures": len(test_result.failures),
+        "errors": len(test_result.errors),
+        "skipped": len(test_result.skipped),
+    }
+    seconds = _seconds(sum(test_result.testTimes.values()))
+    suite = ET.Element("testsuite", {"name": name, **_texts(counts), "time": seconds})
+    suite.extend(unittestCaseToXml(test_result, case) for case in test_result.testCases)
+    return suite
+
+
+def unittestCaseToXml(test_result: Any, test_case: Any) -> ET.Element:
+    """Return an element ``testcase`` for one test."""
+    method, _, qualifiers = test_case.id().partition(" ")
+    owner, _, called = method.rpartition(".")
+    attributes = {
+        "classname": owner,
+        "name": f"{called} {qualifiers}".strip(),
+        "time": _seconds(test_result.testTimes[test_case]),
+    }
+    found = ET.Element("testcase", attributes)
+    for tag, listed in (
+        ("failure", test_result.failures),
+        ("error", test_result.errors),
+        ("skipped", test_result.skipped),
+    ):
+        found.extend(ET.Element(tag, message=str(text)) for case, text in listed if case == test_case)
+    return found
+
+
+def _texts(counts: Mapping[str, int]) -> dict[str, str]:
+    return {name: str(count) for name, count in counts.items()}
+
+
+def _seconds(value: float) -> str:
+    return str(round(value, 3))

@@ -1,0 +1,249 @@
+"""What tests of launches do with topics (``launch_testing_ros``)."""
+
+from __future__ import annotations
+
+import threading
+import uuid
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.faults import ExternalShutdownException
+from linkwright.packages.ament_resources import get_resource, has_resource
+from linkwright.standins.launch_testing_api import text
+from linkwright.standins.launch_testing_api.runner import LaunchTestRunner as _LaunchTestRunner
+from linkwright.standins.rclpy_api.context import Context
+from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
+from linkwright.standins.rclpy_api.node import Node
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+_DEPTH = 10
+_SPIN_SECONDS = 0.1
+_STOP_SECONDS = 5.0
+
+
+class LaunchTestRunner(_LaunchTestRunner):
+    """Runs launches, each with its tests."""
+
+
+class WaitForTopics:
+    """Waits until a message has come on each of several topics; a context manager too.
+
+    Args:
+        topic_tuples: names and types of the topics.
+        timeout: seconds.
+        messages_received_buffer_length: how many messages of each topic are kept.
+        trigger: called once the subscriptions are made.
+        node_namespace: where the node lives that listens.
+    """
+
+    def __init__(
+        self,
+        topic_tuples: Iterable[tuple[str, type]],
+        timeout: float = 5.0,
+        messages_received_buffer_length: int = 10,
+        trigger: Callable[..., object] | None = None,
+        node_namespace: str | None = None,
+    ) -> None:
+        self.topic_tuples = list(topic_tuples)
+        self.timeout = timeout
+        self.messages_received_buffer_length = messages_received_buffer_length
+        self._trigger = trigger
+        self._received: dict[str, deque[Any]] = {}
+        self._all_there = threading.Condition()
+        self._context = Context()
+        self._context.init(args=[])
+        name = f"_test_node_{uuid.uuid4().hex[:10]}"
+        self._node = Node(name, context=self._context, namespace=node_namespace or "")
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._thread = threading.Thread(target=self._spin, name="wait_for_topics", daemon=True)
+        self._thread.start()
+
+    def wait(self, *args: Any, **kwargs: Any) -> bool:
+        """Wait, and return whether all topics had a message in time; arguments are those of the trigger."""
+        with self._all_there:
+            for messages in self._received.values():
+                messages.clear()
+        for name, kind in self.topic_tuples:
+            if name not in self._received:
+                self._received[name] = deque(maxlen=self.messages_received_buffer_length)
+                self._node.create_subscription(kind, name, self._listener(name), _DEPTH)
+        if self._trigger is not None:
+            self._trigger(self._node, *args, **kwargs)
+        with self._all_there:
+            return self._all_there.wait_for(lambda: not self.topics_not_received(), timeout=self.timeout)
+
+    def shutdown(self) -> None:
+        """Stop listening."""
+        self._context.try_shutdown()
+        self._thread.join()
+        self._node.destroy_node()
+
+    def topics_received(self) -> set[str]:
+        """Return the topics that had a message."""
+        return {name for name, messages in self._received.items() if messages}
+
+    def topics_not_received(self) -> set[str]:
+        """Return the topics that had none."""
+        return {name for name, _ in self.topic_tuples} - self.topics_received()
+
+    def received_messages(self, topic_name: str) -> list[Any]:
+        """Return the messages of a topic, the latest last.
+
+        Raises:
+            KeyError: it is none of the topics.
+        """
+        if topic_name not in self._received:
+            raise KeyError("No messages received for topic: " + topic_name)
+        return list(self._received[topic_name])
+
+    def __enter__(self) -> Self:
+        if not self.wait():
+            missing = self.topics_not_received()
+            self.shutdown()
+            raise RuntimeError("Did not receive messages on these topics: ", missing)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.shutdown()
+
+    def _listener(self, name: str) -> Callable[[Any], None]:
+        def heard(message: Any) -> None:
+            with self._all_there:
+                self._received[name].append(message)
+                self._all_there.notify_all()
+
+        return heard
+
+    def _spin(self) -> None:
+        with suppress(ExternalShutdownException):
+            self._executor.spin()
+
+
+class MessagePump:
+    """Runs the callbacks of a node in a thread.
+
+    Args:
+        node: the node.
+        context: its context.
+    """
+
+    def __init__(self, node: Any, context: Any = None) -> None:
+        self._node = node
+        self._context = context
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._pump, name="msg_pump_thread", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End.
+
+        Raises:
+            Exception: a callback does not end.
+        """
+        self._stopping.set()
+        self._thread.join(timeout=_STOP_SECONDS)
+        if self._thread.is_alive():
+            raise Exception("Timed out waiting for message pump to stop")  # noqa: TRY002 - launch_testing_ros raises it
+
+    def _pump(self) -> None:
+        executor = SingleThreadedExecutor(context=self._context)
+        executor.add_node(self._node)
+        while not self._stopping.is_set():
+            executor.spin_once(timeout_sec=_SPIN_SECONDS)
+
+
+class DataRepublisher:
+    """Publishes what it makes of each message of a topic on another topic.
+
+    Args:
+        node: the node that listens and publishes.
+        listen_topic: where messages come from.
+        publish_topic: where they go.
+        msg_type: their type.
+        transform_fn: makes a message of each; None to publish nothing for it.
+    """
+
+    def __init__(
+        self, node: Any, listen_topic: str, publish_topic: str, msg_type: type, transform_fn: Callable[[Any], Any]
+    ) -> None:
+        self._node = node
+        self._transform = transform_fn
+        self._count = 0
+        self._republished: list[Any] = []
+        self._publisher = node.create_publisher(msg_type, publish_topic, _DEPTH)
+        self._subscription = node.create_subscription(msg_type, listen_topic, self._take, _DEPTH)
+
+    def shutdown(self) -> None:
+        """Stop."""
+        self._node.destroy_subscription(self._subscription)
+        self._node.destroy_publisher(self._publisher)
+
+    def get_num_received(self) -> int:
+        """Return how many messages came."""
+        return self._count
+
+    def get_num_republished(self) -> int:
+        """Return for how many of them one was published."""
+        return len(self._republished)
+
+    def get_republished(self) -> list[Any]:
+        """Return the messages that came and for which one was published."""
+        return self._republished
+
+    def _take(self, message: Any) -> None:
+        self._count += 1
+        made = self._transform(message)
+        if made:
+            self._republished.append(message)
+            self._publisher.publish(made)
+
+
+def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str]:
+    """Return the lines that an implementation of rmw says are to be taken out of outputs.
+
+    Args:
+        rmw_implementation: its package.
+        filter_type: ``prefixes`` or ``patterns``.
+
+    Raises:
+        TypeError: there is no such kind.
+    """
+    kinds = ["prefixes", "patterns"]
+    if filter_type not in kinds:
+        raise TypeError(f'Unsupported filter_type "{filter_type}". Supported types: {kinds}')
+    resource = f"rmw_output_{filter_type}"
+    if not has_resource(resource, rmw_implementation):
+        return []
+    content, _ = get_resource(resource, rmw_implementation)
+    return content.splitlines()
+
+
+def basic_output_filter(
+    filtered_prefixes: Sequence[str] | None = None,
+    filtered_patterns: Sequence[str] | None = None,
+    filtered_rmw_implementation: str | None = None,
+) -> Callable[[str], str]:
+    """Return a function that takes lines out of an output.
+
+    Args:
+        filtered_prefixes: the beginnings of such lines.
+        filtered_patterns: regular expressions for the beginnings of such lines.
+        filtered_rmw_implementation: whose lines are taken out too, see `get_rmw_output_filter`.
+    """
+    prefixes = list(text.get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
+    patterns = list(filtered_patterns or ())
+    if filtered_rmw_implementation:
+        prefixes += get_rmw_output_filter(filtered_rmw_implementation, "prefixes")
+        patterns += get_rmw_output_filter(filtered_rmw_implementation, "patterns")
+    return text.basic_output_filter(prefixes, patterns)

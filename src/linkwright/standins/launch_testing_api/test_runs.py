@@ -1,0 +1,178 @@
+"""The tests in a file, and the launches that they run beside (``launch_testing.loader``)."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import unittest
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+from linkwright.launch.model.actions.testing import ReadyToTest, ready_actions
+from linkwright.launch.model.description import LaunchDescription
+from linkwright.standins.launch_testing_api.marks import AFTER_SHUTDOWN, MARKERS, PARAMETRIZED, TIMEOUT
+
+_READY_SECONDS = 15.0
+"""How long a launch may take until its tests may begin, where it is not said."""
+
+Described = tuple[LaunchDescription, dict[str, Any]]
+
+
+class TestRun:
+    """The tests that belong to one launch.
+
+    Attributes:
+        name: of the tests.
+        param_args: the arguments that the description is made with, where it is parametrized.
+        pre_shutdown_tests: the tests that run beside the launch.
+        post_shutdown_tests: the tests that run after its end.
+        timeout: seconds that the launch may take until the tests may begin.
+    """
+
+    __test__ = False  # pytest would take it for tests
+
+    def __init__(
+        self,
+        name: str,
+        test_description_function: Callable[..., Any],
+        param_args: Mapping[str, Any],
+        pre_shutdown_tests: Iterable[Any],
+        post_shutdown_tests: Iterable[Any],
+    ) -> None:
+        self.name = name
+        self.param_args = dict(param_args)
+        self.pre_shutdown_tests = pre_shutdown_tests
+        self.post_shutdown_tests = post_shutdown_tests
+        self.timeout: float = getattr(test_description_function, TIMEOUT, _READY_SECONDS)
+        self._test_description_function = test_description_function
+        self._cases = [*_cases(pre_shutdown_tests), *_cases(post_shutdown_tests)]  # suites forget those that ran
+        if self.param_args:
+            for case in self._cases:
+                _rename(case, case._testMethodName + self._shown_arguments())
+
+    @property
+    def markers(self) -> dict[str, Any]:
+        """What the function that makes the description is marked with."""
+        found: dict[str, Any] = getattr(self._test_description_function, MARKERS, {})
+        return found
+
+    def normalized_test_description(self, *, ready_fn: Callable[[], object]) -> Described:
+        """Return the description, and what its function gives the tests.
+
+        Args:
+            ready_fn: called when the tests may begin.
+
+        Raises:
+            Exception: the description has no `ReadyToTest`.
+        """
+        made = self._test_description_function()
+        description, context = made if isinstance(made, tuple) else (made, {})
+        action = next(ready_actions(description.entities), None)
+        if action is None:
+            raise Exception(  # noqa: TRY002 - launch_testing raises it
+                f"generate_test_description functions must return a LaunchDescription containing a "
+                f"{ReadyToTest.__name__} action"
+            )
+        action._add_callback(ready_fn)
+        return description, context
+
+    def get_launch_description(self) -> LaunchDescription:
+        """Return the description, to be looked at."""
+        return self.normalized_test_description(ready_fn=lambda: None)[0]
+
+    def bind(
+        self,
+        tests: Iterable[Any],
+        injected_attributes: Mapping[str, Any] | None = None,
+        injected_args: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Give tests what they ask for.
+
+        Args:
+            tests: a suite.
+            injected_attributes: name -> value of attributes of each test.
+            injected_args: name -> value of arguments, for tests and their fixtures that have such an argument.
+        """
+        cases = list(_cases(tests))
+        for kind in {type(case) for case in cases}:
+            for name, value in (injected_attributes or {}).items():
+                setattr(kind, name, value)
+            for name in ("setUpClass", "tearDownClass"):
+                setattr(kind, name, staticmethod(_bound(getattr(kind, name), injected_args or {})))
+        for case in cases:
+            for name in (case._testMethodName, "setUp", "tearDown"):
+                setattr(case, name, _bound(getattr(case, name), injected_args or {}))
+
+    def all_cases(self) -> Iterator[unittest.TestCase]:
+        """Give all tests, also once they ran."""
+        return iter(self._cases)
+
+    def __str__(self) -> str:
+        return self.name + self._shown_arguments()
+
+    def _shown_arguments(self) -> str:
+        return f"[{', '.join(map(str, self.param_args.values()))}]" if self.param_args else ""
+
+
+def LoadTestsFromPythonModule(module: Any, *, name: str = "launch_tests") -> list[TestRun]:
+    """Return the tests of a module with a function ``generate_test_description``, for each launch that it describes.
+
+    Args:
+        module: the module.
+        name: of the tests.
+    """
+    made = module.generate_test_description
+    descriptions = made() if hasattr(made, PARAMETRIZED) else [(made, {})]
+    return [
+        TestRun(
+            name,
+            description,
+            arguments,
+            PreShutdownTestLoader().loadTestsFromModule(module),
+            PostShutdownTestLoader().loadTestsFromModule(module),
+        )
+        for description, arguments in descriptions
+    ]
+
+
+class _Loader(unittest.TestLoader):
+    """Loads the tests that run after the end of a launch, or those that run beside it."""
+
+    is_after = False
+
+    def loadTestsFromTestCase(self, testCaseClass: type[unittest.TestCase]) -> unittest.TestSuite:
+        """Load the tests of a class; each launch has a class of its own, which things can be given to."""
+        if getattr(testCaseClass, AFTER_SHUTDOWN, False) != self.is_after:
+            return unittest.TestSuite()
+        own = type(testCaseClass.__name__, (testCaseClass,), {"__module__": testCaseClass.__module__})
+        return super().loadTestsFromTestCase(own)
+
+
+class PreShutdownTestLoader(_Loader):
+    """Loads the tests that run beside the launch."""
+
+
+class PostShutdownTestLoader(_Loader):
+    """Loads the tests that run after the end of the launch."""
+
+    is_after = True
+
+
+def _cases(tests: Iterable[Any]) -> Iterator[Any]:
+    """The tests in suites of suites."""
+    for each in tests:
+        if isinstance(each, Iterable):
+            yield from _cases(each)
+        else:
+            yield each
+
+
+def _rename(case: Any, name: str) -> None:
+    setattr(case, name, getattr(case, case._testMethodName))
+    case._testMethodName = name
+
+
+def _bound(function: Callable[..., Any], given: Mapping[str, Any]) -> Callable[..., Any]:
+    """A function that has of the arguments given those that it asks for."""
+    asked = inspect.signature(function).parameters
+    return functools.partial(function, **{name: value for name, value in given.items() if name in asked})
