@@ -150,7 +150,7 @@ class OnActionEventBase(_ReactingHandler):
     ) -> None:
         if not issubclass(target_event_cls, events.Event):
             raise TypeError("'target_event_cls' must be a subclass of 'Event'")
-        is_action = isinstance(action_matcher, target_action_cls)
+        is_action = isinstance(action_matcher, target_action_cls) and not callable(action_matcher)
         if action_matcher is not None and not is_action and not callable(action_matcher):
             raise TypeError(f"action_matcher must be an '{target_action_cls.__name__}' instance or a callable")
 

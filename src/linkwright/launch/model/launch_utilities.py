@@ -18,13 +18,13 @@ FilePath = str | bytes | os.PathLike[Any]
 
 
 def isclassinstance(obj: object) -> bool:
-    """Whether something is an instance of a class written in Python."""
-    return not inspect.isclass(obj) and hasattr(obj, "__dict__") and not inspect.isroutine(obj)
+    """Whether something is an instance of a class: in Python 3, everything is."""
+    return hasattr(obj, "__class__")
 
 
 def is_a(obj: object, entity_type: type) -> bool:
-    """Whether something is of exactly a class."""
-    return isclassinstance(obj) and type(obj) is entity_type
+    """Whether something is of a class, or of one derived from it."""
+    return isinstance(obj, entity_type)
 
 
 def is_a_subclass(obj: object, entity_type: type) -> bool:

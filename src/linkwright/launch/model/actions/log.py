@@ -68,6 +68,7 @@ class Log(Action):
                     warnings.warn(problem, stacklevel=2)
                 else:
                     warnings.warn_explicit(problem, UserWarning, place.file, place.span().line)
+                return LogInfo, kwargs  # which the tag was in Jazzy and before
             level = "INFO"
         kwargs["level"] = parser.parse_substitution(level)
         return cls, kwargs

@@ -175,6 +175,9 @@ class ThisLaunchFileDir(DeclaredSubstitution, tag="dirname"):
         Raises:
             SubstitutionFailure: LAUNCH123, if the description comes from no file.
         """
+        folder = context.get_locals_as_dict().get("current_launch_file_directory")
+        if folder is not None:
+            return str(folder)
         path: str = ThisLaunchFile.perform(self, context)  # type: ignore[arg-type]  # asks nothing of self
         return str(Path(path).parent)
 
