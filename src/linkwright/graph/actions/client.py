@@ -181,6 +181,7 @@ class ActionClient(ActionEndpoint):
             self._feedback_callbacks[key] = feedback_callback
         handed: Future[ClientGoalHandle] = Future()
         answer = self._goal_client.call_async(request)
+        handed.source = self._goal_client
         answer.add_waiter(partial(self._goal_answered, answer, request.goal_id, handed))
         return handed
 
@@ -206,6 +207,7 @@ class ActionClient(ActionEndpoint):
         request.goal_id = goal.goal_id
         handed: Future[Any] = Future()
         answer = self._result_client.call_async(request)
+        handed.source = self._result_client
         answer.add_waiter(partial(self._result_came, answer, bytes(goal.goal_id.uuid), handed))
         return handed
 

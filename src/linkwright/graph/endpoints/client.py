@@ -108,6 +108,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         if self.node.copies_messages:
             request = copy_of(request)
         future: Future[Response] = Future()
+        future.source = self
         self._pending[future] = _nothing
         if not self._send(future, request):
             with self._lock:

@@ -23,6 +23,7 @@ from linkwright.graph.faults import (
 from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.self_waits import is_strict, tell_if_it_waits_for_itself
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -77,6 +78,7 @@ class Executor:
         self._nodes_lock = threading.RLock()
         self._blocked: deque[Entity] = deque()
         self._is_shutdown = False
+        self._is_strict = is_strict()
         self._spinners: list[int] = []
         self._spinners_changed = threading.Condition(threading.RLock())
         if context is not None:
@@ -163,6 +165,7 @@ class Executor:
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done or cancelled, or `timeout_sec` seconds have passed (None: no limit)."""
+        tell_if_it_waits_for_itself(future)
         future.add_waiter(self.wake)
         deadline_ns = deadline_after(timeout_sec)
         while not (future.ended() or self._is_shutdown) and self._context_ok():
@@ -200,7 +203,11 @@ class Executor:
 
     def can_execute(self, entity: Any) -> bool:
         """Whether the callback group of something lets it run now."""
-        return bool(entity.unblockable or entity.callback_group.can_execute(entity))
+        return bool(self._is_free(entity) or entity.callback_group.can_execute(entity))
+
+    def _is_free(self, entity: Entity) -> bool:
+        """Whether no callback group holds an entity back."""
+        return entity.unblockable and not self._is_strict
 
     def wait_for_ready_callbacks(
         self,
@@ -299,7 +306,7 @@ class Executor:
             return not item.ended()
         if item.dispatcher is not self:
             return False
-        if item.unblockable:
+        if self._is_free(item):
             return not self._postpone(item)
         group = item.callback_group
         if group.can_execute(item) and (not begin or group.beginning_execution(item)):
@@ -329,16 +336,17 @@ class Executor:
             item()
             _raise_fault(item)
             return
+        callback_of = item  # see `linkwright.graph.loop.self_waits`
         result = None
         try:
-            call = item.take()
+            call = callback_of.take()
             if call is not None:
                 result = call()
         finally:
             if type(result) is not CoroutineType:
-                self._end(item)
+                self._end(callback_of)
         if type(result) is CoroutineType:
-            task: Task[Any] = Task(result, executor=self, ended=partial(self._end, item))
+            task: Task[Any] = Task(result, executor=self, ended=partial(self._end, callback_of))
             task()
             _raise_fault(task)
 
@@ -347,11 +355,12 @@ class Executor:
 
         def run() -> object:
             nonlocal begun
-            if not (entity.unblockable or entity.callback_group.beginning_execution(entity)):
-                self._block(entity)
+            callback_of = entity  # see `linkwright.graph.loop.self_waits`
+            if not (self._is_free(callback_of) or callback_of.callback_group.beginning_execution(callback_of)):
+                self._block(callback_of)
                 return None
             begun = True
-            call = entity.take()
+            call = callback_of.take()
             return None if call is None else call()
 
         def ended() -> None:
@@ -361,7 +370,7 @@ class Executor:
         return Task(run, executor=self, ended=ended)
 
     def _end(self, entity: Entity) -> None:
-        if not entity.unblockable:
+        if not self._is_free(entity):
             entity.callback_group.ending_execution(entity)
         if self._blocked:
             self._release_blocked()

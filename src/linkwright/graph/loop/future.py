@@ -9,6 +9,8 @@ from collections.abc import Callable, Generator
 from contextlib import suppress
 from typing import Any, Generic, TypeVar
 
+from linkwright.graph.loop.self_waits import tell_if_it_waits_for_itself
+
 T = TypeVar("T")
 
 _driver = threading.local()
@@ -50,6 +52,8 @@ class Future(Generic[T]):
         self._waiters: list[Callable[[], object]] = []
         self._executor = executor
         self._lock = threading.Lock()
+        self.source: Any = None
+        """The client whose server it waits for; None for a future of anything else."""
 
     def __del__(self) -> None:
         if self._exception is not None and not self._exception_fetched:
@@ -168,6 +172,8 @@ class Future(Generic[T]):
 
     def wait(self, timeout_sec: float | None = None) -> bool:
         """Block the calling thread until it is done or cancelled; whether it is."""
+        if self.source is not None:
+            tell_if_it_waits_for_itself(self)
         event = threading.Event()
         self.add_waiter(event.set)
         event.wait(timeout_sec)

@@ -1,0 +1,147 @@
+"""Callbacks that block until something comes which only their own callback group could let in."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.graph.actions.client import ActionClient
+from linkwright.graph.actions.server import ActionServer
+from linkwright.graph.executors import (
+    Executor,
+    MultiThreadedExecutor,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+    SingleThreadedExecutor,
+)
+from linkwright.graph.loop import self_waits
+from linkwright.messages import get_action, get_service
+from tests.waiting import SECONDS
+
+TRIGGER = get_service("std_srvs/srv/Trigger")
+FIBONACCI = get_action("example_interfaces/action/Fibonacci")
+
+
+class Asking:
+    """Two nodes: a server of a service and an action, and one with a timer whose callback asks it once.
+
+    Attributes:
+        errors: what was logged as errors.
+        client: of the service.
+        action: client of the action.
+    """
+
+    def __init__(self, *, client_group: Any = None, executor: Callable[[], Executor] = MultiThreadedExecutor) -> None:
+        self.errors: list[str] = []
+        self._graph = Graph(threads=True, on_log=self._heard)
+        self._nodes = [
+            self._graph.create_node(name, start_parameter_services=False, enable_rosout=False)
+            for name in ("server", "asking")
+        ]
+        server, asking = self._nodes
+        server.create_service(TRIGGER, "ask", lambda _, response: response)
+        self._server = ActionServer(server, FIBONACCI, "count", self._count)
+        self.client = asking.create_client(TRIGGER, "ask", callback_group=client_group)
+        self.action = ActionClient(asking, FIBONACCI, "count", callback_group=client_group)
+        self.executor = executor()
+
+    def run(self, ask: Callable[[], Any], *, seconds: float = SECONDS) -> bool:
+        """Run a callback of the default group of the node; returns whether it ended in time."""
+        ended = threading.Event()
+
+        def callback() -> None:
+            timer.cancel()
+            ask()
+            ended.set()
+
+        timer = self._nodes[1].create_timer(0.0, callback)
+        for node in self._nodes:
+            self.executor.add_node(node)
+        threading.Thread(target=self.executor.spin, daemon=True).start()
+        return ended.wait(seconds)
+
+    def close(self) -> None:
+        self.executor.shutdown(1.0)
+        self._graph.close_now()
+
+    @staticmethod
+    def _count(goal: Any) -> Any:
+        goal.succeed()
+        return FIBONACCI.Result()
+
+    def _heard(self, record: Any) -> None:
+        if record.level.name == "ERROR":
+            self.errors.append(record.text)
+
+
+@pytest.fixture
+def asking(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Makes an `Asking`."""
+    monkeypatch.setattr(self_waits, "_told", set())
+    made: list[Asking] = []
+
+    def make(**options: Any) -> Asking:
+        made.append(Asking(**options))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()
+
+
+def test_a_call_in_the_callbacks_own_group_is_told_once_with_both_places(asking) -> None:
+    asks = asking()
+
+    def ask() -> None:
+        for _ in range(2):
+            asks.client.call(TRIGGER.Request())
+
+    assert asks.run(ask)
+    (error,) = asks.errors
+    callback = Asking.run.__code__.co_firstlineno
+    assert f"callback 'callback' ({__file__}:{callback + 4})" in error
+    assert f" waits at {__file__}:{ask.__code__.co_firstlineno + 2} for the client of service '/ask'" in error
+    assert "mutually exclusive" in error
+
+
+@pytest.mark.parametrize("kind", [SingleThreadedExecutor, MultiThreadedExecutor])
+def test_spinning_until_the_response_in_the_callbacks_own_group_is_told(asking, kind) -> None:
+    asks = asking(executor=kind)
+    assert asks.run(lambda: asks.executor.spin_until_future_complete(asks.client.call_async(TRIGGER.Request())))
+    assert len(asks.errors) == 1
+
+
+def test_a_goal_that_is_waited_for_in_the_callbacks_own_group_is_told(asking) -> None:
+    asks = asking()
+    assert asks.run(lambda: asks.action.send_goal(FIBONACCI.Goal(order=1)))
+    assert "for the client of service '/count" in asks.errors[0]
+
+
+@pytest.mark.parametrize("group", [ReentrantCallbackGroup, MutuallyExclusiveCallbackGroup])
+def test_a_client_in_another_group_is_fine(asking, group) -> None:
+    asks = asking(client_group=group())
+    assert asks.run(lambda: (asks.client.call(TRIGGER.Request()), asks.action.send_goal(FIBONACCI.Goal(order=1))))
+    assert asks.errors == []
+
+
+def test_what_is_there_already_and_who_waits_outside_of_callbacks_are_fine(asking) -> None:
+    asks = asking()
+    future = asks.client.call_async(TRIGGER.Request())
+    assert asks.run(lambda: None)
+    assert future.wait(SECONDS)
+    asks.executor.spin_until_future_complete(future)
+    assert asks.client.call(TRIGGER.Request(), timeout_sec=SECONDS) is not None
+    assert asks.errors == []
+
+
+def test_it_hangs_as_on_a_robot_where_that_is_asked_for(asking, monkeypatch) -> None:
+    monkeypatch.setenv(self_waits.STRICT, "1")
+    asks = asking()
+    answers: list[Any] = []
+    assert asks.run(lambda: answers.append(asks.client.call(TRIGGER.Request(), timeout_sec=0.2)))
+    assert answers == [None]
+    assert len(asks.errors) == 1
