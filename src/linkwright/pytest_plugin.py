@@ -39,9 +39,13 @@ def _offer_stand_ins() -> None:
 _offer_stand_ins()  # before pytest imports a conftest.py
 
 
+def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:
+    """Register the plugin of launch_pytest and launch_testing, in time for its options."""
+    if not pluginmanager.has_plugin("linkwright_pytest"):
+        pluginmanager.import_plugin("linkwright_pytest")
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """Declare the linters' markers, and register the plugin of launch_pytest."""
+    """Declare the linters' markers."""
     for name, meaning in _LINTER_MARKERS.items():
         config.addinivalue_line("markers", f"{name}: {meaning}")
-    if not config.pluginmanager.has_plugin("linkwright_pytest"):
-        config.pluginmanager.import_plugin("linkwright_pytest")

@@ -121,9 +121,11 @@ def run(tmp_path: Path):
     def run_file(text: str, *words: str) -> subprocess.CompletedProcess[str]:
         (tmp_path / "test_it.py").write_text(HEAD + text)
         program = ["-c", "from launch_testing.launch_test import main; main()", "test_it.py", *words]
+        environment = {**os.environ, "LINKWRIGHT_DDS": "0", "ROS_LOG_DIR": str(tmp_path / "log")}
         if words[:1] == ("pytest",):
             program = ["-m", "pytest", "-q", "-p", "no:cacheprovider", *words[1:], "test_it.py"]
-        environment = process.environment({**os.environ, "LINKWRIGHT_DDS": "0", "ROS_LOG_DIR": str(tmp_path / "log")})
+        if words[:2] != ("pytest", "--launch-args"):  # plain pytest has them by its plugin
+            environment = process.environment(environment)
         return subprocess.run(
             [sys.executable, *program], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
         )
