@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 
 _USAGE = 2
+_TESTS = re.compile(r"tests?\d*")
+"""What folders of tests are called."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -171,7 +174,9 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
     checked = None
     for file in targets.files:
         checked, trouble = _examine(file, words, targets)
-        said = checked.diagnostics if file in targets.named else _of_a_folder(checked.diagnostics)
+        said = checked.diagnostics
+        if file not in targets.named:
+            said = tuple(_of_a_folder(said, is_fixture=_is_fixture(file, paths)))
         _add(found, (*trouble, *said))
     for folder in targets.packages:
         settings, trouble = words.settings(folder)
@@ -179,9 +184,18 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
     return list(found.values()), checked if len(paths) == 1 and not paths[0].is_dir() else None
 
 
-def _of_a_folder(said: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Leave out that a file is no robot by itself, which only matters where that file was named."""
-    return (each for each in said if each.code != "LINT302")
+def _of_a_folder(said: Iterable[Diagnostic], *, is_fixture: bool) -> Iterator[Diagnostic]:
+    """The findings that matter where a file was not named: of what tests need, errors alone.
+
+    That a file is no robot by itself only matters where it was named.
+    """
+    return (each for each in said if each.code != "LINT302" and (each.severity is Severity.ERROR or not is_fixture))
+
+
+def _is_fixture(file: Path, paths: Sequence[Path]) -> bool:
+    """Whether a file lies in a folder of tests, below the folder that is checked."""
+    below = [file.relative_to(path).parts[:-1] for path in paths if file.is_relative_to(path)]
+    return any(_TESTS.fullmatch(part) for parts in below for part in parts)
 
 
 def _add(found: dict[tuple[str, object, str], Diagnostic], more: Iterable[Diagnostic]) -> None:

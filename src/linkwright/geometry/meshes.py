@@ -76,6 +76,10 @@ class TriangleMesh:
         return merged(self.vertices, self.faces)
 
 
+_PADDING = b" \t\r\n\0"
+"""What exporters leave around the XML of a COLLADA file, and other readers pass over."""
+
+
 def read_mesh(path: Path) -> TriangleMesh:
     """The triangles of an STL, COLLADA, OBJ or glTF file.
 
@@ -100,6 +104,8 @@ def read_mesh(path: Path) -> TriangleMesh:
         if facts.st_size > LARGEST_FILE:
             raise unreadable(path, phrase("it is larger than {largest_file} MiB", largest_file=LARGEST_FILE >> 20))
         data = path.read_bytes()
+        if kind == ".dae":
+            data = data.strip(_PADDING)
     except FileNotFoundError:
         message = phrase("there is no mesh file '{path}'", path=display_path(path))
         raise LinkwrightError(Diagnostic("INR101", message, hint=missing_file_hint(path))) from None

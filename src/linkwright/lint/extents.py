@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 MARKER = 0.01
 """A body smaller than this, in m, is a marker; nothing is concluded from its shapes."""
 
+_WORLD = "world"
+"""What is fixed to this link never moves, and no mass matters there."""
+
 _NEGLIGIBLE = 0.01
 """A mass of less than this part of its body's is a placeholder that changes nothing."""
 
@@ -55,6 +58,7 @@ class Extents:
             and (body := self._bodies.of(link.name)) is not None
             and is_computable(inertial)
             and inertial.mass >= _NEGLIGIBLE * self._bodies.mass(body)
+            and _WORLD not in body.links
         ]
 
     @cached_property

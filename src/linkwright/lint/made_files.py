@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fnmatch import fnmatchcase
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,8 +12,8 @@ if TYPE_CHECKING:
 
 _IGNORE = ".gitignore"
 _REPOSITORY = ".git"
-_HIGHEST = 4
-"""So many folders above a package are looked at for a ``.gitignore`` where none of them is a repository's."""
+_HIGHEST = 8
+"""So many folders above a file are looked at for a ``.gitignore`` where none of them is a repository's."""
 _MAPS = frozenset({"map", "maps"})
 _TELLING = (".py", ".sh", ".bash", ".md", ".rst", ".txt", ".cpp", ".cc", ".hpp", ".h", ".in")
 _BUILD_FILES = frozenset({"setup.py", "CMakeLists.txt"})
@@ -31,30 +32,40 @@ def is_made_later(package: PackageContext, path: str) -> bool:
     """
     return (
         not _MAPS.isdisjoint(path.split("/")[:-1])
-        or _is_ignored(package.folder, path)
+        or is_ignored_by_git(package.folder / path)
         or _is_told_of(package, path.rpartition("/")[2])
     )
 
 
-def _is_ignored(package: Path, path: str) -> bool:
-    """Whether a ``.gitignore`` of the package or its repository names the file; a later line wins, as in git."""
-    full, answer = package / path, False
-    for folder in _folders_upwards(package):
-        try:
-            lines = (folder / _IGNORE).read_text(encoding="utf-8", errors="replace").splitlines()
-        except OSError:
-            continue
-        relative = full.relative_to(folder).as_posix()
-        for line in map(str.strip, lines):
-            if line and not line.startswith("#") and _names(line.removeprefix("!"), relative):
+def is_ignored_by_git(path: Path) -> bool:
+    """Return whether a ``.gitignore`` on the way to a file names it; a later line wins, as in git.
+
+    Args:
+        path: of the file, which need not exist; absolute.
+    """
+    answer = False
+    for folder in _folders_upwards(path):
+        relative = path.relative_to(folder).as_posix()
+        for line in _lines(folder / _IGNORE):
+            if _names(line.removeprefix("!"), relative):
                 answer = not line.startswith("!")
     return answer
 
 
-def _folders_upwards(package: Path) -> list[Path]:
-    """The repository's folders down to the package."""
+@lru_cache(maxsize=256)
+def _lines(path: Path) -> tuple[str, ...]:
+    """The patterns of a ``.gitignore``, or none where there is no such file."""
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return ()
+    return tuple(line for line in map(str.strip, lines) if line and not line.startswith("#"))
+
+
+def _folders_upwards(path: Path) -> list[Path]:
+    """The folders from that of a repository down to a file."""
     found = []
-    for folder in (package, *list(package.parents)[:_HIGHEST]):
+    for folder in list(path.parents)[:_HIGHEST]:
         found.append(folder)
         if (folder / _REPOSITORY).exists():
             break

@@ -90,8 +90,16 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
 def _entries(found: list[Path]) -> Iterator[Path]:
     included = {name for path in found for name in _included_names(_text(path))}
     for path in found:
-        if path.name not in included and (path.suffix in _WHOLE or _describes_robot(path)):
+        if path.name in included or _is_for_webots(path):
+            continue
+        if path.suffix in _WHOLE or _describes_robot(path):
             yield path
+
+
+def _is_for_webots(path: Path) -> bool:
+    """Whether it is a file of plugins for webots_ros2_driver, which is called a URDF and holds no links."""
+    text = _text(path) if path.suffix == _URDF else ""
+    return "<webots>" in text and "<link" not in text
 
 
 def _included_names(text: str) -> Iterator[str]:

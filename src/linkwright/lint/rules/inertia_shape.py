@@ -17,7 +17,7 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
 from linkwright.lint.subject import Subject
 from linkwright.lint.tensors import flaw_of
-from linkwright.urdf import Inertial, Mesh
+from linkwright.urdf import Inertial, Link, Mesh
 
 if TYPE_CHECKING:
     from linkwright.geometry.bounds import Bounds
@@ -27,6 +27,9 @@ _UNITS = ((1e3, "g m2"), (1e4, "kg cm2"), (1e6, "kg mm2"), (1e9, "g mm2"))
 
 _BEYOND_BELIEF = 20.0
 """From this distance on, in m, `shape-far` tells of an origin."""
+
+_SLIP = 1.0
+"""Masses below this one, in kg, are not in grams by mistake; on small frames they are there to please a simulator."""
 
 _ALMOST_NOTHING = 1e-3
 """Differences smaller than this, in m, are none."""
@@ -67,7 +70,7 @@ class DensityTooHigh(Rule):
 
         for link, inertial in subject.extents.heavy:
             bounds, volume = subject.extents.link_bounds(link), subject.extents.volume(link)
-            if bounds is None or volume is None or bounds.diagonal <= MARKER:
+            if bounds is None or volume is None or bounds.diagonal <= MARKER or inertial.mass < _SLIP:
                 continue
             if min(bounds.size) < _ALMOST_NOTHING / 10:
                 continue  # a sheet: its thickness is not meant
@@ -187,7 +190,7 @@ class CenterOutside(Rule):
         margin = self.option(subject, "margin", float)
         for link, inertial, bounds in subject.extents.measured:
             center = inertial.origin.xyz
-            if max(map(abs, center)) > _BEYOND_BELIEF:
+            if max(map(abs, center)) > _BEYOND_BELIEF or _is_at_the_joint(subject, link, inertial):
                 continue
             distance = bounds.distance(center)
             if distance > max(margin * bounds.diagonal, _ALMOST_NOTHING):
@@ -245,10 +248,7 @@ class CenterForgotten(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, inertial, bounds in subject.extents.measured:
             element = inertial.element
-            if element is None or element.first("origin") is not None:
-                continue
-            body = subject.bodies.of(link.name)
-            if body is None or len(body.frames) > 1:
+            if element is None or not _is_at_the_joint(subject, link, inertial):
                 continue
             if all(map(_lies_to_one_side, subject.extents.kinds_of_bounds(link))):
                 x, y, z = (round(part, 4) + 0.0 for part in bounds.center)
@@ -378,6 +378,13 @@ class InertiaTooSmall(Rule):
                     ],
                     hint=_COMPUTE,
                 )
+
+
+def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:
+    """Whether the centre of mass of a body of one link is where it is because no ``<origin>`` was given."""
+    body = subject.bodies.of(link.name)
+    is_alone = body is not None and len(body.frames) == 1
+    return is_alone and inertial.element is not None and inertial.element.first("origin") is None
 
 
 def _lies_to_one_side(bounds: Bounds) -> bool:

@@ -13,6 +13,8 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.walk import joints, parts, shown, values
 from linkwright.urdf.values import plain
 
+_NO_TILT = 1e-9
+"""Tilts up to this one, in rad, are what computing in doubles leaves; nothing can tell them from none."""
 _MOVING = ("revolute", "continuous", "prismatic", "planar")
 _TOLERANCE = 1e-3
 
@@ -235,7 +237,7 @@ class AxisTilted(Rule):
             main = max(range(3), key=lambda index, found=direction: abs(found[index]))  # type: ignore[misc]
             rest = sqrt(sum(part * part for index, part in enumerate(direction) if index != main))
             tilt = rest / abs(direction[main])
-            if not 0 < tilt <= largest:
+            if not _NO_TILT < tilt <= largest:
                 continue
             straight = " ".join(plain(float(round(part)) + 0.0) for part in _snapped(direction, main))
             yield self.report(

@@ -21,6 +21,7 @@ from linkwright.diagnostics import (
     quoted,
 )
 from linkwright.lint.fix import Edit, Fix
+from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.launch_files import LaunchRule
 from linkwright.lint.rules.package_manifest import PackageRule
@@ -219,7 +220,7 @@ class FixedFrameUnknown(PackageRule):
             frame = match["name"].strip("'\"")
             if frame in names or frame in _USUAL_FRAMES or any(_fits(frame, each) for each in patterns):
                 continue
-            like = next(iter(nearest(frame, names, 1)), None)
+            like = misspelling_of(frame, names)
             if like is not None:
                 message = phrase(
                     "no robot in this package has a link '{frame}', the fixed frame of '{file}'", frame=frame, file=file

@@ -100,6 +100,7 @@ class NegativeScale(Rule):
 
     code = "LW431"
     name = "mesh-scale-negative"
+    default = False
     holds_for_parts = True
     severity = Severity.INFO
 

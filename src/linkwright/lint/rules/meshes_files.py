@@ -8,6 +8,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, counted, display_path, phrase
 from linkwright.diagnostics.pointers import is_pointer_file
 from linkwright.lint.fix import replace_value
+from linkwright.lint.made_files import is_ignored_by_git
 from linkwright.lint.meshes import MeshUse
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.meshes_addresses import HOME, KNOWN, file_hint, malformed, normal, written
@@ -149,7 +150,7 @@ class MissingFile(Rule):
         for use, path in subject.meshes.files:
             if malformed(use.mesh.filename)[0] or HOME.match(written(use.element, "filename")):
                 continue  # that is said already
-            if path.is_file() or case_twin(path) is not None:
+            if path.is_file() or case_twin(path) is not None or is_ignored_by_git(path):
                 continue
             missing.setdefault(_last_folder(path), []).append((use, path))
         for folder, uses in missing.items():

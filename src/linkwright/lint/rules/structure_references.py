@@ -12,6 +12,7 @@ from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.xmltree import Element
+from linkwright.xmltree.patches import element_range
 
 _NUMBER = re.compile(r"\d+")
 
@@ -238,6 +239,8 @@ class ControlPluginMissing(Rule):
             hardware = system.first("hardware")
             if hardware is None and any(misspelling_of(child.tag, ["hardware"]) for child in system.elements()):
                 continue  # misspelt, which another rule says
+            if hardware is None and "<hardware" in _written(system):
+                continue  # an argument chooses it, and has no value that does
             plugin = hardware.first("plugin") if hardware is not None else None
             if plugin is None or not plugin.text().strip():
                 missing = "<hardware>" if hardware is None else "<plugin>"
@@ -252,6 +255,12 @@ class ControlPluginMissing(Rule):
                         "add <hardware><plugin>PACKAGE/CLASS</plugin></hardware>, such as mock_components/GenericSystem"
                     ),
                 )
+
+
+def _written(element: Element) -> str:
+    """The element as its file has it, with what xacro left out."""
+    found = element_range(element)
+    return "" if element.source is None or found is None else element.source.text[slice(*found)]
 
 
 class ControlJointRepeated(Rule):
@@ -341,7 +350,7 @@ class TransmissionIgnored(Rule):
     ## Why
 
     It is the form of ROS 1. ros2_control and its Gazebo plugins read joints, interfaces and transmissions inside
-    `<ros2_control>` only. Packages that build with catkin, which ROS 1 has, are left alone.
+    `<ros2_control>` only. Packages that build with catkin, which ROS 1 has, and robots that have both are left alone.
 
     ## Example
 
@@ -370,7 +379,9 @@ class TransmissionIgnored(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """The first transmission of the form of ROS 1."""
         manifest = subject.package and subject.package.manifest
-        found = [] if manifest and manifest.is_ros1 else list(subject.elements("transmission"))
+        if (manifest and manifest.is_ros1) or any(subject.elements("ros2_control")):
+            return
+        found = list(subject.elements("transmission"))
         if found:
             message = phrase("nothing in ROS 2 reads <transmission> directly in <robot>")
             if len(found) > 1:

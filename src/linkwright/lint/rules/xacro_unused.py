@@ -13,6 +13,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.lint.fix import remove_element
+from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, parameter_span
 from linkwright.xmltree import Element
@@ -235,9 +236,10 @@ class UnusedMacroParameter(XacroRule):
             return  # macros that are called by a value of their name must all take the same parameters
         for file in facts.own.values():
             for macro in file.macros:
-                yield from self._of_macro(macro, file, facts)
+                shared = _parameters_of_others(macro, facts)
+                yield from (each for name, each in self._of_macro(macro, file, facts) if name not in shared)
 
-    def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[Diagnostic]:
+    def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
         used, blocks, is_open = _used_inside(macro.element, file)
         calls_others = bool(file.calls_by_macro.get(id(macro.element)))
         for parameter in file.parameters(macro.element):
@@ -255,9 +257,19 @@ class UnusedMacroParameter(XacroRule):
                     if parameter.is_block
                     else phrase("the macro '{macro}' does not use its parameter '{name}'", macro=macro.name, name=name)
                 )
-                yield self.report(
-                    message, macro.element, "params", span=span, hint=phrase("use it, or take it out of the calls too")
-                )
+                hint = phrase("use it, or take it out of the calls too")
+                yield name, self.report(message, macro.element, "params", span=span, hint=hint)
+
+
+def _parameters_of_others(macro: Definition, facts: XacroFacts) -> set[str]:
+    """The parameters of other macros: one that several take is their convention, whoever needs it."""
+    return {
+        parameter.name.lstrip("*")
+        for file in facts.files.values()
+        for other in file.macros
+        if other.element is not macro.element
+        for parameter in file.parameters(other.element)
+    }
 
 
 def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], bool]:
@@ -294,11 +306,9 @@ def _is_first(definition: Definition, file: FileFacts) -> bool:
 
 
 def _hint(name: str, used: frozenset[str], form: str = "${...}") -> Phrase:
-    from linkwright.diagnostics import nearest
-
-    close = [each for each in nearest(name, used, 1) if len(each) > 3 and abs(len(each) - len(name)) < 2]
-    if close:
-        return phrase("'{close}' is used: is that this one? Otherwise remove it", close=close[0])
+    meant = misspelling_of(name, used)
+    if meant is not None:
+        return phrase("'{close}' is used: is that this one? Otherwise remove it", close=meant)
     return phrase("use it with {form}, or remove it", form=form)
 
 
