@@ -276,3 +276,29 @@ def test_an_empty_file_is_one_yet_to_be_written(tmp_path, capsys):
     assert main(["check", str(tmp_path)]) == 0
     assert "later.xacro" not in capsys.readouterr().err
     assert main(["check", str(tmp_path / "later.xacro")]) == 1
+
+
+def test_what_tests_need_has_errors_only_in_a_folder(here, capsys):
+    joint = '<joint name="j" type="fixed"><parent link="a"/>{}</joint>'
+    robot = f'<robot name="r"><link name="a"/><link name="b"/>{joint}</robot>'
+    for folder, child in (
+        ("test", '<child link="b"/>'),
+        ("tests2", '<child link="c"/>'),
+        ("attest", '<child link="b"/>'),
+    ):
+        (here / "p" / folder).mkdir(parents=True)
+        (here / "p" / folder / "r.urdf").write_text(robot.format(child))
+    main(["check", "--format", "concise", "p"])
+    told = {tuple(line.split(" ")[:2]) for line in capsys.readouterr().out.splitlines()}
+    assert {place.partition("/")[2].partition("/")[0] for place, kind in told if kind.startswith("error")} == {"tests2"}
+    assert {place.partition("/")[2].partition("/")[0] for place, kind in told if "LW102" in kind} == {"attest"}
+    main(["check", "--format", "concise", "p/test"])
+    assert "LW102" in capsys.readouterr().out
+
+
+def test_plugins_for_webots_are_no_robot(here, capsys):
+    (here / "p").mkdir()
+    (here / "p" / "driver.urdf").write_text('<robot name="r"><webots><plugin type="p.Driver"/></webots></robot>')
+    (here / "p" / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+    assert main(["check", "p"]) == 0
+    assert "driver.urdf" not in capsys.readouterr().out

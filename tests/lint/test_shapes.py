@@ -21,9 +21,6 @@ FOUND = {
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_ackermann_drive.xacro.urdf": {"LW310", "LW321"},
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_diff_drive.xacro.urdf": {"LW321"},
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_tricycle_drive.xacro.urdf": {"LW321", "LW324"},
-    # A beam of 30 m and 100 kg with 1 kg m2.
-    "gz_ros2_control/gz_ros2_control_demos/urdf/test_pendulum_effort.xacro.urdf": {"LW325"},
-    "gz_ros2_control/gz_ros2_control_demos/urdf/test_pendulum_position.xacro.urdf": {"LW325"},
     # A dock of 15 kg with the inertia of one of 15 g.
     "husarion_components_description/urdf/wibotic_station.urdf.xacro": {"LW325"},
     # One link's identified tensor breaks the triangle inequality by 9 %.

@@ -12,10 +12,8 @@ from linkwright.xmltree import Element
 
 INNER_EXTENSIONS = frozenset({"contact", "sensor", "verbose", "self_collision_checking", "plugin", "gazebo"})
 """Elements of other tools inside of links and joints."""
-EXTENSION_ATTRIBUTES = frozenset(
-    {"D", "K", "mu_coulomb", "mu_viscous", "type", "id", "reference_position", "unit", "current", "gear_velocity"}
-)
-"""Attributes of other tools, such as those of Franka's ``<dynamics>`` and ANYmal's ``<limit>``."""
+EXTENSION_ATTRIBUTES = frozenset({"D", "K", "mu_coulomb", "mu_viscous", "type", "id", "reference_position", "unit"})
+"""Attributes of other tools, such as those of Franka's ``<dynamics>``."""
 
 _OTHER_ELEMENTS = {
     "pose": "origin",

@@ -1,0 +1,126 @@
+"""What rules leave alone because nobody would mend it; each beside what they do tell of."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.lint.engine import examine, examine_package
+from linkwright.lint.settings import Settings
+
+PREFIX = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+BOX = '<visual><geometry><box size="{0} {0} {0}"/></geometry></visual>'
+
+
+@pytest.fixture
+def told(tmp_path):
+    """The codes of what is said of a robot's text, with more files beside it."""
+
+    def check(text, *selectors, name="r.urdf", **files):
+        for file, content in files.items():
+            (tmp_path / file.replace("_dot_", ".")).write_text(content)
+        (tmp_path / name).write_text(text)
+        found = examine(tmp_path / name, settings=Settings(select=selectors)).diagnostics
+        return [each.code for each in found if each.code.startswith(selectors)]
+
+    return check
+
+
+def robot(inside, attributes=""):
+    return f'<robot name="r" {attributes}>{inside}</robot>'
+
+
+def moving(name, inside, parent="base", axis="0 0 1"):
+    joint = f'<joint name="j_{name}" type="continuous"><parent link="{parent}"/><child link="{name}"/>'
+    return f'{joint}<axis xyz="{axis}"/></joint><link name="{name}">{inside}</link>'
+
+
+def inertial(mass, moment, origin='<origin xyz="0 0 0"/>'):
+    moments = f'ixx="{moment}" iyy="{moment}" izz="{moment}" ixy="0" ixz="0" iyz="0"'
+    return f'<inertial>{origin}<mass value="{mass}"/><inertia {moments}/></inertial>'
+
+
+@pytest.mark.parametrize(("inside", "codes"), [("", ["LW102"]), (inertial(1, 1), [])])
+def test_a_model_for_dynamics_needs_no_shapes(told, inside, codes):
+    assert told(robot(f'<link name="base"/>{moving("a", inside)}'), "LW102") == codes
+
+
+@pytest.mark.parametrize(("axis", "codes"), [("1.2e-16 0 -1", []), ("0.0001 0 -1", ["LW224"])])
+def test_an_axis_that_only_doubles_tilt(told, axis, codes):
+    assert told(robot(f'<link name="base"/>{moving("a", "", axis=axis)}'), "LW224") == codes
+
+
+@pytest.mark.parametrize(("mass", "codes"), [(0.1, []), (300, ["LW320"])])
+def test_a_small_mass_on_a_small_frame(told, mass, codes):
+    shape = BOX.format(0.0063) + '<collision><geometry><box size="0.0063 0.0063 0.0063"/></geometry></collision>'
+    assert told(robot(f'<link name="base"/>{moving("tool", shape + inertial(mass, 1e-6))}'), "LW320") == codes
+
+
+@pytest.mark.parametrize(("origin", "codes"), [("", ["LW323"]), ('<origin xyz="0 0 0"/>', ["LW322"])])
+def test_a_centre_of_mass_far_from_its_shapes_is_told_of_once(told, origin, codes):
+    shape = '<visual><origin xyz="0 0 0.5"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+    inside = shape + inertial(1, 0.002, origin)
+    assert told(robot(f'<link name="base"/>{moving("a", inside)}'), "LW322", "LW323") == codes
+
+
+@pytest.mark.parametrize(("root", "codes"), [("world", []), ("floor", ["LW325"])])
+def test_the_inertia_of_what_is_fixed_to_the_world(told, root, codes):
+    stand = f'<link name="stand">{BOX.format(1)}{inertial(1000, 0.01)}</link>'
+    joint = f'<joint name="j" type="fixed"><parent link="{root}"/><child link="stand"/></joint>'
+    assert told(robot(f'<link name="{root}"/>{stand}{joint}'), "LW325") == codes
+
+
+@pytest.mark.parametrize(("ignored", "codes"), [("*.obj", ["LW424"]), ("meshes/", []), ("*.stl\n!wheel.stl", [])])
+def test_a_mesh_that_git_ignores(told, ignored, codes):
+    manifest = "<package format='3'><name>p</name></package>"
+    mesh = '<visual><geometry><mesh filename="package://p/meshes/body.stl"/></geometry></visual>'
+    files = {"package_dot_xml": manifest, "_dot_gitignore": ignored}
+    assert told(robot(f'<link name="base">{mesh}</link>'), "LW424", **files) == codes
+
+
+_HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
+
+
+@pytest.mark.parametrize(
+    ("inside", "codes"), [(f'<xacro:if value="false">{_HARDWARE}</xacro:if>', []), ("", ["LW124"])]
+)
+def test_hardware_that_an_argument_chooses(told, inside, codes):
+    control = f'<ros2_control name="c" type="system">{inside}</ros2_control>'
+    assert told(robot(f'<link name="base"/>{control}', PREFIX), "LW124", name="r.urdf.xacro") == codes
+
+
+@pytest.mark.parametrize(
+    ("control", "codes"), [("", ["LW127"]), (f'<ros2_control name="c" type="system">{_HARDWARE}</ros2_control>', [])]
+)
+def test_transmissions_beside_ros2_control(told, control, codes):
+    inside = f'<link name="base"/>{moving("a", "")}<transmission name="t"><joint name="j_a"/></transmission>'
+    assert told(robot(inside + control), "LW127") == codes
+
+
+_WHEEL = '<xacro:macro name="wheel" params="name prefix"><link name="${name}"/></xacro:macro>'
+_ARM = '<xacro:macro name="arm" params="prefix"><link name="${prefix}arm"/></xacro:macro>'
+
+
+@pytest.mark.parametrize(("more", "codes"), [("", ["LW705"]), (_ARM + '<xacro:arm prefix="l_"/>', [])])
+def test_a_parameter_that_other_macros_take_too(told, more, codes):
+    text = robot(f'{_WHEEL}<xacro:wheel name="w" prefix=""/>{more}', PREFIX)
+    assert told(text, "LW705", name="r.urdf.xacro") == codes
+
+
+@pytest.mark.parametrize(
+    ("unused", "hint"),
+    [("image_px", "use it with ${...}, or remove it"), ("imge_pz", "'image_pz' is used: is that this one?")],
+)
+def test_a_siblings_name_is_not_proposed_for_an_unused_property(tmp_path, unused, hint):
+    properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in (unused, "image_pz"))
+    (tmp_path / "r.urdf.xacro").write_text(robot(properties + '<link name="l${image_pz}"/>', PREFIX))
+    (found,) = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
+    assert str(found.hint).startswith(hint)
+
+
+@pytest.mark.parametrize(("frame", "codes"), [("link", []), ("base_lnk", ["LW849"])])
+def test_a_fixed_frame_of_another_robot(tmp_path, frame, codes):
+    (tmp_path / "package.xml").write_text("<package format='3'><name>p</name></package>")
+    (tmp_path / "r.urdf").write_text(robot('<link name="base_link"/><link name="link3"/>'))
+    (tmp_path / "r.rviz").write_text(f"Visualization Manager:\n  Global Options:\n    Fixed Frame: {frame}\n")
+    found = examine_package(tmp_path, Settings(select=("LW849",))).diagnostics
+    assert [each.code for each in found] == codes
