@@ -134,7 +134,7 @@ function start(app: HTMLElement): void {
 
   session.editing.wanted.on(() => dock.open("editing"));
 
-  const stage = makeStage(scene.container, session, dock.displayPanels);
+  const stage = makeStage(scene.container, session, dock.displayPanels, theme);
   if (stage) scene.lieOver(stage.room);
   commands.takeKeys();
   const toolbox = stage && takeTools(stage, session, (event) => {
@@ -270,9 +270,9 @@ function takeFileKeys(session: Session, files: FileCommands): void {
 }
 
 /** Without WebGL everything else still works. */
-function makeStage(container: HTMLElement, session: Session, panels: PanelHost): Stage | null {
+function makeStage(container: HTMLElement, session: Session, panels: PanelHost, theme: ThemeState): Stage | null {
   try {
-    return new Stage(container, session, panels, SERVED, new StandIns(standInWorker));
+    return new Stage(container, session, panels, theme, SERVED, new StandIns(standInWorker));
   } catch (error) {
     console.warn(error);
     container.append(noWebgl());

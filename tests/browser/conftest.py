@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import pytest
 from playwright.sync_api import Browser, Page, Playwright, sync_playwright
@@ -204,8 +204,16 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
     contexts = []
     complaints: list[str] = []
 
-    def open_url(program: Program | LiveViewer, *, wait: bool = True, size: tuple[int, int] = (1280, 800)) -> Page:
-        context = browser.new_context(viewport={"width": size[0], "height": size[1]}, locale="en-US")
+    def open_url(
+        program: Program | LiveViewer,
+        *,
+        wait: bool = True,
+        size: tuple[int, int] = (1280, 800),
+        theme: Literal["light", "dark"] = "light",
+    ) -> Page:
+        context = browser.new_context(
+            viewport={"width": size[0], "height": size[1]}, locale="en-US", color_scheme=theme
+        )
         context.set_default_timeout(1000 * SECONDS)
         contexts.append(context)
         page = context.new_page()

@@ -1,4 +1,7 @@
-"""The studio shows what lamps light as film would; the light at the camera shows colours as they are written."""
+"""The studio shows what lamps light as film would; the light at the camera shows colours as they are written.
+
+`view` shows robots of any colour before a ground that they stand out from, also where the processor draws.
+"""
 
 from __future__ import annotations
 
@@ -43,3 +46,48 @@ def test_the_studio_keeps_the_shape_of_what_is_lit_strongly(start, open_page, tm
     assert max(camera) >= 254, "what faces the camera has its own colour"
     assert 225 < max(studio) < 252
     assert studio.count(max(studio)) < len(studio) / 5, "brightness tells the shape: nothing is cut off at white"
+
+
+BLACK = BALL.replace("1 1 1 1", "0 0 0 1")
+
+
+def column(page, across: float = 0.5) -> list[int]:
+    """How bright the scene is from its top to its bottom, at a share of its width."""
+    box = page.locator(".canvas-box canvas").first.bounding_box()
+    x = box["x"] + across * box["width"]
+    places = [(x, box["y"] + box["height"] * (0.02 + 0.96 * step / 60)) for step in range(61)]
+    return [sum(color) // 3 for color in colors_at(page, *places)]
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("robot", [BLACK, BALL], ids=["black", "white"])
+def test_view_shows_the_shape_of_robots_of_any_colour_before_its_ground(start, open_page, tmp_path, theme, robot):
+    (tmp_path / "ball.urdf").write_text(robot)
+    page = open_page(start("view", str(tmp_path / "ball.urdf")), theme=theme)
+    until(page, "lw.settled")
+    greys = column(page)
+    ball, ground = greys[16:45], column(page, 0.02)
+    assert min(ground) > 60
+    assert max(ground) < 245
+    assert max(ball) - min(ball) > 25, "the ball is round, whatever its colour"
+    assert max(abs(ground[30] - each) for each in ball) > 40
+
+
+def test_the_colours_of_an_rviz_file_are_kept(start, open_page, tmp_path):
+    (tmp_path / "ball.urdf").write_text(BALL)
+    (tmp_path / "plain.rviz").write_text(VIEW.format(light="Camera"))
+    page = open_page(start("view", str(tmp_path / "ball.urdf"), "-d", str(tmp_path / "plain.rviz")))
+    until(page, "lw.settled")
+    assert set(column(page, 0.02)) == {0x30}
+
+
+def test_a_colour_is_behind_the_scene_where_the_user_wants_one(start, open_page, tmp_path):
+    (tmp_path / "ball.urdf").write_text(BALL)
+    page = open_page(start("view", str(tmp_path / "ball.urdf")))
+    until(page, "lw.settled")
+    background = page.get_by_role("treeitem").filter(has_text="Background Color")
+    assert background.count() == 0
+    page.get_by_role("treeitem").filter(has_text="Backdrop").locator("select").select_option("Color")
+    background.wait_for()
+    until(page, "lw.settled")
+    assert column(page, 0.02)[:2] == [0x30] * 2, "lines of the grid are below"

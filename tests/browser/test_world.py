@@ -193,7 +193,7 @@ def test_a_world_is_in_the_light_of_the_camera_a_studio_or_its_own_lights(live, 
         return page.evaluate("() => window.linkwright.displays[0].drawn.light")
 
     for choice, expected in (
-        ("Automatic", {"lighting": "Camera", "lights": 0, "shadows": 0}),  # where the tests run the processor draws
+        ("Automatic", {"lighting": "Soft", "lights": 0, "shadows": 0}),  # where the tests run the processor draws
         ("Studio", {"lighting": "Studio", "lights": 1, "shadows": 1}),
         ("World", {"lighting": "World", "lights": 3, "shadows": 1}),
     ):

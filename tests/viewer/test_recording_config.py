@@ -47,6 +47,28 @@ def test_transforms_are_drawn_where_there_is_no_robot(tmp_path: Path, described:
     assert scan.section.text("Topic", "Reliability Policy") == "Best Effort"
 
 
+def test_a_recording_of_a_simulation_opens_with_its_world(tmp_path: Path) -> None:
+    with BagWriter(tmp_path / "bag") as writer:
+        for name, message in (
+            ("/tf", transform("odom", "base_link")),
+            ("/world_poses", transform("world", "mbot::base_link")),
+        ):
+            writer.add_topic(name, "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+            writer.write(name, START, message)
+        for name in ("/scan", "/world_rays", "/world_rays/others"):
+            writer.add_topic(name, "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
+            writer.write(name, START, serialize(LaserScan()))
+        for name in ("/robot_description", "/world_description"):
+            writer.add_topic(name, "std_msgs/msg/String", [DESCRIPTION_QOS])
+            writer.write(name, START, serialize(String(data="")))
+    with BagReader(tmp_path / "bag") as bag:
+        config = recording_config(bag)
+    shown = {display.name: display.checked for display in config.displays}
+    assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "scan": True}
+    assert config.options.text("Fixed Frame") == "world"
+    assert config.views.current.values["Target Frame"] == "<Fixed Frame>", "the camera stands still"
+
+
 def test_a_scan_without_transforms_is_looked_at_from_its_own_frame(tmp_path: Path) -> None:
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])

@@ -43,7 +43,7 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   const overlay = h("div", { class: "overlay" }, column.element, new OrientationSign(session).element);
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
-  const stage = makeStage(container, session, new RecordedFiles(recording.files));
+  const stage = makeStage(container, session, new RecordedFiles(recording.files), theme);
   if (stage) column.lieOver(stage.room);
   const actions = {
     lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
@@ -64,9 +64,9 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   publishInspection(session, stage, toolbox, {});
 }
 
-function makeStage(container: HTMLElement, session: Session, files: RecordedFiles): Stage | null {
+function makeStage(container: HTMLElement, session: Session, files: RecordedFiles, theme: ThemeState): Stage | null {
   try {
-    return new Stage(container, session, NO_PANELS, files);
+    return new Stage(container, session, NO_PANELS, theme, files);
   } catch (error) {
     console.warn(error);
     container.append(noWebgl());

@@ -18,7 +18,8 @@ import {
   type Texture,
 } from "three";
 import { filmic } from "./filmic-tone";
-import type { Lighting } from "./light";
+import { standsInScene, type Lighting } from "./light";
+import { soft } from "./soft-material";
 
 /**
  * The reflection of a surface: roughness and metalness from 0 to 1, maps of these and of its normals, its emission, and
@@ -90,7 +91,7 @@ export class MaterialPool {
 
   /** Whether lights that stand in the scene shine on the surfaces, so that each is to be drawn by itself. */
   get isLit(): boolean {
-    return this.lighting !== "Camera";
+    return standsInScene(this.lighting);
   }
 
   get(look: Look): Material {
@@ -114,6 +115,7 @@ export class MaterialPool {
       };
       material = surface ? reflecting(style, surface) : new MeshLambertMaterial(style);
       if (this.lighting === "Studio") filmic(material);
+      else if (this.lighting === "Soft") soft(material);
       this.materials.set(key, material);
     }
     return material;

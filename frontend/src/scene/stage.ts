@@ -1,13 +1,16 @@
 import { Box3, Group, type Camera, type Object3D } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
+import type { Theme, ThemeState } from "../state/theme";
 import type { Span } from "../state/views/vector";
 import type { PanelHost } from "./displays/display-panel";
 import type { Drawing, DrawnScene } from "./displays/drawing";
 import { Pacing } from "./displays/pacing";
 import { DRAWINGS } from "./displays/registry";
+import { pointsOn } from "./robot/surface-samples";
 import { RobotModelDrawing } from "./displays/robot-model";
 import { WorldDrawing } from "./displays/world";
+import { Backdrop } from "./backdrop";
 import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
 import { lookFirst, spanOf } from "./first-look";
@@ -20,8 +23,9 @@ import type { StandIns } from "./meshes/stand-ins";
 import { Outline } from "./outline";
 import { Picker } from "./picker";
 import type { Interaction } from "./picking";
-import { StudioLight } from "./studio-light";
-import type { OwnLight } from "./surroundings";
+import type { Lighting } from "./light";
+import { RobotLight } from "./robot-light";
+import { hasOwnBackground } from "./surroundings";
 import { Viewport } from "./viewport";
 
 /** A robot whose links have no places yet is waited for no longer: some never get a transform. */
@@ -48,9 +52,8 @@ export class Stage {
   /** What only this view shows: handles, and the point that it turns about. */
   readonly aids = new Group();
   private interaction: Interaction = { enabled: false, hideOthers: false };
-  private readonly studio = new StudioLight();
-  /** What stands in the studio, and how high its ground is, m. */
-  private staged = { what: "", height: 0 };
+  private readonly robotLight = new RobotLight();
+  private readonly backdrop = new Backdrop();
   private robotSettled = false;
   /** When the robot was drawn with all meshes, though nothing of it has a place. */
   private placelessSince: number | null = null;
@@ -61,6 +64,7 @@ export class Stage {
     container: HTMLElement,
     private readonly session: Session,
     private readonly panels: PanelHost,
+    private readonly theme: ThemeState,
     files: MeshFiles = SERVED,
     standIns: StandIns | null = null,
   ) {
@@ -74,7 +78,7 @@ export class Stage {
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
     this.marks = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
     this.aids.add(this.focalShape.root);
-    this.viewport.scene.add(this.aids, this.marks.root, this.studio.root);
+    this.viewport.scene.add(this.aids, this.marks.root, this.robotLight.root, this.backdrop.root);
     this.listen();
     this.matchDisplays();
   }
@@ -139,7 +143,7 @@ export class Stage {
 
   /** Looks at all of the robots, from the side that the camera is at. */
   fitRobots(): void {
-    const box = this.boundsOfRobots();
+    const box = this.shapeOfRobots();
     if (box) this.session.view.fit(box, this.room.take());
   }
 
@@ -188,6 +192,12 @@ export class Stage {
     selection.changed.on(() => this.selectionChanged());
     session.focus.hoverChanged.on(invalidate);
     session.time.wasReset.on(invalidate);
+    const dress = (theme: Theme): void => {
+      this.backdrop.theme = theme;
+      invalidate();
+    };
+    dress(this.theme.theme);
+    this.theme.changed.on(dress);
   }
 
   private matchDisplays(): void {
@@ -229,9 +239,13 @@ export class Stage {
 
   private globalOptionsChanged(): void {
     const options = this.session.displays.globalOptions;
-    this.viewport.background = options.text("#303030", "Background Color");
+    this.viewport.background = this.backgroundColor;
     this.loop.rate = options.number(30, "Frame Rate");
     this.loop.invalidate();
+  }
+
+  private get backgroundColor(): string {
+    return this.session.displays.globalOptions.text("#303030", "Background Color");
   }
 
   private draw(detail: Detail): void {
@@ -239,8 +253,8 @@ export class Stage {
     this.viewport.share = detail.share;
     this.viewport.aim(view);
     this.focalShape.place(view);
-    const inStudio = this.isInStudio;
-    for (const robot of this.robots()) robot.isLit = inStudio;
+    const { lighting } = this;
+    for (const robot of this.robots()) robot.light = lighting;
     let settled = true;
     const now = performance.now();
     for (const { display, drawing, pacing } of this.drawings.values()) {
@@ -252,7 +266,8 @@ export class Stage {
     this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
     if (settled && this.session.robot !== null) this.placelessSince ??= now;
     this.lookFirst(settled);
-    const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.lightOfStudio(inStudio);
+    const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.robotLight.shine(this.worlds().length > 0 ? "Camera" : lighting, this.robots(), this.backgroundColor);
+    this.backdrop.root.visible = this.session.displays.hasBackdrop && !hasOwnBackground(ownLight);
     this.viewport.light(ownLight);
     this.marks.update();
     this.outline.set(this.selectedObjects());
@@ -265,21 +280,13 @@ export class Stage {
     this.drawElsewhere();
   }
 
-  /** Whether a studio lights robots; a world is lit as its display says. */
-  private get isInStudio(): boolean {
+  /** What lights robots; a world is lit as its display says, and robots beside it likewise. */
+  private get lighting(): Lighting {
+    const [world] = this.worlds();
+    if (world) return world.lighting === "Soft" ? "Soft" : "Camera";
     const light = this.session.displays.globalOptions.text("Camera", "Light");
-    return this.worlds().length === 0 && (light === "Studio" || (light === "Automatic" && this.viewport.affordsStudio));
-  }
-
-  private lightOfStudio(isOn: boolean): OwnLight | null {
-    this.studio.root.visible = isOn;
-    if (!isOn) return null;
-    const robots = this.robots();
-    const what = robots.map((robot) => robot.seen).join(";");
-    if (what !== this.staged.what) this.staged = { what, height: this.boundsOfRobots()?.min[2] ?? 0 };
-    this.studio.shineOn(robots.reduce((sum, robot) => sum.union(robot.roughBounds()), new Box3()), this.staged.height);
-    const backdrop = this.session.displays.globalOptions.text("#303030", "Background Color");
-    return { shadows: true, background: null, daylight: null, fog: null, backdrop };
+    if (light === "Camera") return "Camera";
+    return light === "Studio" || this.viewport.affordsStudio ? "Studio" : "Soft";
   }
 
   /** Puts the camera that nobody has put anywhere before the robot, as far as that is there, or into a world that is all there. */
@@ -293,7 +300,7 @@ export class Stage {
       const seen = robots.flatMap((robot) => robot.seen || []).join(";");
       const fits = view.awaitsFit(seen);
       if (seen === "" || !(fits || view.awaitsSize)) return;
-      const box = this.boundsOfRobots();
+      const box = this.shapeOfRobots();
       if (box && fits) view.fitFirst(box, this.room.take(), seen);
       if (box && settled) view.measured(box, Math.min(...robots.map((robot) => robot.ground())));
     }
@@ -318,6 +325,13 @@ export class Stage {
     return spanOf(this.robots().reduce((sum, robot) => sum.union(robot.bounds()), new Box3()));
   }
 
+  /** The box around all robots, with points of their surfaces. */
+  private shapeOfRobots(): Span | null {
+    const box = this.boundsOfRobots();
+    const points = this.robots().flatMap((robot) => robot.visibleMeshes.flatMap((mesh) => pointsOn(mesh)));
+    return box && points.length > 0 ? { ...box, points } : box;
+  }
+
   /** The box around robots and the world's models; where there are none, around all that can be selected. */
   private boundsOfAll(): Span | null {
     const worlds = this.worlds().reduce((sum, world) => sum.union(world.extents().world), new Box3());
@@ -328,19 +342,19 @@ export class Stage {
   /** Has the displays draw that show the scene in panels of their own. */
   private drawElsewhere(): void {
     const { renderer, scene } = this.viewport;
-    const background = this.session.displays.globalOptions.text("#303030", "Background Color");
-    const view: DrawnScene = { renderer, scene, background, showing: (accepts, draw) => this.showing(accepts, draw) };
+    const view: DrawnScene = { renderer, scene, background: this.backgroundColor, showing: (accepts, draw) => this.showing(accepts, draw) };
     for (const { display, drawing } of this.drawings.values()) if (display.enabled) drawing.drawn?.(view);
   }
 
   private showing(accepts: (display: DisplayState) => boolean, draw: () => void): void {
-    this.aids.visible = false;
+    const beside = [this.aids, this.backdrop.root, this.robotLight.root].filter((each) => each.visible);
+    for (const each of beside) each.visible = false;
     for (const { display, drawing } of this.drawings.values()) {
       drawing.root.visible = display.enabled && accepts(display);
     }
     draw();
     for (const { display, drawing } of this.drawings.values()) drawing.root.visible = display.enabled;
-    this.aids.visible = true;
+    for (const each of beside) each.visible = true;
   }
 
   private selectionChanged(): void {

@@ -16,6 +16,11 @@ export interface OwnLight extends Surroundings {
   readonly shadows: boolean;
 }
 
+/** Whether a world says what is behind it. */
+export function hasOwnBackground(light: OwnLight | null): boolean {
+  return light !== null && (light.background !== null || light.daylight !== null);
+}
+
 type Rgb = readonly [number, number, number];
 /** The colours at the nadir, at the horizon and at the zenith. */
 type Sky = readonly [below: Rgb, middle: Rgb, above: Rgb];

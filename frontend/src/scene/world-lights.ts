@@ -13,7 +13,7 @@ import {
 } from "three";
 import type { LightScene, WorldScene } from "../protocol";
 import type { PropertyRows } from "../state/properties";
-import type { Lighting } from "./light";
+import { standsInScene, type Lighting } from "./light";
 import { aimSun, castShadows, FULL, shade, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
 
 /** Shadows are drawn this far around the middle of what is drawn at most, m. */
@@ -40,8 +40,8 @@ export class WorldLights {
   /** Takes what the display's properties and its world say. */
   style(rows: PropertyRows, scene: WorldScene): void {
     const said = rows.text("Automatic", "Light");
-    this.chosen = said === "Studio" || said === "World" || said === "Camera" ? said : this.affordsStudio() ? "Studio" : "Camera";
-    this.shadowed = this.chosen !== "Camera" && rows.bool(true, "Shadows") && (this.chosen === "Studio" || scene.shadows);
+    this.chosen = said === "Studio" || said === "World" || said === "Camera" ? said : this.affordsStudio() ? "Studio" : "Soft";
+    this.shadowed = this.isLit && rows.bool(true, "Shadows") && (this.chosen === "Studio" || scene.shadows);
     const key = [this.chosen, this.shadowed, scene.revision].join();
     if (key === this.made) return;
     this.made = key;
@@ -52,7 +52,7 @@ export class WorldLights {
 
   /** Whether the light at the camera is not needed. */
   get isLit(): boolean {
-    return this.chosen !== "Camera";
+    return standsInScene(this.chosen);
   }
 
   get lighting(): Lighting {

@@ -169,6 +169,11 @@ export class DisplaysState {
     return this.globalOptions.text("", "Fixed Frame");
   }
 
+  /** Whether a sky and a ground are behind the scene, and not the colour of the background. */
+  get hasBackdrop(): boolean {
+    return this.globalOptions.text("Color", "Backdrop") !== "Color";
+  }
+
   private index(): void {
     this.owners = new Map();
     const add = (rows: PropertyRows, display: DisplayState | null): void => {

@@ -8,8 +8,10 @@ from linkwright.bag import BagReader, BagTopic
 from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.graph import DurabilityPolicy, ReliabilityPolicy
 from linkwright.messages import TFMessage, deserialize, get_message
+from linkwright.sdf.poses import WORLD
 from linkwright.urdf import Robot
 from linkwright.viewer.config.rviz_config import RvizConfig
+from linkwright.viewer.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC, WORLD_DISPLAY
 from linkwright.viewer.recorded_robot import description_topic, namespace_of_transforms
 from linkwright.viewer.size import size_of
 
@@ -43,7 +45,8 @@ _DISPLAYS = (
 def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
     """The first configuration for a recording: its robot, and a display for each topic of the usual types.
 
-    Transforms are drawn where there is no robot, which their axes would cover.
+    Transforms are drawn where there is no robot, which their axes would cover. A recording of a simulation shows its
+    world, in the frame of the world; the model of the robot is there, but off, as the world has the robot in it.
 
     Args:
         bag: the recording.
@@ -51,10 +54,11 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
     """
     described, namespace = description_topic(bag), namespace_of_transforms(bag)
     root, children = _tree(bag, namespace)
-    fixed_frame = root or (robot.root if robot is not None else _frame_of_messages(bag))
+    world = _has_world(bag)
+    fixed_frame = WORLD if world else root or (robot.root if robot is not None else _frame_of_messages(bag))
     config = RvizConfig.for_model(fixed_frame, frames=described is None, name=str(bag.path))
     base = next((name for name in _bases(robot) if name in children), None)
-    if base is not None and root in _PLACES:
+    if base is not None and root in _PLACES and not world:
         size = None if robot is None else size_of(robot)
         config.follow(base, _LEAST_DISTANCE if size is None else max(_LEAST_DISTANCE, _DISTANCE_FACTOR * size.distance))
     for display in list(config.displays):
@@ -65,13 +69,27 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
             display.section.put(("Description Topic", "Value"), described, string=True)
         elif kind == "TF" and root is None and robot is None:
             config.remove(display)
+        if world and kind in ("RobotModel", "TF"):
+            display.checked = False
+    if world:
+        shown_world = config.make(WORLD_DISPLAY, "World")
+        config.insert(shown_world)
+        shown_world.checked = True
     shown: Counter[str] = Counter()
     for message, kind, most in _DISPLAYS:
         for topic in (each for each in bag.topics if each.type_name == message and each.count):
+            if world and topic.name.startswith(RAYS_TOPIC):
+                continue  # the World display draws them
             own = not namespace or topic.name.startswith(f"{namespace}/")  # frames of other robots have the same names
             _add(config, kind, topic, checked=own and shown[kind] < most)
             shown[kind] += own
     return config
+
+
+def _has_world(bag: BagReader) -> bool:
+    """Whether it is of a simulation: the world, and where things are in it."""
+    there = {topic.name for topic in bag.topics if topic.count}
+    return {DESCRIPTION_TOPIC, POSES_TOPIC} <= there
 
 
 def _add(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> None:

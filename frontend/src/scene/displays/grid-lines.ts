@@ -56,6 +56,15 @@ export function inPieces(lines: Float32Array, pieces: number): Float32Array {
   return found;
 }
 
+/** The colours r g b a of ends of lines around the origin, which fade towards the farthest: a ground does not end. */
+export function shadesOf(ends: Float32Array): Float32Array {
+  const shades = new Float32Array((ends.length / 3) * 4).fill(1);
+  const far = (i: number): number => Math.hypot(ends[i] ?? 0, ends[i + 1] ?? 0, ends[i + 2] ?? 0);
+  const farthest = ends.reduce((most, each) => Math.max(most, Math.abs(each)), 0);
+  for (let i = 0; i < ends.length; i += 3) shades[(i / 3) * 4 + 3] = Math.max(0, 1 - (far(i) / farthest) ** 2);
+  return shades;
+}
+
 function turned([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {
   if (plane === "XZ") return [a, normal, b];
   if (plane === "YZ") return [normal, a, b];

@@ -3,7 +3,7 @@ import { FIXED_FRAME } from "../../state/view";
 import { WideLines } from "../objects/wide-lines";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
-import { gridLines, inPieces } from "./grid-lines";
+import { gridLines, inPieces, shadesOf } from "./grid-lines";
 
 /** As many cells have lines of a piece for each; more are not made of more pieces. */
 const MOST_PIECES = 20;
@@ -14,6 +14,7 @@ export class GridDrawing implements Drawing {
   private readonly lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   private readonly billboards = new WideLines();
   private frame = "";
+  private fades = false;
 
   constructor(private readonly context: DrawingContext) {
     this.root.matrixAutoUpdate = false;
@@ -42,10 +43,14 @@ export class GridDrawing implements Drawing {
     const pieces = wide ? new Float32Array(0) : inPieces(segments, Math.max(1, Math.min(cells, MOST_PIECES)));
     this.lines.geometry.dispose();
     this.lines.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(pieces, 3));
+    this.fades = this.context.session.displays.hasBackdrop;
+    const shades = this.fades ? shadesOf(pieces) : null;
+    if (shades) this.lines.geometry.setAttribute("color", new Float32BufferAttribute(shades, 4));
+    this.lines.material.vertexColors = shades !== null;
     this.lines.material.color.set(color);
     this.lines.material.opacity = alpha;
-    this.lines.material.transparent = alpha < 1;
-    this.lines.material.depthWrite = alpha >= 1;
+    this.lines.material.transparent = alpha < 1 || this.fades;
+    this.lines.material.depthWrite = alpha >= 1 && !this.fades;
     this.lines.material.needsUpdate = true;
     this.frame = rows.text(FIXED_FRAME, "Reference Frame");
   }
@@ -56,6 +61,7 @@ export class GridDrawing implements Drawing {
 
   update(): void {
     const { frames, displays } = this.context.session;
+    if (displays.hasBackdrop !== this.fades) this.propertiesChanged();
     if (this.frame === FIXED_FRAME || this.frame === displays.fixedFrame) {
       this.root.matrix.identity();
     } else {

@@ -1,9 +1,10 @@
-import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
+import { Box3, Group, Matrix4, Vector3, type Mesh, type Object3D, type Raycaster } from "three";
 import type { LinkScene, RobotScene } from "../../protocol";
 import { framePose } from "../pose";
 import type { MovingPicture } from "../robot/moving-meshes";
 import type { Displacement } from "../robot/link-drawing";
 import { RobotDrawing } from "../robot/robot-drawing";
+import type { Lighting } from "../light";
 import { shade } from "../studio-light";
 import type { Described, Hit, SelectionBox } from "../picking";
 import type { Drawing, DrawingContext } from "./drawing";
@@ -19,7 +20,7 @@ export class RobotModelDrawing implements Drawing {
   private shown: RobotDrawing | null = null;
   private next: RobotDrawing | null = null;
   private robotsShown = 0;
-  private lit = false;
+  private lighting: Lighting = "Camera";
   private styleIsOld = true;
   private contrast: boolean;
   private displaced: Displacement | null = null;
@@ -72,10 +73,15 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.roughBounds() ?? new Box3();
   }
 
-  /** Whether lamps in the scene shine on it, with shadows, and not the light at the camera. */
-  set isLit(lit: boolean) {
-    this.styleIsOld ||= lit !== this.lit;
-    this.lit = lit;
+  /** The meshes of what is seen. */
+  get visibleMeshes(): Mesh[] {
+    return this.root.visible ? (this.shown?.visibleMeshes ?? []) : [];
+  }
+
+  /** What shines on it; a studio does with shadows. */
+  set light(lighting: Lighting) {
+    this.styleIsOld ||= lighting !== this.lighting;
+    this.lighting = lighting;
   }
 
   /** Draws a part elsewhere than the description has it; null for nothing. */
@@ -92,8 +98,8 @@ export class RobotModelDrawing implements Drawing {
   update(): void {
     if (this.styleIsOld && this.shown) {
       const { display, session } = this.context;
-      this.shown.style(display.rows, this.contrast, this.lit ? "Studio" : "Camera", (link) => session.comparison.instead(display.id, link));
-      shade(this.shown.root, this.lit && !session.comparison.isOld(display.id));
+      this.shown.style(display.rows, this.contrast, this.lighting, (link) => session.comparison.instead(display.id, link));
+      shade(this.shown.root, this.lighting === "Studio" && !session.comparison.isOld(display.id));
     }
     this.styleIsOld = false;
     const { frames } = this.context.session;

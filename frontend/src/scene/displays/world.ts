@@ -7,6 +7,7 @@ import type { MovingPicture } from "../robot/moving-meshes";
 import { RobotDrawing } from "../robot/robot-drawing";
 import type { OwnLight } from "../surroundings";
 import { WorldLights } from "../world-lights";
+import type { Lighting } from "../light";
 import type { Drawing, DrawingContext } from "./drawing";
 import { freePlace } from "./free-place";
 import { Displacement, modelOf } from "./world-models";
@@ -92,7 +93,12 @@ export class WorldDrawing implements Drawing {
     this.shown?.move(picture);
   }
 
-  /** Its lighting; null while it is drawn in the light of the camera. */
+  /** What lights it. */
+  get lighting(): Lighting {
+    return this.lights.lighting;
+  }
+
+  /** The light that stands in it; null while it is drawn in that of the camera. */
   get ownLight(): OwnLight | null {
     if (!this.scene || !this.lights.isLit) return null;
     const own = this.lights.isOfWorld;

@@ -29,6 +29,8 @@ export interface CopyPlace {
   readonly isOverlay?: boolean;
   /** Lines and marks in the same plane are seen on them. */
   readonly isBehind?: boolean;
+  /** Whether they are lit softly, and not as RViz does; it may change. */
+  readonly isSoft?: { value: boolean };
 }
 
 /** The copy that a ray hit, and the point in the fixed frame, m. */
@@ -67,7 +69,7 @@ export class CopyBatch {
     private readonly place: CopyPlace = {},
   ) {
     this.slots = { value: slotTexture(0) };
-    this.mesh = new CopyMesh(new BufferGeometry(), slotMaterial(this.slots), (box) => this.expandBox(box));
+    this.mesh = new CopyMesh(new BufferGeometry(), slotMaterial(this.slots, place.isSoft), (box) => this.expandBox(box));
     Object.assign(this.mesh.material, behind(place.isBehind === true));
     if (place.isOverlay) {
       this.mesh.material.depthTest = this.mesh.material.depthWrite = false;

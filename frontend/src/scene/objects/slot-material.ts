@@ -1,5 +1,5 @@
 import { DataTexture, DoubleSide, FloatType, RGBAFormat, ShaderMaterial, type Matrix4, type Texture } from "three";
-import { AMBIENT } from "../light";
+import { SURFACE_LIGHT } from "../light";
 
 /** Texels of a slot: three rows of the matrix, then grey, alpha and colour. */
 export const TEXELS_PER_SLOT = 4;
@@ -16,17 +16,22 @@ const READING = /* glsl */ `
     return vec3((uvec3(rgb) >> uvec3(16u, 8u, 0u)) & 255u) * (1.0 / 255.0);
   }
 `;
+const LIGHT = /* glsl */ `
+  uniform bool isSoft;
+  ${SURFACE_LIGHT}
+  vec3 lit(vec3 color, vec3 normal) { return isSoft ? softly(color, normal) : byCamera(color, normal.z); }
+`;
 const VERTEX = /* glsl */ `
   ${READING}
+  ${LIGHT}
   attribute vec3 color;
   varying vec4 vColor;
   void main() {
     vec4 row0 = texel(0), row1 = texel(1), row2 = texel(2), look = texel(3);
     mat3 turn = transpose(mat3(row0.xyz, row1.xyz, row2.xyz));
     vec3 across = normal / vec3(dot(turn[0], turn[0]), dot(turn[1], turn[1]), dot(turn[2], turn[2]));
-    float facing = max(0.0, normalize(mat3(modelViewMatrix) * turn * across).z);
-    float light = ${AMBIENT.toFixed(2)} + ${(1 - AMBIENT).toFixed(2)} * facing;
-    vColor = vec4(mix(color * unpacked(look.z), vec3(0.7), look.x) * light, look.y);
+    vec3 facing = normalize(mat3(modelViewMatrix) * turn * across);
+    vColor = vec4(lit(mix(color * unpacked(look.z), vec3(0.7), look.x), facing), look.y);
     vec3 at = turn * position + vec3(row0.w, row1.w, row2.w);
     gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
   }
@@ -52,12 +57,11 @@ const LIT_VERTEX = /* glsl */ `
   }
 `;
 const LIT_FRAGMENT = /* glsl */ `
+  ${LIGHT}
   flat varying vec3 vColor;
   varying vec3 vNormal;
   void main() {
-    float facing = normalize(vNormal).z * (gl_FrontFacing ? 1.0 : -1.0);
-    float light = ${AMBIENT.toFixed(2)} + ${(1 - AMBIENT).toFixed(2)} * max(0.0, facing);
-    gl_FragColor = vec4(vColor * light, 1.0);
+    gl_FragColor = vec4(lit(vColor, normalize(vNormal) * (gl_FrontFacing ? 1.0 : -1.0)), 1.0);
   }
 `;
 
@@ -84,14 +88,14 @@ export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, col
  * A material for copies that read their matrix, colour, grey and alpha from a texture. Lit as everything else by the
  * light at the camera, but at the vertices: small things do not show the difference, software renderers do.
  */
-export function slotMaterial(slots: { value: Texture }): ShaderMaterial {
-  return new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { slots } });
+export function slotMaterial(slots: { value: Texture }, isSoft = { value: false }): ShaderMaterial {
+  return new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { slots, isSoft } });
 }
 
 /**
  * A material for opaque surfaces that are seen from both sides and lit at each pixel, as three.js does by the light at
  * the camera.
  */
-export function litSlotMaterial(slots: { value: Texture }): ShaderMaterial {
-  return new ShaderMaterial({ vertexShader: LIT_VERTEX, fragmentShader: LIT_FRAGMENT, uniforms: { slots }, side: DoubleSide });
+export function litSlotMaterial(slots: { value: Texture }, isSoft: { value: boolean }): ShaderMaterial {
+  return new ShaderMaterial({ vertexShader: LIT_VERTEX, fragmentShader: LIT_FRAGMENT, uniforms: { slots, isSoft }, side: DoubleSide });
 }

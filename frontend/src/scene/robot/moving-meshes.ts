@@ -44,8 +44,14 @@ export class MovingMeshes {
   private firsts: number[] = [];
   private levels: readonly (number | null)[] = [];
   private hidden: Mesh[] = [];
+  private readonly softness = { value: false };
 
   constructor(private readonly parent: Object3D) {}
+
+  /** Whether they are lit softly, and not as RViz does. */
+  set isSoft(isSoft: boolean) {
+    this.softness.value = isSoft;
+  }
 
   /** Pieces and triangles drawn last. */
   get drawn(): { pieces: number; triangles: number } {
@@ -112,7 +118,7 @@ export class MovingMeshes {
     this.slots.value.dispose();
     this.slots.value = slotTexture(pieces.length);
     this.mesh?.geometry.dispose();
-    this.mesh ??= new Mesh(geometry, litSlotMaterial(this.slots));
+    this.mesh ??= new Mesh(geometry, litSlotMaterial(this.slots, this.softness));
     this.mesh.geometry = geometry;
     this.mesh.frustumCulled = this.mesh.matrixAutoUpdate = false;
     return this.mesh;

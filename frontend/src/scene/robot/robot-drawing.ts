@@ -91,8 +91,13 @@ export class RobotDrawing {
   roughBounds(): Box3 {
     const box = new Box3();
     this.root.updateWorldMatrix(true, true);
-    for (const link of this.links.values()) for (const mesh of link.visibleMeshes) box.expandByObject(mesh);
+    for (const mesh of this.visibleMeshes) box.expandByObject(mesh);
     return box;
+  }
+
+  /** The meshes of what is seen. */
+  get visibleMeshes(): Mesh[] {
+    return [...this.links.values()].flatMap((link) => link.visibleMeshes);
   }
 
   /** The height of the ground that it stands on, in the fixed frame, m. */
@@ -117,6 +122,7 @@ export class RobotDrawing {
    */
   style(rows: PropertyRows, contrast: boolean, lighting: Lighting = "Camera", instead: InsteadOf = () => null): void {
     this.pool.lighting = lighting;
+    this.solids.isSoft = this.moving.isSoft = lighting === "Soft";
     this.pool.renew(() => this.styleLinks(rows, contrast, instead));
     this.extras.style(rows);
   }

@@ -35,14 +35,20 @@ export class Solids {
   private readonly small: CopyBatch;
   private spheres: Sphere[] = [];
   private isOld = false;
+  private readonly softness = { value: false };
 
   constructor(parent: Object3D) {
     const kinds = Object.keys(GEOMETRIES) as SolidKind[];
     const batch = (shape: BufferGeometry, isBehind = false): CopyBatch => {
-      return new CopyBatch(parent, paint(shape.clone(), 1, 1, 1), { isBehind });
+      return new CopyBatch(parent, paint(shape.clone(), 1, 1, 1), { isBehind, isSoft: this.softness });
     };
     this.batches = new Map(kinds.map((kind) => [kind, batch(GEOMETRIES[kind], kind === "plane")]));
     this.small = batch(smallSphere);
+  }
+
+  /** Whether they are lit softly, and not as RViz does. */
+  set isSoft(isSoft: boolean) {
+    this.softness.value = isSoft;
   }
 
   /** The number of solids drawn. */

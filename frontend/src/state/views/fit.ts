@@ -27,7 +27,7 @@ export function framing(camera: Camera, values: ViewValues, span: Span, { width,
   const middle = scale(add(span.min, span.max), 0.5);
   const tangent = Math.tan(FIELD_OF_VIEW / 2) / MARGIN;
   let [distance, metres, front] = [0, 0, 0];
-  for (const each of corners(span)) {
+  for (const each of span.points ?? corners(span)) {
     const corner = subtract(each, middle);
     const [across, along] = [Math.abs(dot(corner, right)), Math.abs(dot(corner, up))];
     distance = Math.max(distance, dot(corner, back) + Math.max(along, (across * height) / width) / tangent);
@@ -47,11 +47,12 @@ export function framing(camera: Camera, values: ViewValues, span: Span, { width,
 /** The box in a target's frame around a box in the fixed frame. */
 export function spanInTarget(span: Span, target: Target): Span {
   const seen = corners(span).map((corner) => toTarget(corner, target));
+  const points = span.points?.map((point) => toTarget(point, target));
   const extreme = (choose: (...each: number[]) => number): Vector => {
     const at = (i: 0 | 1 | 2): number => choose(...seen.map((corner) => corner[i]));
     return [at(0), at(1), at(2)];
   };
-  return { min: extreme(Math.min), max: extreme(Math.max) };
+  return { min: extreme(Math.min), max: extreme(Math.max), ...(points ? { points } : {}) };
 }
 
 /** Whether a box has all of another in it. */

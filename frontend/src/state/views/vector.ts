@@ -5,6 +5,8 @@ export type Vector = readonly [number, number, number];
 export interface Span {
   readonly min: Vector;
   readonly max: Vector;
+  /** Of what is in it, where a camera is to see that and not the corners. */
+  readonly points?: readonly Vector[];
 }
 
 export const ORIGIN: Vector = [0, 0, 0];

@@ -32,6 +32,7 @@ export const values: typeof english = {
   "Occupied Voxels": "占据的体素",
   Points: "点",
   Reliable: "可靠",
+  "Sky and Ground": "天空与地面",
   Spheres: "球",
   Squares: "方块",
   Studio: "摄影棚",

@@ -32,7 +32,14 @@ GLOBAL_OPTIONS = (
         "base_link",
         "The frame that stands still: everything is drawn where it is in this frame.",
     ),
-    PropertySpec("Background Color", "color", "#303030", "The colour behind the scene."),
+    PropertySpec(
+        "Backdrop",
+        "enum",
+        "Color",
+        "What is behind the scene: one colour, as in RViz, or a sky and a ground in the colours of the page's theme.",
+        options=("Color", "Sky and Ground"),
+    ),
+    PropertySpec("Background Color", "color", "#303030", "The colour behind the scene.", when=(("Backdrop",), "Color")),
     PropertySpec(
         "Frame Rate",
         "int",
@@ -46,7 +53,8 @@ GLOBAL_OPTIONS = (
         "enum",
         "Camera",
         "What lights the scene: the camera, as in RViz, or a studio, with shadows on the ground. Automatic: the studio "
-        "where a graphics card draws and keeps up, else the camera. A simulated world is lit as its display says.",
+        "where a graphics card draws and keeps up, else a soft light at the camera. A simulated world is lit as its "
+        "display says.",
         options=("Automatic", "Camera", "Studio"),
     ),
 )
@@ -216,6 +224,8 @@ _MODEL_DISPLAYS: tuple[tuple[str, dict[str, str]], ...] = (
     ("RobotModel", {"Description Topic": "/robot_description"}),
     ("TF", {}),
 )
+_MODEL_GRID = {"Alpha": "0.6", "Color": "136; 142; 150", "Plane Cell Count": "20"}
+"""Lines that are seen on the grounds of both themes, and reach so far that nobody sees them end."""
 _MODEL_DISTANCE = 3.0
 _MODEL_PITCH = 0.5
 """A view from a little above: a standing robot hides less of itself than from RViz's 45 degrees."""
@@ -322,6 +332,9 @@ class RvizConfig:
             display.checked = frames or name != "TF"
             config.insert(display)
         config.options.set(("Fixed Frame",), fixed_frame)
+        for key, value in _MODEL_GRID.items():
+            config.displays[0].section.put((key,), value)
+        config.options.set(("Backdrop",), "Sky and Ground")
         config.options.set(("Light",), "Automatic")
         view = config.views.current
         view.values |= {"Distance": _MODEL_DISTANCE, "Pitch": _MODEL_PITCH}

@@ -21,6 +21,7 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.sdf.worlds import World
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, alpha, topic_spec
+from linkwright.viewer.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC, WORLD_DISPLAY
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.topic_display import SideTopic, TopicDisplay
 from linkwright.viewer.displays.world_rays import CHOICES, LidarRays
@@ -53,19 +54,19 @@ class WorldDisplay(TopicDisplay):
     and tf does not, it is the other way round: tf's frames are placed so that the world stands still.
     """
 
-    CLASS = "linkwright/World"
+    CLASS = WORLD_DISPLAY
     MESSAGE = "std_msgs/msg/String"
     TRANSFORMED = False
     FOLLOWS_TRANSFORMS = True
     SCHEMA = (
         topic_spec(
-            default="/world_description",
+            default=DESCRIPTION_TOPIC,
             description="The topic that carries the world as SDF, as std_msgs/msg/String.",
             depth=1,
             durability="Transient Local",
         ),
         PropertySpec(
-            _POSES, "string", "/world_poses", "The topic that carries where links are, as tf2_msgs/msg/TFMessage."
+            _POSES, "string", POSES_TOPIC, "The topic that carries where links are, as tf2_msgs/msg/TFMessage."
         ),
         PropertySpec("Visual Enabled", "bool", True, "Draw what the models look like."),
         PropertySpec("Collision Enabled", "bool", False, "Draw the shapes that contacts are worked out with."),
@@ -76,7 +77,7 @@ class WorldDisplay(TopicDisplay):
             "Automatic",
             "What lights the scene: the camera, as in RViz, a studio, or the lights of the world with its background, "
             "sky and fog. "
-            "Automatic: the studio where a graphics card draws and keeps up, else the camera.",
+            "Automatic: the studio where a graphics card draws and keeps up, else a soft light at the camera.",
             options=("Automatic", "Camera", "Studio", "World"),
         ),
         PropertySpec("Shadows", "bool", True, "Let the lights of the studio and of the world cast shadows."),
@@ -89,7 +90,7 @@ class WorldDisplay(TopicDisplay):
             options=CHOICES,
         ),
         PropertySpec(
-            _RAYS_TOPIC, "string", "/world_rays", "The topic that carries the rays, as sensor_msgs/msg/LaserScan."
+            _RAYS_TOPIC, "string", RAYS_TOPIC, "The topic that carries the rays, as sensor_msgs/msg/LaserScan."
         ),
         PropertySpec(
             _FRUSTUMS,

@@ -310,7 +310,10 @@ class VisualizationManager:
 
     def _option_changed(self, name: str) -> None:
         options = self.config.options
-        self.publish(PropertyChanged(options.identity((name,)), options.get(name)))
+        other_rows = options.is_condition((name,))
+        self.publish(
+            self.tree_message() if other_rows else PropertyChanged(options.identity((name,)), options.get(name))
+        )
         if name == _FRAME_RATE:
             self._stream.rate = options.number(_FRAME_RATE)
         elif name == _FIXED_FRAME:

@@ -1,0 +1,72 @@
+import { Color, Matrix4, Mesh, PlaneGeometry, ShaderMaterial } from "three";
+import type { Theme } from "../state/theme";
+
+/** Squares along each side in which colours are computed; between their corners nobody sees a difference. */
+const SQUARES = 24;
+/** Before everything else. */
+const FIRST = -1000;
+
+/** 0xrrggbb; `ground` far below. */
+interface Colors {
+  readonly zenith: number;
+  readonly horizon: number;
+  readonly ground: number;
+}
+
+/** Of middling brightness where robots stand, so that black ones are seen, and white ones. */
+const COLORS: Readonly<Record<Theme, Colors>> = {
+  light: { zenith: 0xbccbda, horizon: 0xeef2f5, ground: 0xaeb7c0 },
+  dark: { zenith: 0x39424d, horizon: 0x77828e, ground: 0x545d67 },
+};
+
+const VERTEX = /* glsl */ `
+  uniform mat4 unprojected;
+  uniform mat4 toWorld;
+  uniform vec3 zenith, horizon, ground;
+  varying vec3 shown;
+  void main() {
+    vec4 seen = unprojected * vec4(position.xy, 1.0, 1.0);
+    vec3 ray = isOrthographic ? vec3(0.0, 0.0, -1.0) : seen.xyz / seen.w;
+    float up = normalize(mat3(toWorld) * ray).z;
+    shown = up > 0.0 ? mix(horizon, zenith, pow(up, 0.7)) : mix(horizon, ground, smoothstep(0.0, 0.75, pow(-up, 0.8)));
+    gl_Position = vec4(position.xy, 1.0, 1.0);
+  }
+`;
+const FRAGMENT = /* glsl */ `
+  varying vec3 shown;
+  void main() { gl_FragColor = vec4(shown, 1.0); }
+`;
+
+/**
+ * A sky and a ground behind everything, which meet in a bright horizon. Colours are computed at few points, so without a
+ * graphics card they cost little more than a background of one colour.
+ */
+export class Backdrop {
+  readonly root: Mesh<PlaneGeometry, ShaderMaterial>;
+  private readonly uniforms = {
+    unprojected: { value: new Matrix4() },
+    toWorld: { value: new Matrix4() },
+    zenith: { value: new Color() },
+    horizon: { value: new Color() },
+    ground: { value: new Color() },
+  };
+
+  constructor() {
+    const style = { vertexShader: VERTEX, fragmentShader: FRAGMENT, depthTest: false, depthWrite: false };
+    this.root = new Mesh(new PlaneGeometry(2, 2, SQUARES, SQUARES), new ShaderMaterial({ ...style, uniforms: this.uniforms }));
+    this.root.renderOrder = FIRST;
+    this.root.frustumCulled = false;
+    this.root.visible = false;
+    this.root.onBeforeRender = (_renderer, _scene, camera) => {
+      this.uniforms.unprojected.value.copy(camera.projectionMatrixInverse);
+      this.uniforms.toWorld.value.copy(camera.matrixWorld);
+    };
+  }
+
+  set theme(theme: Theme) {
+    const { zenith, horizon, ground } = COLORS[theme];
+    this.uniforms.zenith.value.setHex(zenith);
+    this.uniforms.horizon.value.setHex(horizon);
+    this.uniforms.ground.value.setHex(ground);
+  }
+}

@@ -1,0 +1,89 @@
+import { Box3, DataTexture, Group, LinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from "three";
+import { samplesOf } from "./robot/surface-samples";
+
+/** Texels along each side of the picture of the shadow. */
+const TEXELS = 96;
+/** How much wider than what stands on it the ground is that the picture shows. */
+const WIDER = 1.7;
+/** How dark it is at most. */
+const DARKEST = 0.62;
+/** At this height above the ground, in sizes of what stands on it, a surface shades it less by a factor of e. */
+const [NEAR, FAR] = [0.05, 0.35];
+/** How much of the shade of a surface comes from afar. */
+const FROM_AFAR = 0.35;
+/** Texels to each side that shade spreads, as often as given. */
+const [SPREAD, TIMES] = [2, 3];
+/** Of transparent things it is the first: lines on the ground are seen on it. */
+const FIRST = -1;
+
+const place = new Vector3();
+
+/**
+ * The shade that a robot casts on the ground by being there, as on a cloudy day. It is computed of a few points of each
+ * surface, and only where the robot moved: no light and no picture of the scene is needed for it.
+ */
+export class ContactShadow {
+  readonly root = new Group();
+  /** The part of the ground that the picture of the shadow is on. */
+  readonly ground: Mesh<PlaneGeometry, MeshBasicMaterial>;
+  private readonly pixels = new Uint8Array(4 * TEXELS * TEXELS);
+  private readonly texture = new DataTexture(this.pixels, TEXELS, TEXELS);
+  private shade = new Float32Array(TEXELS * TEXELS);
+  private spare = new Float32Array(TEXELS * TEXELS);
+  private fallen = NaN;
+
+  constructor() {
+    this.texture.magFilter = this.texture.minFilter = LinearFilter;
+    const style = { map: this.texture, transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+    this.ground = new Mesh(new PlaneGeometry(), new MeshBasicMaterial(style));
+    this.ground.renderOrder = FIRST;
+    this.root.add(this.ground);
+  }
+
+  /** Falls from meshes, which have their places, on a ground of this height in the fixed frame, m. */
+  fall(meshes: readonly Mesh[], height: number): void {
+    const key = meshes.reduce((sum, { matrixWorld }, i) => matrixWorld.elements.reduce((all, each, k) => all + each * (i + k + 1), sum), height);
+    if (key === this.fallen) return;
+    this.fallen = key;
+    const box = new Box3();
+    for (const mesh of meshes) box.expandByObject(mesh);
+    if (box.isEmpty()) return void (this.ground.visible = false);
+    const [middle, size] = [box.getCenter(new Vector3()), box.getSize(new Vector3())];
+    const width = Math.max(WIDER * Math.max(size.x, size.y), size.z * (WIDER - 1));
+    this.ground.visible = true;
+    this.ground.position.set(middle.x, middle.y, height);
+    this.ground.scale.setScalar(width);
+    this.shade.fill(0);
+    for (const mesh of meshes) this.add(mesh, middle, width, height, size.length());
+    for (let i = 0; i < TIMES; i++) this.spread();
+    this.shade.forEach((shade, i) => (this.pixels[4 * i + 3] = 255 * DARKEST * (1 - Math.exp(-shade))));
+    this.texture.needsUpdate = true;
+  }
+
+  private add({ geometry, matrixWorld }: Mesh, middle: Vector3, width: number, height: number, size: number): void {
+    const { points, area } = samplesOf(geometry);
+    const growth = Math.cbrt(Math.abs(matrixWorld.determinant())) ** 2;
+    const texels = (area * growth) / (width / TEXELS) ** 2;
+    for (let i = 0; i < points.length; i += 3) {
+      place.fromArray(points, i).applyMatrix4(matrixWorld);
+      const above = Math.max(0, place.z - height) / size;
+      const x = Math.floor(((place.x - middle.x) / width + 0.5) * TEXELS);
+      const y = Math.floor(((place.y - middle.y) / width + 0.5) * TEXELS);
+      const at = y * TEXELS + x;
+      this.shade[at] = (this.shade[at] ?? 0) + texels * (Math.exp(-above / NEAR) + FROM_AFAR * Math.exp(-above / FAR));
+    }
+  }
+
+  /** Takes the mean over a square around each texel. */
+  private spread(): void {
+    for (const step of [1, TEXELS]) {
+      const [from, to] = [this.shade, this.spare];
+      for (let i = 0; i < from.length; i++) {
+        let sum = 0;
+        for (let k = -SPREAD; k <= SPREAD; k++) sum += from[i + k * step] ?? 0;
+        to[i] = sum / (2 * SPREAD + 1);
+      }
+      [this.shade, this.spare] = [to, from];
+    }
+  }
+}

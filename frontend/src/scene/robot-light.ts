@@ -1,0 +1,50 @@
+import { Box3, Group, type Mesh } from "three";
+import { ContactShadow } from "./contact-shadow";
+import type { Lighting } from "./light";
+import { StudioLight } from "./studio-light";
+import type { OwnLight } from "./surroundings";
+
+/** The part of a robot that light needs. */
+export interface LitRobot {
+  light: Lighting;
+  /** A key of the parts that are seen. */
+  readonly seen: string;
+  readonly visibleMeshes: readonly Mesh[];
+  /** The height of the ground that it stands on, in the fixed frame, m. */
+  ground(): number;
+  roughBounds(): Box3;
+}
+
+/** What shines on robots, and the shadows that they cast. */
+export class RobotLight {
+  readonly root = new Group();
+  private readonly studio = new StudioLight();
+  private readonly shadow = new ContactShadow();
+  /** What stands on the ground, and how high that is, m. */
+  private standing = { what: "", height: 0 };
+
+  constructor() {
+    this.root.add(this.studio.root, this.shadow.root);
+  }
+
+  /**
+   * Places light and shadows around robots.
+   *
+   * @param backdrop the colour behind a studio.
+   * @returns the light that stands in the scene, if any.
+   */
+  shine(lighting: Lighting, robots: readonly LitRobot[], backdrop: string): OwnLight | null {
+    this.studio.root.visible = lighting === "Studio";
+    this.shadow.root.visible = lighting === "Soft";
+    if (lighting === "Camera") return null;
+    const what = robots.map((robot) => robot.seen).join(";");
+    if (what !== this.standing.what) this.standing = { what, height: Math.min(...robots.map((robot) => robot.ground())) };
+    const { height } = this.standing;
+    if (lighting === "Soft") {
+      this.shadow.fall(robots.flatMap((robot) => robot.visibleMeshes), height);
+      return null;
+    }
+    this.studio.shineOn(robots.reduce((sum, robot) => sum.union(robot.roughBounds()), new Box3()), height);
+    return { shadows: true, background: null, daylight: null, fog: null, backdrop };
+  }
+}

@@ -1,0 +1,61 @@
+import { Triangle, Vector3, type BufferGeometry, type Mesh } from "three";
+import type { Vector } from "../../state/views/vector";
+
+/** Points of a surface. */
+const POINTS = 320;
+/** Of so many one is enough to see all of a robot. */
+const FEWER = 4;
+/** Their places in triangles are those of a sequence that fills them evenly. */
+const [STEP_A, STEP_B] = [0.7548776662, 0.5698402909];
+
+/** Points that are spread evenly over a surface. */
+export interface SurfaceSamples {
+  /** x y z of each, m. */
+  readonly points: Float32Array;
+  /** The area that each stands for, m^2. */
+  readonly area: number;
+}
+
+const known = new WeakMap<BufferGeometry, SurfaceSamples>();
+
+/** The points of a geometry, in its own frame; found once. */
+export function samplesOf(geometry: BufferGeometry): SurfaceSamples {
+  let samples = known.get(geometry);
+  if (!samples) known.set(geometry, (samples = spread(geometry)));
+  return samples;
+}
+
+/** Some points of what a mesh shows, which has its place, in the fixed frame. */
+export function pointsOn({ geometry, matrixWorld }: Mesh): Vector[] {
+  const { points } = samplesOf(geometry);
+  const found: Vector[] = [];
+  for (let i = 0; i < points.length; i += 3 * FEWER) found.push(new Vector3().fromArray(points, i).applyMatrix4(matrixWorld).toArray());
+  return found;
+}
+
+function spread(geometry: BufferGeometry): SurfaceSamples {
+  const { index } = geometry;
+  const positions = geometry.getAttribute("position");
+  const count = Math.floor((index ?? positions).count / 3);
+  const sums = new Float64Array(count);
+  const triangle = new Triangle();
+  const take = (i: number): Triangle => {
+    const [a, b, c] = [3 * i, 3 * i + 1, 3 * i + 2].map((at) => index?.getX(at) ?? at) as [number, number, number];
+    triangle.setFromAttributeAndIndices(positions, a, b, c);
+    return triangle;
+  };
+  let area = 0;
+  for (let i = 0; i < count; i++) sums[i] = area += take(i).getArea() || 0;
+  const points = new Float32Array(area > 0 ? 3 * POINTS : 0);
+  const [point, side] = [new Vector3(), new Vector3()];
+  for (let n = 0, i = 0; 3 * n < points.length; n++) {
+    const wanted = ((n + 0.5) / POINTS) * area;
+    while (i < count - 1 && (sums[i] ?? area) < wanted) i++;
+    const { a, b, c } = take(i);
+    const [u, v] = [(n * STEP_A) % 1, (n * STEP_B) % 1];
+    const isBeyond = u + v > 1;
+    point.copy(a).addScaledVector(side.subVectors(b, a), isBeyond ? 1 - u : u);
+    point.addScaledVector(side.subVectors(c, a), isBeyond ? 1 - v : v).toArray(points, 3 * n);
+  }
+  return { points, area: area / POINTS };
+}

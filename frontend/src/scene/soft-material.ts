@@ -1,0 +1,13 @@
+import type { Material } from "three";
+import { SURFACE_LIGHT } from "./light";
+
+/** Has a surface shown in the soft light in place of the lights of the scene. */
+export function soft<T extends Material>(material: T): T {
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", `#include <common>\n${SURFACE_LIGHT}`)
+      .replace("#include <opaque_fragment>", "outgoingLight = softly(diffuseColor.rgb, normal);\n#include <opaque_fragment>");
+  };
+  material.customProgramCacheKey = () => "soft";
+  return material;
+}

@@ -1,0 +1,10 @@
+"""The display of a simulated world, and the topics on which a simulation tells what is in it."""
+
+from __future__ import annotations
+
+__all__ = ["DESCRIPTION_TOPIC", "POSES_TOPIC", "RAYS_TOPIC", "WORLD_DISPLAY"]
+
+WORLD_DISPLAY = "linkwright/World"
+"""The class of the display."""
+DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC = "/world_description", "/world_poses", "/world_rays"
+"""The world as SDF, the poses of its links, and what its lidars measure."""
