@@ -1,4 +1,4 @@
-"""Standard streams that take every text, whichever code page or locale the system has.
+"""Standard streams that take every text, whole, whichever code page, locale and disk the system has.
 
 Descriptions are UTF-8 and may name a link in any script, and messages may be Chinese; a Windows of the West writes into
 files and pipes by code page 1252. It imports little, because short commands load it.
@@ -6,17 +6,59 @@ files and pipes by code page 1252. It imports little, because short commands loa
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import sys
 
+TYPE_CHECKING = False  # as that of `typing`, which takes longer to import than everything else here
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class _WholeWrites(io.RawIOBase):
+    """A file without a buffer that takes all of what is written, or raises OSError."""
+
+    def __init__(self, raw: io.RawIOBase) -> None:
+        self._raw = raw
+
+    def writable(self) -> bool:
+        return True
+
+    def isatty(self) -> bool:
+        return self._raw.isatty()
+
+    def fileno(self) -> int:
+        return self._raw.fileno()
+
+    def write(self, data: Any, /) -> int:
+        rest = memoryview(data).cast("B")
+        size = len(rest)
+        while rest:
+            taken = self._raw.write(rest)
+            if taken is None:
+                raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+            rest = rest[taken:]
+        return size
+
+
+def _take_all() -> None:
+    """Have standard output without a buffer (``python -u``, ``PYTHONUNBUFFERED``) say so when a disk is full.
+
+    A write to such a stream may take a part alone, on a disk that has room for no more, and Python drops the rest.
+    """
+    out = sys.stdout
+    if isinstance(out, io.TextIOWrapper) and isinstance(out.buffer, io.FileIO):
+        sys.stdout = io.TextIOWrapper(_WholeWrites(out.buffer), out.encoding, out.errors, write_through=True)
+
 
 def take_any_text() -> None:
-    """Have standard streams take every text, where they do not.
+    """Have standard streams take every text, and all of it, where they do not.
 
     Files and pipes get and give UTF-8, as files of descriptions are; so does Python itself from 3.15 on (PEP 686). What
     a terminal has no letters for is written as its number, as it is where ``PYTHONIOENCODING`` names an encoding.
     """
+    _take_all()
     chosen = bool(os.environ.get("PYTHONIOENCODING"))
     for stream in (sys.stdin, sys.stdout, sys.stderr):
         if not isinstance(stream, io.TextIOWrapper) or stream.encoding.lower().replace("-", "") == "utf8":

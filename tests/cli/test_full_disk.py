@@ -223,6 +223,37 @@ def test_output_that_takes_nothing_is_one_error(robot: Path, redirection: str, r
     assert "Exception ignored" not in printed
 
 
+LONG = {
+    "help": ["--help"],
+    "check": ["check", "r.urdf"],
+    "xacro": ["xacro", "r.urdf"],
+    "inertia": ["inertia", "r.urdf"],
+    "interface list": ["interface", "list"],
+}
+
+
+@needs_limits
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_output_that_a_full_disk_cuts_is_an_error(
+    robot: Path, unbuffered: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The disk takes the first bytes of each."""
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
+    for name, words in LONG.items():
+        with (robot.parent / "out").open("w") as out, full_disk(ROOM):
+            done = subprocess.run(
+                [sys.executable, "-m", "linkwright", *words],
+                env={**os.environ, "PYTHONPATH": str(REPOSITORY / "src")},
+                stdout=out,
+                stderr=subprocess.PIPE,
+                text=True,
+                check=False,
+            )
+        assert (robot.parent / "out").stat().st_size == ROOM, name
+        assert done.returncode == 1, name
+        assert "error[CLI202]: cannot write to standard output: File too large" in done.stderr, name
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
 def test_an_input_that_is_closed_is_an_empty_one(robot: Path) -> None:
     commands = {**QUICK, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
