@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from tempfile import TemporaryDirectory
+
+from linkwright.scratch_folders import ScratchFolder
 
 _ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder is made below it, under a name that nobody knows before
 """The system's folder for large temporary files; ``/tmp`` may be memory (file-hierarchy(7))."""
 
 
-def scratch_folder() -> TemporaryDirectory[str]:
+def scratch_folder() -> ScratchFolder:
     """A temporary folder, where TMPDIR says or on the disk."""
     chosen = None if os.environ.get("TMPDIR") or not os.access(_ON_DISK, os.W_OK) else _ON_DISK
-    return TemporaryDirectory(prefix="linkwright_bag_", dir=chosen)
+    return ScratchFolder("bag", chosen)

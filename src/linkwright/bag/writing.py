@@ -7,7 +7,6 @@ import sqlite3
 import threading
 from collections.abc import Collection
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Literal
 
 from linkwright import unfinished
@@ -15,6 +14,7 @@ from linkwright.bag.qos import to_bag
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, missing_extra, phrase
 from linkwright.messages import type_hash
 from linkwright.messages.schema_text import schema_of
+from linkwright.scratch_folders import ScratchFolder
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -192,7 +192,7 @@ class BagWriter:
 
     def _close_file(self) -> None:
         """Close a single file, which has the metadata in it; the library writes them into a folder, too."""
-        with TemporaryDirectory(prefix="linkwright_bag_") as folder:
+        with ScratchFolder("bag") as folder:
             self._writer.metapath = Path(folder) / self._writer.metapath.name
             self._writer.close()
 

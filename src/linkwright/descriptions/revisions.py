@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
@@ -15,6 +14,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, fo
 from linkwright.packages import PackageFinder
 from linkwright.packages.share_layout import share_of_sources
 from linkwright.packages.sources import SourceScan
+from linkwright.scratch_folders import ScratchFolder
 
 _OF_HOOKS = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
 """Variables with which git starts hooks; they would stand in the way of asking about the folder of a file."""
@@ -53,7 +53,7 @@ class Revision:
         inside = real.relative_to(self._top)
         if _git(self._top, "cat-file", "-e", f"{commit}:{inside.as_posix()}").returncode != 0:
             inside = _before_renaming(self._top, commit, inside, name)
-        self._folder = tempfile.TemporaryDirectory(prefix="linkwright-")
+        self._folder = ScratchFolder("revision")
         self._root = Path(self._folder.name).resolve() / "files"
         try:
             self._write(commit)
@@ -138,7 +138,7 @@ def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
         LinkwrightError: CLI344, git recognises it in none of the files that are gone since.
     """
     new = inside.as_posix()
-    with tempfile.TemporaryDirectory(prefix="linkwright-") as folder:
+    with ScratchFolder("revision") as folder:
         index = Path(folder) / "index"
         with suppress(OSError):
             shutil.copyfile(top / _git(top, "rev-parse", "--git-path", "index").stdout.rstrip("\r\n"), index)

@@ -81,6 +81,7 @@ class LaunchLog:
         self._debug = debug
         self._files: dict[str, IO[str] | None] = {}
         self._folder: Path | None = None
+        self._has_folder = True
         self._closed = False
         self._screen_line = line_format(os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT"), FORMATS)
         self._file_line = line_format(os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT"), FILE_FORMATS)
@@ -95,12 +96,15 @@ class LaunchLog:
             except OSError as error:
                 self._folder = base
                 self._files[LAUNCH_LOG] = None
+                self._has_folder = False
                 self._unwritable(base, error)
         return self._folder
 
     def begin(self) -> None:
         """The first lines: where the files are, and the log level."""
-        self.say("launch", f"All log files can be found below {self.folder}")
+        folder = self.folder
+        if self._has_folder:
+            self.say("launch", f"All log files can be found below {folder}")
         self.say("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
 
     def detail(self, name: str, text: str) -> None:

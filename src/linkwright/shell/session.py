@@ -12,12 +12,12 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
 from linkwright.interruption import interrupt
+from linkwright.scratch_folders import ScratchFolder
 from linkwright.shell.instead import no_such_command
 from linkwright.shell.programs import PROGRAMS, write_programs
 from linkwright.standins import process
@@ -46,7 +46,7 @@ def run_shell(
     Raises:
         LinkwrightError: SHELL101, there is no such command.
     """
-    with tempfile.TemporaryDirectory(prefix="linkwright_shell_") as scratch:
+    with ScratchFolder("shell") as scratch:
         folder = Path(scratch) / "bin"
         folder.mkdir()
         write_programs(folder)

@@ -174,6 +174,7 @@ class TestOutput:
         monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "file" / "logs"))
         done = await launch(python("print('out')", output="both"))
         assert done.err.count("warning[LAUNCH145]") == 1
+        assert "log files can be found" not in done.err
         assert done.out == "[py-1] out\n"
         assert done.succeeded
 

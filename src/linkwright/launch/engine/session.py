@@ -26,11 +26,10 @@ from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
-    from tempfile import TemporaryDirectory
-
     from linkwright.hosting.plans import HostedPlan
     from linkwright.launch.model.plans import ProcessPlan
     from linkwright.launch.model.running_launch import Schedule
+    from linkwright.scratch_folders import ScratchFolder
 
 
 _SILENT_SECONDS = 1.0
@@ -67,7 +66,7 @@ class LaunchSession:
         self._tasks: set[asyncio.Task[Any]] = set()
         self._process_numbers = count(1)
         self._crash: BaseException | None = None
-        self._scratch: TemporaryDirectory[str] | None = None
+        self._scratch: ScratchFolder | None = None
         self._included: deque[LaunchDescriptionEntity] = deque()
         self.left_out: set[str] = set()
         self._omissions = Omissions(log, options.command_to_skip_missing, wanted=options.skip_missing)
@@ -109,9 +108,9 @@ class LaunchSession:
     def scratch_folder(self) -> Path:
         """A folder for files that the processes of this launch read; it goes when the launch is over."""
         if self._scratch is None:
-            import tempfile
+            from linkwright.scratch_folders import ScratchFolder
 
-            self._scratch = tempfile.TemporaryDirectory(prefix="linkwright_launch_")
+            self._scratch = ScratchFolder("launch")
             self.processes.owns(Path(self._scratch.name))
         return Path(self._scratch.name)
 

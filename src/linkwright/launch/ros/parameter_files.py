@@ -130,7 +130,8 @@ class ParameterFile(Placed):
             raise located(error, self.place) from error
         self._check_yaml(SourceText(source.name, text))
         self._source = SourceText(source.name, text)
-        descriptor, name = tempfile.mkstemp(prefix="launch_params_", suffix=".yaml")
+        folder = context.session.scratch_folder if context.is_running else None
+        descriptor, name = tempfile.mkstemp(prefix="launch_params_", suffix=".yaml", dir=folder)
         with os.fdopen(descriptor, "w", encoding="utf-8") as file:
             file.write(text)
         self._is_temporary = True

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase, translated
+from linkwright.scratch_folders import ScratchFolder
 from linkwright.speech.enrolled.enrolment import enrol
 from linkwright.speech.enrolled.words import TAKES, Words, name_problem, words_path
 from linkwright.speech.sound.samples import RATE, Samples
@@ -177,7 +177,7 @@ def _rename(words: Words, name: str, new_name: str) -> None:
 
 
 def _merge(words: Words, text: str) -> None:
-    with tempfile.TemporaryDirectory(prefix="linkwright-") as folder:
+    with ScratchFolder("words") as folder:
         path = Path(folder) / "words.json"
         path.write_text(text, encoding="utf-8", errors="replace")
         others = Words.read(path)

@@ -1,0 +1,82 @@
+"""Temporary folders go with their process, or when the next one is made."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from linkwright.scratch_folders import ScratchFolder, forget_abandoned
+from tests.places import REPOSITORY
+
+KILLED = """
+import os, pathlib, signal
+from linkwright.scratch_folders import ScratchFolder
+made = ScratchFolder("test")
+pathlib.Path(made.name, "file").write_text("text")
+print(made.name, flush=True)
+input()
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+needs_locks = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no locks on folders")
+
+
+@pytest.fixture
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The system's folder for temporary files."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    return tmp_path
+
+
+def names(place: Path) -> list[str]:
+    return sorted(path.name for path in place.iterdir())
+
+
+def test_a_folder_goes_when_it_is_closed(place: Path) -> None:
+    with ScratchFolder("test") as name:
+        assert Path(name).name.startswith("linkwright_test_")
+        Path(name, "file").touch()
+    assert names(place) == []
+
+
+@needs_locks
+def test_that_of_a_killed_process_goes_when_the_next_one_is_made(place: Path) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", KILLED], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        name = Path(process.stdout.readline().strip())
+        with ScratchFolder("test"):
+            assert (name / "file").is_file()  # it is in use
+        process.communicate("\n")
+    assert (name / "file").is_file()
+    with ScratchFolder("other"):
+        assert not name.exists()
+    assert names(place) == []
+
+
+@needs_locks
+def test_what_may_be_in_use_or_is_of_others_stays(place: Path) -> None:
+    (place / "linkwright_test_new").mkdir()  # its process has not locked it yet
+    (place / "linkwright_of_nobody").write_text("a file")
+    (place / "linkwright_link").symlink_to(place / "another")
+    for name in ("another", "linkwright_test_old"):
+        (place / name).mkdir()
+    (place / "another" / "file").touch()
+    os.utime(place / "linkwright_test_old", (1, 1))
+    forget_abandoned(place)
+    assert names(place) == ["another", "linkwright_link", "linkwright_of_nobody", "linkwright_test_new"]
+
+
+def test_each_temporary_folder_is_such_a_one() -> None:
+    made = re.compile(r"\bTemporaryDirectory\(|\bmkdtemp\(")
+    allowed = {"scratch_folders.py", "link_folder.py"}  # the latter makes folders that stay
+    found = {path.name for path in (REPOSITORY / "src").rglob("*.py") if made.search(path.read_text(encoding="utf-8"))}
+    assert found <= allowed
