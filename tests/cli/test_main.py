@@ -37,6 +37,21 @@ def test_unknown_command_names_the_nearest(capsys):
     assert capsys.readouterr().err == "linkwright: there is no command 'xarco'; did you mean 'xacro'?\n"
 
 
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (["--vesion"], "--version"),
+        (["check", "r.urdf", "--strct"], "--strict"),
+        (["topic", "echo", "/x", "--onec"], "--once"),
+        (["view", "r.urdf", "--pots=7500"], "--port"),
+        (["--lang", "zh", "check", "r.urdf", "--strct"], "--strict"),
+    ],
+)
+def test_a_misspelt_option_names_the_nearest(words, meant, capsys):
+    assert main(words) == 2
+    assert meant in capsys.readouterr().err.splitlines()[-1].rpartition(";")[2]
+
+
 @pytest.mark.parametrize("verb", VERBS)
 def test_every_verb_has_help(verb, capsys):
     assert main([verb, "--help"]) == 0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from linkwright.diagnostics import did_you_mean, is_misspelt, missing_file_hint, nearest
@@ -52,7 +54,23 @@ def test_a_missing_file_has_a_hint_whatever_is_beside_it(tmp_path, monkeypatch):
     (tmp_path / "notes.txt").touch()
     assert missing_file_hint(tmp_path / "a.urdf") == "there are: robot.urdf"
     assert missing_file_hint(tmp_path / "robto.urdf") == "did you mean 'robot.urdf'?"
+    assert missing_file_hint(tmp_path / "robot.urfd") == "did you mean 'robot.urdf'?"
+    assert missing_file_hint(tmp_path / "robto.udrf") == "did you mean 'robot.urdf'?"
+    assert missing_file_hint(tmp_path / "notes.urdf") == "there are: robot.urdf"
     assert missing_file_hint(tmp_path / "x", lambda name: name.endswith(".txt")) == "there are: notes.txt"
+
+
+def test_a_longer_ending_may_be_meant(tmp_path):
+    (tmp_path / "robot.urdf.xacro").touch()
+    assert missing_file_hint(tmp_path / "robot.xacro") == "did you mean 'robot.urdf.xacro'?"
+    assert missing_file_hint(tmp_path / "robot.v2.xacro").startswith("there are: ")
+
+
+@pytest.mark.parametrize("address", ["https://example.org/r.urdf", "http://localhost/r.urdf"])
+def test_an_address_is_told_that_nothing_is_fetched(tmp_path, address):
+    hint = "files are not fetched from the network: download it, and name the file"
+    assert missing_file_hint(Path(address)) == hint
+    assert missing_file_hint(tmp_path / address) == hint
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,9 @@ import argparse
 import gc
 import os
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol, cast
 
 from linkwright._version import __version__
 from linkwright.cli.endings import FINE, USAGE, status_of
@@ -88,6 +88,9 @@ be cleaned up."""
 
 PROGRAM = "linkwright"
 
+_OPTIONS = ("--help", "--lang", "--version")
+"""Those that stand before a command, or for one."""
+
 _COLLECT_AFTER = 50_000
 """After how many new objects Python looks for garbage; its own 700 would cost a short command a tenth of its time."""
 
@@ -151,13 +154,34 @@ def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Tells of a help text that cannot be written, which argparse passes over, and Python from 3.15 on with it."""
+    """Tells what a misspelt option may mean, and of a help text that cannot be written.
+
+    argparse passes over the latter, and Python from 3.15 on with it.
+    """
+
+    def error(self, message: str) -> NoReturn:
+        """Print a usage error and end the process."""
+        meant = None
+        unrecognised = said_in_help("unrecognized arguments: %s").removesuffix("%s")
+        if message.startswith(f"{unrecognised}-"):
+            option = message.removeprefix(unrecognised).split()[0].partition("=")[0]
+            meant = did_you_mean(option, _options_below(self))
+        super().error(f"{message}; {meant}" if meant else message)
 
     def _print_message(self, message: str, file: Any = None) -> None:
         if file is sys.stdout:
             file.write(message)
         else:
             super()._print_message(message, file)
+
+
+def _options_below(parser: argparse.ArgumentParser) -> Iterator[str]:
+    """The long options of a parser and of those below it."""
+    for action in parser._actions:
+        yield from (name for name in action.option_strings if name.startswith("--"))
+        if isinstance(action, argparse._SubParsersAction):
+            for below in action.choices.values():
+                yield from _options_below(below)
 
 
 def _formatter(prog: str) -> argparse.HelpFormatter:
@@ -178,7 +202,7 @@ def _dispatch(words: list[str], program: str) -> int:
         print(f"linkwright {__version__}")
         return FINE
     if name not in VERBS:
-        return _unknown(name, VERBS, program or PROGRAM)
+        return _unknown(name, _OPTIONS if name.startswith("-") else VERBS, program or PROGRAM)
     parser = parser_for(name, program=program)
     module = verb(name)
     below: Mapping[str, SubVerb] = getattr(module, "VERBS", {})

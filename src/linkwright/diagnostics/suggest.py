@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _LISTED = 8
+_ADDRESSES = ("http:", "https:", "ftp:")
 _MOST_COMPARED = 1_000
 """Of more names than these, only those are compared that begin alike and are about as long."""
 
@@ -67,6 +68,23 @@ def _meant(names: Sequence[str]) -> Phrase | None:
     return phrase("did you mean {names}?", names=quoted_names(names, " or ")) if names else None
 
 
+def _like(name: str, names: Iterable[str]) -> list[str]:
+    """The names of files that may be meant, by what stands before the ending: 'a.urdf' is not like 'robot.urdf'."""
+    stem, ending = _parts(name)
+    stems: dict[str, list[str]] = {}
+    for other in names:
+        its_stem, its_ending = _parts(other)
+        if its_ending == ending or (ending and (is_misspelt(ending, [its_ending]) or its_ending.endswith(ending))):
+            stems.setdefault(its_stem, []).append(other)
+    return [other for near in nearest(stem, stems) for other in stems[near]][:3]
+
+
+def _parts(name: str) -> tuple[str, str]:
+    """The name of a file without its ending, and the ending: that of 'robot.urdf.xacro' is '.urdf.xacro'."""
+    dot = name.find(".", 1)
+    return (name, "") if dot < 0 else (name[:dot], name[dot:])
+
+
 def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -> Phrase:
     """A hint for a missing file: the missing folder, the nearest names beside it, or all names there.
 
@@ -74,6 +92,8 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
         path: of the file.
         wanted: which names may be meant; those with the same ending when left out.
     """
+    if any(part in path.parts for part in _ADDRESSES):
+        return phrase("files are not fetched from the network: download it, and name the file")
     folder = path.parent
     if wanted is None:
 
@@ -88,10 +108,7 @@ def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -
             folder=display_path(folder),
             current=os.getcwd(),  # noqa: PTH109 - pathlib takes long to import
         )
-    # By what stands before the ending: 'a.urdf' and 'robot.urdf' are not alike for sharing it.
-    ending = "".join(path.suffixes)
-    stems = {name.removesuffix(ending): name for name in names if name.endswith(ending)}
-    like = _meant([stems[stem] for stem in nearest(path.name.removesuffix(ending), stems)])
+    like = _meant(_like(path.name, names))
     if like:
         return like
     there = [name for name in names if wanted(name)][:_LISTED]
