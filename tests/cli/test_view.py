@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from pathlib import Path
 
 import pytest
@@ -55,6 +56,21 @@ def test_a_recording_of_ros_1_is_told_as_one(folder: Path, capsys: pytest.Captur
     said = capsys.readouterr().err
     assert "'old.bag' cannot be read as a recording: it is of ROS 1" in said
     assert "rosbags-convert" in said
+
+
+@pytest.mark.parametrize("words", [["missing.urdf"], ["r.urdf", "missing.urdf"], ["r.urdf", "--port", "{taken}"]])
+def test_an_error_that_keeps_a_view_from_starting_comes_alone(
+    folder: Path, words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROS_LOG_DIR", str(folder / "log"))
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        assert main(["view", "--no-open", *(word.format(taken=port) for word in words)]) == 1
+    said = capsys.readouterr()
+    assert said.out == ""
+    error, hint = said.err.splitlines()
+    assert error.startswith("error[")
+    assert hint.startswith("   = hint: ")
 
 
 @pytest.mark.parametrize("text", [None, "nothing: [of the kind"])

@@ -101,6 +101,7 @@ class ModelView:
         self._failures: set[object] = set()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._is_over = asyncio.Event()
+        self._has_begun = False
         self._crash: BaseException | None = None
         self._recorder: Recorder | None = None
         self._numbers = count(1)
@@ -115,7 +116,6 @@ class ModelView:
             writer: takes what all topics carry, with the times that ``/clock`` tells; None for no recording.
         """
         self.loop = asyncio.get_running_loop()
-        self.log.begin()
         try:
             if writer is not None:
                 self._recorder = self._recording(writer)
@@ -273,7 +273,10 @@ class ModelView:
             self._is_over.set()
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Nothing waits for that."""
+        """Begin the log with the first one: an error that keeps all from starting comes alone."""
+        if not self._has_begun:
+            self._has_begun = True
+            self.log.begin()
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
         """Nothing waits for that."""
@@ -284,7 +287,8 @@ class ModelView:
         self._is_over.set()
 
     def shut_down(self, reason: str) -> None:
-        """End it."""
+        """End it; what has not started yet does not start."""
+        self.host.forget_planned()
         self._is_over.set()
 
     def seconds_to_end(self) -> float:
