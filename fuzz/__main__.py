@@ -7,6 +7,7 @@ import gc
 import json
 import os
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,8 @@ from typing import Any
 FOLDER = Path(__file__).resolve().parent.parent / ".build" / "fuzz"
 LIMIT_SECONDS = 5.0
 """What takes so long here takes a second elsewhere: code that counts where it goes runs five times as slowly."""
+_LONGEST_SECONDS = 60.0
+"""An input that takes so long is broken off. This, too, is time of the processor."""
 _MEMORY_MIB = 2_048
 _GROWTH_MIB = 200
 """By how much one input may raise the most memory that the process ever had."""
@@ -31,7 +34,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m fuzz", description=__doc__)
     parser.add_argument("targets", nargs="*", metavar="TARGET", help="what to fuzz; all by default")
     parser.add_argument("--runs", type=int, default=1_000_000, help="how many inputs, shared among all targets")
-    parser.add_argument("--seconds", type=int, default=0, help="at most so long for each target; 0 means no bound")
+    parser.add_argument(
+        "--seconds", type=int, default=0, help="of the processor, at most, for each target; 0 means no bound"
+    )
     parser.add_argument("--one", metavar="NAME", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.one:
@@ -81,10 +86,10 @@ def fuzz_one(name: str, runs: int, seconds: int) -> None:
         (corpus / f"hard-{number}").write_bytes(text.encode())
     found: dict[str, int] = {}
     inputs = 0
-    started = time.monotonic()
+    signal.signal(signal.SIGPROF, _break_off)
 
     def report() -> None:
-        counted = {"inputs": inputs, "found": found, "seconds": time.monotonic() - started}
+        counted = {"inputs": inputs, "found": found, "seconds": time.process_time()}
         (FOLDER / f"{name}.json").write_text(json.dumps(counted))
 
     def run(data: bytes) -> None:
@@ -101,13 +106,13 @@ def fuzz_one(name: str, runs: int, seconds: int) -> None:
             what = f"slow-{spent:.0f}s" if spent > LIMIT_SECONDS else None
             if inputs > _WARM and _most_memory() - most > _GROWTH_MIB:
                 what = "memory"
-        except Exception as error:  # noqa: BLE001 - whatever it is, it is what this looks for
+        except (Exception, _TooLongError) as error:  # noqa: BLE001 - whatever it is, it is what this looks for
             what = _where(error)
         if what is not None:
             found[what] = found.get(what, 0) + 1
             if found[what] <= 3:
                 (found_in / f"{name}-{what}-{found[what]}").write_bytes(data)
-        if inputs == runs or (seconds and time.monotonic() - started > seconds):
+        if inputs == runs or (seconds and time.process_time() > seconds):
             report()
             os._exit(0)
 
@@ -117,7 +122,7 @@ def fuzz_one(name: str, runs: int, seconds: int) -> None:
         str(corpus),
         f"-max_len={longest}",
         f"-rss_limit_mb={_MEMORY_MIB}",
-        "-timeout=60",
+        "-timeout=0",  # libFuzzer's counts the time that other programs take
         "-report_slow_units=1000",
         "-verbosity=0",
         f"-artifact_prefix={found_in}/{name}-died-",
@@ -134,11 +139,23 @@ def _most_memory() -> int:
 
 def _seconds(target: Callable[[bytes], None], data: bytes) -> float:
     begun = time.process_time()
-    target(data)
+    signal.setitimer(signal.ITIMER_PROF, _LONGEST_SECONDS)
+    try:
+        target(data)
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
     return time.process_time() - begun
 
 
-def _where(error: Exception) -> str:
+class _TooLongError(BaseException):
+    """What is read takes so long that it is broken off; nothing that reads catches this."""
+
+
+def _break_off(_number: int, _frame: object) -> None:
+    raise _TooLongError
+
+
+def _where(error: BaseException) -> str:
     trace = error.__traceback__
     place = "unknown"
     while trace is not None:
