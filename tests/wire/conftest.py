@@ -10,6 +10,7 @@ from linkwright.graph.executors import SingleThreadedExecutor
 from linkwright.graph.log.levels import LogLevel
 from linkwright.messages.distribution import ASSUMED
 from linkwright.wire.dds import DdsTransport, join
+from linkwright.wire.unfollowed import DISCOVERY_SERVERS, SECURITY
 from tests.domains import own_domain
 from tests.waiting import SECONDS
 from tests.wire.programs import Program
@@ -22,6 +23,9 @@ ROS_VARIABLES = (
     ASSUMED,
     "CYCLONEDDS_URI",
     "LINKWRIGHT_DDS",
+    "RMW_IMPLEMENTATION",
+    *SECURITY,
+    *DISCOVERY_SERVERS,
 )
 _taken: dict[str, int] = {}
 

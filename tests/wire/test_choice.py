@@ -9,7 +9,8 @@ import pytest
 from linkwright.diagnostics import LinkwrightError, install_hint
 from linkwright.graph import Graph
 from linkwright.wire.dds import DdsTransport
-from linkwright.wire.joining import CYCLONE, ZENOH, available, check_settings, join, middleware, why_not
+from linkwright.wire.joining import available, check_settings, join, middleware, why_not
+from linkwright.wire.unfollowed import CYCLONE, ZENOH
 from linkwright.wire.zenoh import ZenohTransport
 
 PLACES = ("linkwright.wire.joining", "linkwright.wire.dds.joining", "linkwright.wire.zenoh.joining")

@@ -15,6 +15,7 @@ from linkwright.graph.log.record import LogSink
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import BackgroundTransport
 from linkwright.wire.dds.settings import read_settings as read_dds_settings
+from linkwright.wire.unfollowed import refuse_enforced_security
 from linkwright.wire.zenoh.settings import read_settings as read_zenoh_settings
 
 _JOINED_WITHIN = 10.0
@@ -98,7 +99,7 @@ def read_network(text: str) -> Network:
     """The network that words of a command line name.
 
     Raises:
-        LinkwrightError: CLI451, they name none; DDS101, the domain is not one.
+        LinkwrightError: CLI451, they name none; DDS101, the domain is not one; DDS121, security is enforced.
     """
     kind, colon, domain = text.partition(":")
     if kind not in _KINDS or (colon and not domain):
@@ -109,6 +110,7 @@ def read_network(text: str) -> Network:
                 hint=phrase("write dds or zenoh, with a domain after a colon where ROS_DOMAIN_ID is not meant: dds:5"),
             )
         )
+    refuse_enforced_security()
     settings: Any = read_dds_settings if kind == "dds" else read_zenoh_settings
     return Network(kind, settings({**os.environ, "ROS_DOMAIN_ID": domain} if colon else None).domain_id)
 

@@ -56,8 +56,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Look, and print what is found; 1 when there is something to mend."""
     from linkwright.doctor import examine, examine_parameter_files, observe, report
+    from linkwright.wire.unfollowed import untold_settings
 
     frames = _fixed_frames(arguments)
+    settings = untold_settings()  # told of with the rest, and not while joining
 
     async def job(session: Session) -> int:
         if arguments.format == "text":
@@ -66,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
                 file=sys.stderr,
             )
         seen = await observe(session.graph, session.node, arguments.seconds, fixed_frames=frames)
-        found = [*examine(seen), *examine_parameter_files(seen, arguments.params_file)]
+        found = [*settings, *examine(seen), *examine_parameter_files(seen, arguments.params_file)]
         failed = any(each.severity is not Severity.INFO for each in found)
         if arguments.report or (arguments.report_failed and failed):
             print(report(seen))

@@ -246,7 +246,8 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
 
     Raises:
         LinkwrightError: CLI401, there is neither DDS nor Zenoh; DDS101, ROS_DOMAIN_ID is no domain; DDS111, a
-            setting of Zenoh is not well formed; DDS102, DDS112, the domain cannot be joined.
+            setting of Zenoh is not well formed; DDS121, security is enforced; DDS102, DDS112, the domain cannot be
+            joined.
     """
     from linkwright.wire.joining import available, check_settings, join, why_not
 

@@ -102,7 +102,8 @@ def _platform() -> list[tuple[str, str]]:
 
 
 def _middleware() -> str:
-    from linkwright.wire.joining import ZENOH, available, middleware, why_not
+    from linkwright.wire.joining import available, middleware, why_not
+    from linkwright.wire.unfollowed import ZENOH
 
     if not available():
         return f"none: {why_not()}"

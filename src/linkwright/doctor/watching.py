@@ -29,7 +29,8 @@ from linkwright.graph.endpoints.drivers import Dispute, drivers_of, publishers_o
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from linkwright.wire.joining import ZENOH, middleware
+from linkwright.wire.joining import middleware
+from linkwright.wire.unfollowed import DISCOVERY_SERVERS, MIDDLEWARE, SECURITY, ZENOH
 
 if TYPE_CHECKING:
     from linkwright.graph.computation_graph import Graph
@@ -47,7 +48,9 @@ _ENVIRONMENT = (
     "ROS_AUTOMATIC_DISCOVERY_RANGE",
     "ROS_STATIC_PEERS",
     "CYCLONEDDS_URI",
-    "RMW_IMPLEMENTATION",
+    MIDDLEWARE,
+    *DISCOVERY_SERVERS,
+    *SECURITY,
     "ZENOH_CONFIG_OVERRIDE",
     "ZENOH_SESSION_CONFIG_URI",
 )

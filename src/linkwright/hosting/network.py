@@ -30,10 +30,17 @@ class Network:
 
     Attributes:
         domain_id: the ROS_DOMAIN_ID that was joined; None before, or where none can be.
+
+    Raises:
+        LinkwrightError: DDS121, the network has to be joined with security.
     """
 
     def __init__(self, session: Supervisor) -> None:
         self._session = session
+        if session.options.network:
+            from linkwright.wire.joining import check_security
+
+            check_security()
         self._graph: Graph | None = None
         self._handle: asyncio.TimerHandle | None = None
         self.domain_id: int | None = None

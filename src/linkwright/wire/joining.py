@@ -12,10 +12,11 @@ from collections.abc import Mapping
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Phrase, install_hint, phrase
+from linkwright.diagnostics import Phrase, install_hint, phrase, render
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import say_alone
 from linkwright.wire.switch import is_switched_off
+from linkwright.wire.unfollowed import CYCLONE, MIDDLEWARE, ZENOH, refuse_enforced_security, untold_settings
 from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
 
 if TYPE_CHECKING:
@@ -23,10 +24,6 @@ if TYPE_CHECKING:
 
     from linkwright.graph.computation_graph import Graph
     from linkwright.wire.background import BackgroundTransport, JoinOptions
-
-VARIABLE = "RMW_IMPLEMENTATION"
-ZENOH = "rmw_zenoh_cpp"
-CYCLONE = "rmw_cyclonedds_cpp"
 
 
 def middleware(environment: Mapping[str, str] | None = None) -> str:
@@ -36,7 +33,7 @@ def middleware(environment: Mapping[str, str] | None = None) -> str:
         environment: the environment variables; those of the process when left out.
     """
     variables = os.environ if environment is None else environment
-    asked = variables.get(VARIABLE, "").strip()
+    asked = variables.get(MIDDLEWARE, "").strip()
     if asked:
         return ZENOH if asked == ZENOH else CYCLONE
     return ZENOH if find_spec("cyclonedds") is None and zenoh_is_installed() else CYCLONE
@@ -52,7 +49,7 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
     if middleware(variables) == ZENOH:
         return zenoh.why_not(variables)
     reason = dds.why_not(variables)
-    if reason and find_spec("cyclonedds") is None and not variables.get(VARIABLE, "").strip():
+    if reason and find_spec("cyclonedds") is None and not variables.get(MIDDLEWARE, "").strip():
         return phrase(
             "neither DDS nor Zenoh is installed: {hint}, or with 'dds' in place of 'zenoh' for the DDS of ROS 2's"
             " default (there are wheels of it for Linux x86_64, Windows and macOS arm64, up to Python 3.13; this is"
@@ -68,6 +65,16 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
 def available(environment: Mapping[str, str] | None = None) -> bool:
     """Whether other processes can be reached."""
     return not why_not(environment)
+
+
+def check_security(environment: Mapping[str, str] | None = None) -> None:
+    """Refuse to join where only nodes with DDS security may; whoever keeps to itself needs none.
+
+    Raises:
+        LinkwrightError: DDS121, security is enforced.
+    """
+    if not is_switched_off(environment):
+        refuse_enforced_security(environment)
 
 
 def check_settings(environment: Mapping[str, str] | None = None) -> None:
@@ -89,7 +96,8 @@ def check_settings(environment: Mapping[str, str] | None = None) -> None:
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | None:
     """Have a graph seen by other processes, and see theirs. It happens in the background; nothing waits for it.
 
-    Problems are logged, and the graph goes on without the network.
+    Problems are logged, and the graph goes on without the network. So are, once in a process, settings of ROS 2 that
+    are not followed.
 
     Args:
         graph: the graph; the transport attaches itself to it.
@@ -97,12 +105,18 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | 
 
     Returns:
         The transport; None where there is none, it is switched off, or wrongly set.
+
+    Raises:
+        LinkwrightError: DDS121, security is enforced.
     """
     environment = options.get("environment")
+    check_security(environment)
     reason = why_not(environment)
     if reason:
         if not is_switched_off(environment):
             say_alone(graph.get_logger("wire"), reason)
         return None
+    for finding in untold_settings(environment):
+        graph.get_logger("wire").warning(render(finding))
     chosen = zenoh.join if middleware(environment) == ZENOH else dds.join
     return chosen(graph, **options)

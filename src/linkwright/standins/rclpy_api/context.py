@@ -88,9 +88,12 @@ class Context:
             RuntimeError: the domain is negative, or the context was initialised before.
             UnknownROSArgsError: there are unknown ROS arguments.
             RCLInvalidROSArgsError: a ROS argument is malformed.
+            RclError: security is enforced (``ROS_SECURITY_STRATEGY``), which there is none of.
         """
         if domain_id is not None and domain_id < 0:
             raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
+        if self._graph is None:
+            _check_security()
         with self._lock:
             if self._initialized:
                 raise RuntimeError("Context.init() must only be called once")
@@ -201,6 +204,15 @@ class Context:
         graph = Graph(threads=True, on_log=logging.write, levels=logging.LEVELS)
         self._joining = join(graph, domain_id=self._domain_id)
         return graph
+
+
+def _check_security() -> None:
+    from linkwright.wire.joining import check_security
+
+    try:
+        check_security()
+    except LinkwrightError as error:
+        raise RclError(f"failed to initialize rcl: {error}") from error
 
 
 def read_ros_arguments(arguments: Sequence[str]) -> RosArguments:

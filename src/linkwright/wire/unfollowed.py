@@ -1,0 +1,122 @@
+"""Settings of ROS 2 in the environment that no transport here follows: security, discovery servers, other middlewares.
+
+A real node acts on them: it refuses nodes without certificates, or is found through a server alone. Ours would start
+all the same and meet nobody, or send in the clear what the user believes to be encrypted.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
+
+MIDDLEWARE = "RMW_IMPLEMENTATION"
+SECURITY = ("ROS_SECURITY_ENABLE", "ROS_SECURITY_STRATEGY")
+DISCOVERY_SERVERS = ("ROS_DISCOVERY_SERVER", "ROS2_EASY_MODE")
+"""Variables of Fast DDS, the latter since Kilted."""
+
+ZENOH = "rmw_zenoh_cpp"
+CYCLONE = "rmw_cyclonedds_cpp"
+_FAST = ("rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp")
+_OTHER_DDS = (
+    "rmw_connextdds",
+    "rmw_connextddsmicro",
+    "rmw_connext_cpp",
+    "rmw_gurumdds_cpp",
+    "rmw_opensplice_cpp",
+    "rmw_coredx_cpp",
+)
+_KNOWN = (CYCLONE, *_FAST, ZENOH, *_OTHER_DDS)
+
+_told: set[str] = set()
+"""Codes of what was told of in this process."""
+
+
+def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> None:
+    """Refuse to join where security is enforced: no node may be in the graph without it (SROS 2).
+
+    Args:
+        environment: the environment variables; those of the process when left out.
+
+    Raises:
+        LinkwrightError: DDS121, security is enforced.
+    """
+    variables = os.environ if environment is None else environment
+    if _asks_for_security(variables) and variables.get("ROS_SECURITY_STRATEGY") == "Enforce":
+        raise LinkwrightError(
+            Diagnostic(
+                "DDS121",
+                phrase("ROS_SECURITY_STRATEGY is Enforce, and Linkwright has no DDS security: it does not join"),
+                hint=phrase(
+                    "run this command in a shell with ROS_SECURITY_ENABLE=false, where it is seen by nodes without"
+                    " security only; those with security need a real ROS 2"
+                ),
+            )
+        )
+
+
+def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
+    """Return a warning for each setting that is not followed.
+
+    Args:
+        environment: the environment variables; those of the process when left out.
+    """
+    variables = os.environ if environment is None else environment
+    found = []
+    middleware = variables.get(MIDDLEWARE, "").strip()
+    if _asks_for_security(variables):
+        found.append(
+            Diagnostic(
+                "DDS122",
+                phrase("ROS_SECURITY_ENABLE is true, and Linkwright has no DDS security: it joins without"),
+                severity=Severity.WARNING,
+                hint=phrase(
+                    "messages are not encrypted, and nodes with security may refuse them; set"
+                    " ROS_SECURITY_ENABLE=false to say that this is meant"
+                ),
+            )
+        )
+    server = next((name for name in DISCOVERY_SERVERS if variables.get(name)), None)
+    if server is not None and middleware in ("", *_FAST):
+        found.append(
+            Diagnostic(
+                "DDS123",
+                phrase(
+                    "{variable} is set: nodes that use a discovery server of Fast DDS are not seen", variable=server
+                ),
+                severity=Severity.WARNING,
+                hint=phrase(
+                    "unset it for all nodes, or let them use {cyclone}; ROS_STATIC_PEERS names computers that multicast"
+                    " does not reach",
+                    cyclone=CYCLONE,
+                ),
+            )
+        )
+    if middleware and middleware not in _KNOWN:
+        found.append(
+            Diagnostic(
+                "DDS124",
+                phrase(
+                    "RMW_IMPLEMENTATION is '{name}', a middleware that Linkwright does not know: it uses DDS, as"
+                    " {cyclone} does",
+                    name=middleware,
+                    cyclone=CYCLONE,
+                ),
+                severity=Severity.WARNING,
+                hint=phrase("unset it, or set {cyclone} or {zenoh}", cyclone=CYCLONE, zenoh=ZENOH),
+            )
+        )
+    return found
+
+
+def untold_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
+    """Return those of the `unfollowed_settings` that were not returned before: each is told of once in a process."""
+    found = [each for each in unfollowed_settings(environment) if each.code not in _told]
+    _told.update(each.code for each in found)
+    return found
+
+
+def _asks_for_security(variables: Mapping[str, str]) -> bool:
+    """Whether rcl would turn security on: it takes this spelling alone."""
+    return variables.get("ROS_SECURITY_ENABLE") == "true"
