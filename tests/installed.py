@@ -40,6 +40,6 @@ def install(folder: Path, *others: str, extra: str = "all") -> Path:
 
 
 def _uv(*words: str) -> None:
-    uv = shutil.which(os.environ.get("UV") or "uv") or str(REPOSITORY / ".build" / "uv" / "bin" / "uv")
+    uv = Path(shutil.which(os.environ.get("UV") or "uv") or REPOSITORY / ".build" / "uv" / "bin" / "uv").absolute()
     done = subprocess.run([uv, *words, "--quiet"], capture_output=True, text=True, check=False, cwd="/")
     assert done.returncode == 0, f"uv {' '.join(words)}:\n{done.stdout}{done.stderr}"
