@@ -188,6 +188,17 @@ def test_what_moves_again_is_kept_as_it_came() -> None:
     assert back_and_forth.count == 200
 
 
+def test_a_part_of_a_robot_that_stands_still_is_as_long_as_it_was_asked_for() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    still, moves = [0.0] * 300, [number / 100 for number in range(1, 301)]
+    states(clock, history, [*still, *moves, *still])
+    for start, end, last in ((1.0, 2.5, 0.0), (2.0, 4.5, 1.51), (4.5, 8.9, 0.0)):
+        part = history.part(int(start * SECOND), int(end * SECOND))
+        assert (part[0][1], part[-1][1]) == (int(start * SECOND), int(end * SECOND))
+        assert told(part)[-1][0] == pytest.approx(last)
+
+
 def test_transforms_of_each_publisher_stand_still_by_themselves() -> None:
     clock = Clock()
     history = History(10**8, clock)

@@ -152,6 +152,13 @@ class _Track:
         """Of the messages from one time to another those that came again and again after it."""
         return [each for each in self.between(start_ns, end_ns) if each[1] in self._lasting]
 
+    def still_at(self, at_ns: int) -> list[_Kept]:
+        """What came again and again up to a time: of transforms all, of other topics the last message alone."""
+        lasting = self.lasting(at_ns - _STILL_NS, at_ns)
+        if self.name == TRANSFORMS:
+            return lasting
+        return lasting[-1:] if lasting[-1:] == self.until(at_ns, 1) else []
+
     def until(self, at_ns: int, count: int) -> list[_Kept]:
         """The last messages up to a time, up to a number."""
         end = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
@@ -316,16 +323,19 @@ class History:
     def part(self, start_ns: int, end_ns: int) -> list[Recorded]:
         """The messages from one time to another, both included, in the order of their times.
 
-        Before it stands what is needed to show its beginning, see `state_at`, as if that had come then. Messages are as
-        they are kept: many that are packed would be too large together, see `whole`.
+        Before it stands what is needed to show its beginning, see `state_at`, as if that had come then, and after it
+        what still stands still at its end. Messages are as they are kept: many that are packed would be too large
+        together, see `whole`.
         """
         with self.lock:
             before = self.state_at(list(self._tracks), start_ns - 1)
             came = [(name, *each) for name, track in self._tracks.items() for each in track.between(start_ns, end_ns)]
+            after = [(name, each[2]) for name, track in self._tracks.items() for each in track.still_at(end_ns)]
         came.sort(key=lambda each: each[2])
         return [
             *((name, start_ns, data) for name, _, data in before),
             *((name, at, data) for name, at, _, data in came),
+            *((name, end_ns, data) for name, data in after),
         ]
 
     def after(self, topics: Collection[str], start_ns: int, number: int) -> tuple[int, Recorded] | None:
