@@ -93,10 +93,13 @@ def _taken(action: argparse.Action) -> dict[str, object]:
 def describe(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
     """The sections of a command and of the commands below it."""
     subcommands = list(_subcommands(parser))
-    if subcommands:
-        for subparser, text in subcommands:
-            yield from describe(subparser, text)
-        return
+    if arguments(parser) or not subcommands:
+        yield from _section(parser, help_text)
+    for subparser, text in subcommands:
+        yield from describe(subparser, text)
+
+
+def _section(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
     yield f"## {parser.prog}\n"
     text = parser.description or help_text
     yield f"{text[:1].upper()}{text[1:].rstrip('.')}.\n"
@@ -110,7 +113,7 @@ def describe(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
 def arguments(parser: argparse.ArgumentParser) -> list[argparse.Action]:
     """The arguments of a command: those with a place first, then the options; without ``--help``."""
     listed = [action for action in parser._actions if action.help != argparse.SUPPRESS]
-    listed = [action for action in listed if not isinstance(action, argparse._HelpAction)]
+    listed = [each for each in listed if not isinstance(each, argparse._HelpAction | argparse._SubParsersAction)]
     return [a for a in listed if not a.option_strings] + [a for a in listed if a.option_strings]
 
 

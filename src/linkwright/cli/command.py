@@ -66,6 +66,7 @@ GROUPS = {
         "bridge": "carry topics and services between DDS and Zenoh, both ways",
         "daemon": "accepted for ros2's sake: there is no daemon, and none is needed",
         "doctor": "explain what is wrong with the running nodes, topics and frames",
+        "multicast": "send or wait for a datagram, to see whether the network carries multicast",
     },
 }
 """The verbs in the order in which the help lists them, with what it says of them.
@@ -75,6 +76,9 @@ Each is a module or package of this package, which is loaded only when it is ask
 
 VERBS = {name: text for verbs in GROUPS.values() for name, text in verbs.items()}
 """What the help says of each verb."""
+
+OTHER_NAMES = {"wtf": "doctor"}
+"""Second names of verbs, which ros2 has; the help does not list them."""
 
 _IN_ORDER = frozenset({"pkg", "run", "shell"})
 """Verbs whose words are taken in order, beside those with verbs of their own: what follows is another command's.
@@ -197,7 +201,7 @@ def _dispatch(words: list[str], program: str) -> int:
     if not words or words[0] in ("-h", "--help", "help"):
         print(_overview())
         return FINE if words else USAGE
-    name = words[0]
+    name = OTHER_NAMES.get(words[0], words[0])
     if name in ("-V", "--version"):
         print(f"linkwright {__version__}")
         return FINE
@@ -207,8 +211,8 @@ def _dispatch(words: list[str], program: str) -> int:
     module = verb(name)
     below: Mapping[str, SubVerb] = getattr(module, "VERBS", {})
     if below:
-        asked = next((word for word in words[1:] if not word.startswith("-")), None)
-        if asked is not None and asked not in below:
+        asked = next(iter(words[1:]), "-")
+        if not asked.startswith("-") and asked not in below:
             return _unknown(asked, below, parser.prog)
     mixed = not below and name not in _IN_ORDER and any(word.startswith("-") for word in words)
     parse = parser.parse_intermixed_args if mixed else parser.parse_args

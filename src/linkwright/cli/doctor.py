@@ -6,6 +6,8 @@ import argparse
 import sys
 from typing import TYPE_CHECKING
 
+from linkwright.cli import hello
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import run_in_graph
 from linkwright.diagnostics import Severity, counted, display_path, joined, phrase, print_diagnostics, quoted
@@ -51,10 +53,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--report-failed", "-rf", action="store_true", help="print that only when something is wrong")
     parser.add_argument("--include-warnings", "-iw", action="store_true", help="accepted for ros2's sake; they are")
     parser.add_argument("--exclude-packages", "-ep", action="store_true", help="accepted for ros2's sake")
+    configure_nested(parser, VERBS)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Look, and print what is found; 1 when there is something to mend."""
+    """Look, and print what is found; 1 when there is something to mend. Or run the command below this one."""
+    if "run_verb" in arguments:
+        return run_nested(arguments)
     from linkwright.doctor import examine, examine_parameter_files, observe, report
     from linkwright.wire.unfollowed import untold_settings
 
@@ -110,3 +115,8 @@ def _summary(seen: Observation, findings: int) -> str:
         return localized(phrase("All is well: {counts}", counts=counts))
     found = counted("{count} finding", "{count} findings", findings)
     return localized(phrase("{findings}; {counts}", findings=found, counts=counts))
+
+
+VERBS = {
+    "hello": SubVerb(hello.configure, hello.run, help="greet other computers over a topic and by multicast, and count"),
+}

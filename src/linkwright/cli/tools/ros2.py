@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from linkwright.cli.command import VERBS
+from linkwright.cli.command import OTHER_NAMES, VERBS
 from linkwright.cli.command import main as linkwright
 from linkwright.cli.endings import FINE, USAGE
 from linkwright.diagnostics import did_you_mean
@@ -20,6 +20,7 @@ COMMANDS = (
     "interface",
     "launch",
     "lifecycle",
+    "multicast",
     "node",
     "param",
     "pkg",
@@ -31,11 +32,9 @@ COMMANDS = (
 )
 """The commands of ``ros2`` that exist here, as it lists them."""
 
-_OTHER_NAMES = {"wtf": "doctor"}
 _ONLY_IN_ROS = {
     "extension_points": "it lists plugins of ros2cli",
     "extensions": "it lists plugins of ros2cli",
-    "multicast": "it tests the network below DDS",
     "security": "it makes the keys of SROS 2",
 }
 
@@ -48,7 +47,7 @@ def ros2(words: Sequence[str]) -> int:
         return FINE
     name = rest[0]
     if name in COMMANDS:
-        return linkwright([_OTHER_NAMES.get(name, name), *rest[1:]], program="ros2")
+        return linkwright([name, *rest[1:]], program="ros2")
     if name in _ONLY_IN_ROS:
         problem = f"'{name}' needs a real ROS 2: {_ONLY_IN_ROS[name]}"
     else:
@@ -68,7 +67,7 @@ def _overview() -> str:
         "Commands:",
     ]
     for name in COMMANDS:
-        ours = _OTHER_NAMES.get(name)
+        ours = OTHER_NAMES.get(name)
         lines.append(f"  {name:{width}}  {f'the same as {ours}' if ours else VERBS[name]}")
     lines += ["", "`ros2 COMMAND -h` says more."]
     return "\n".join(lines)

@@ -1,0 +1,109 @@
+"""``linkwright doctor hello``: whether computers hear each other, over a topic and by multicast."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import socket
+import sys
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.multicast import add_ttl_argument
+from linkwright.cli.numbers import positive_float
+from linkwright.cli.session import run_in_graph
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+    from linkwright.doctor.hello import Greetings
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument(
+        "-t", "--topic", default="/canyouhearme", help="the topic to greet others on (default: %(default)s)"
+    )
+    parser.add_argument(
+        "-ep",
+        "--emit-period",
+        metavar="SECONDS",
+        type=positive_float,
+        default=0.1,
+        help="time from one greeting to the next (default: %(default)s)",
+    )
+    parser.add_argument(
+        "-pp",
+        "--print-period",
+        metavar="SECONDS",
+        type=positive_float,
+        default=1.0,
+        help="time from one table to the next (default: %(default)s)",
+    )
+    add_ttl_argument(parser)
+    parser.add_argument("-1", "--once", action="store_true", help="greet once, print one table and end")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Greet, and print whose greetings arrive, until interrupted."""
+    return run_in_graph(arguments, lambda session: _greet(session, arguments))
+
+
+async def _greet(session: Session, arguments: argparse.Namespace) -> int:
+    from linkwright.doctor.hello import Greetings, greeting
+    from linkwright.messages import String
+    from linkwright.wire import multicast
+
+    host = socket.gethostname()
+    counts = Greetings(host)
+    _tell_of_range()
+    publisher = session.node.create_publisher(String, arguments.topic, 10)
+    session.node.create_subscription(
+        String, arguments.topic, session.receiver(lambda message: counts.heard_on_topic(message.data)), 10
+    )
+    with multicast.open_receiver() as receiver, multicast.open_sender(arguments.ttl) as sender:
+        listening, _ = await session.loop.create_datagram_endpoint(lambda: _Listener(counts), sock=receiver)
+
+        def emit() -> None:
+            publisher.publish(String(data=greeting(host)))
+            counts.published += 1
+            multicast.send(sender, greeting(host).encode())
+            counts.sent += 1
+
+        def tell() -> None:
+            print(counts.take_table(arguments.topic, arguments.print_period))
+
+        try:
+            emit()
+            if arguments.once:
+                await session.finished(arguments.emit_period)
+                tell()
+                return 0
+            session.every(arguments.emit_period, emit)
+            session.every(arguments.print_period, tell)
+            return await session.finished() or 0
+        finally:
+            listening.close()
+
+
+class _Listener(asyncio.DatagramProtocol):
+    """Counts the greetings that come by multicast."""
+
+    def __init__(self, counts: Greetings) -> None:
+        self._counts = counts
+
+    def datagram_received(self, data: bytes, _sender: Any) -> None:
+        self._counts.heard_by_multicast(data.decode(errors="replace"))
+
+
+def _tell_of_range() -> None:
+    """Say so where the topic does not leave this computer, which it does not left to itself."""
+    from linkwright.wire.dds.settings import Range, read_settings
+    from linkwright.wire.joining import middleware
+    from linkwright.wire.unfollowed import CYCLONE
+
+    if middleware() == CYCLONE and read_settings().range in (Range.MACHINE, Range.LOCALHOST, Range.OFF):
+        text = phrase(
+            "the topic stays on this computer: set ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET on each to reach others"
+        )
+        print(localized(text), file=sys.stderr)

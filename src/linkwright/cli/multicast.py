@@ -1,0 +1,101 @@
+"""``linkwright multicast``: send and receive one datagram, to see whether the network carries multicast."""
+
+from __future__ import annotations
+
+import argparse
+from ipaddress import AddressValueError, IPv4Address
+
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.numbers import positive_int
+from linkwright.wire import multicast
+
+_GREETING = b"Hello World!"
+_LAST_PORT = 0xFFFF
+_LONGEST_TTL = 0xFF
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    configure_nested(parser, VERBS)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the verb."""
+    return run_nested(arguments)
+
+
+def multicast_group(text: str) -> str:
+    """An IPv4 address of a multicast group.
+
+    Raises:
+        argparse.ArgumentTypeError: when it is none.
+    """
+    try:
+        is_group = IPv4Address(text).is_multicast
+    except AddressValueError:
+        is_group = False
+    if not is_group:
+        raise argparse.ArgumentTypeError("value must be an address from 224.0.0.0 to 239.255.255.255")
+    return text
+
+
+def port(text: str) -> int:
+    """A port of UDP.
+
+    Raises:
+        argparse.ArgumentTypeError: when it is none.
+    """
+    value = positive_int(text)
+    if value > _LAST_PORT:
+        raise argparse.ArgumentTypeError(f"value must be from 1 to {_LAST_PORT}")
+    return value
+
+
+def time_to_live(text: str) -> int:
+    """A TTL of IP.
+
+    Raises:
+        argparse.ArgumentTypeError: when it is none.
+    """
+    value = positive_int(text)
+    if value > _LONGEST_TTL:
+        raise argparse.ArgumentTypeError(f"value must be from 1 to {_LONGEST_TTL}")
+    return value
+
+
+def add_ttl_argument(parser: argparse.ArgumentParser) -> None:
+    """Declare ``--ttl``."""
+    parser.add_argument("--ttl", type=time_to_live, help="TTL of the datagrams (default: 1, which no router passes on)")
+
+
+def _configure_receive(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--group", type=multicast_group, default=multicast.GROUP, help="the multicast group (default: %(default)s)"
+    )
+    parser.add_argument("--port", type=port, default=multicast.PORT, help="the UDP port (default: %(default)s)")
+
+
+def _configure_send(parser: argparse.ArgumentParser) -> None:
+    _configure_receive(parser)
+    add_ttl_argument(parser)
+
+
+def _receive(arguments: argparse.Namespace) -> int:
+    with multicast.open_receiver(arguments.group, arguments.port) as receiver:
+        print("Waiting for UDP multicast datagram...", flush=True)
+        data, (host, port, *_) = receiver.recvfrom(multicast.LARGEST)
+    print(f"Received from {host}:{port}: '{data.decode(errors='replace')}'")
+    return 0
+
+
+def _send(arguments: argparse.Namespace) -> int:
+    print("Sending one UDP multicast datagram...", flush=True)
+    with multicast.open_sender(arguments.ttl) as sender:
+        multicast.send(sender, _GREETING, arguments.group, arguments.port)
+    return 0
+
+
+VERBS = {
+    "receive": SubVerb(_configure_receive, _receive, help="wait for one datagram, and print it"),
+    "send": SubVerb(_configure_send, _send, help="send one datagram"),
+}

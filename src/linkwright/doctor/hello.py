@@ -1,0 +1,81 @@
+"""Greetings between computers, over a topic and by UDP multicast, and the table of whose greetings arrived."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+from linkwright.wire.multicast import GROUP, PORT
+
+_GREETING = "hello, it's me "
+_RULE = "-" * 60
+
+
+def greeting(host: str) -> str:
+    """What a computer says; that of ros2doctor is understood, and understands this."""
+    return f"{_GREETING}{host}"
+
+
+def host_of(text: str) -> str:
+    """The computer that said a greeting; empty when it is none."""
+    words = text.split()
+    return words[-1] if words else ""
+
+
+@dataclass
+class Greetings:
+    """What was sent and heard since the table was printed last.
+
+    Attributes:
+        own: the name of this computer, whose own greetings do not count.
+        published: how many went out over the topic.
+        sent: how many went out by multicast.
+        subscribed: how many came over the topic, by computer.
+        received: how many came by multicast, by computer.
+    """
+
+    own: str
+    published: int = 0
+    sent: int = 0
+    subscribed: Counter[str] = field(default_factory=Counter)
+    received: Counter[str] = field(default_factory=Counter)
+
+    def heard_on_topic(self, text: str) -> None:
+        """Count a greeting that came over the topic."""
+        self._count(self.subscribed, text)
+
+    def heard_by_multicast(self, text: str) -> None:
+        """Count a greeting that came by multicast."""
+        self._count(self.received, text)
+
+    def _count(self, heard: Counter[str], text: str) -> None:
+        host = host_of(text)
+        if host and host != self.own:
+            heard[host] += 1
+
+    def take_table(self, topic: str, period: float) -> str:
+        """Return the table, as ``ros2 doctor hello`` prints it, and begin the next one.
+
+        Args:
+            topic: the name of the topic.
+            period: seconds from one table to the next.
+        """
+        lines = [
+            "MULTIMACHINE COMMUNICATION SUMMARY",
+            f"Topic: {topic}, Published Msg Count: {self.published}",
+            "Subscribed from:",
+            *_rows(self.subscribed, period),
+            f"Multicast Group/Port: {GROUP}/{PORT}, Sent Msg Count: {self.sent}",
+            "Received from:",
+            *_rows(self.received, period),
+            _RULE,
+        ]
+        self.published = self.sent = 0
+        self.subscribed.clear()
+        self.received.clear()
+        return "\n".join(lines)
+
+
+def _rows(heard: Counter[str], period: float) -> list[str]:
+    rows = [("Hostname", f"Msg Count /{period}s"), *((host, str(count)) for host, count in heard.items())]
+    return [f"{'':<15} {host:<20} {count:<10}" for host, count in rows]

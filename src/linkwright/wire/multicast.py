@@ -1,0 +1,68 @@
+"""UDP multicast without DDS, for commands that try whether the network carries it: the group and port are ros2cli's."""
+
+from __future__ import annotations
+
+import socket
+import struct
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, foreign, phrase
+
+GROUP = "225.0.0.1"
+PORT = 49150
+LARGEST = 4096
+"""Bytes of a datagram that are read."""
+
+
+def open_sender(ttl: int | None = None) -> socket.socket:
+    """A socket for `send`.
+
+    Args:
+        ttl: how many routers a datagram passes; the system's 1, which none passes, when None.
+    """
+    sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    if ttl is not None:
+        sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
+    return sender
+
+
+def send(sender: socket.socket, data: bytes, group: str = GROUP, port: int = PORT) -> None:
+    """Send a datagram.
+
+    Raises:
+        LinkwrightError: CLI461, the system refuses to.
+    """
+    try:
+        sender.sendto(data, (group, port))
+    except OSError as error:
+        raise _refused(error, group, port) from error
+
+
+def open_receiver(group: str = GROUP, port: int = PORT) -> socket.socket:
+    """A socket on which the datagrams of a group arrive, also where other programs listen to it.
+
+    Raises:
+        LinkwrightError: CLI461, the system refuses it.
+    """
+    receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if hasattr(socket, "SO_REUSEPORT"):
+            receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+        receiver.bind(("", port))
+        membership = struct.pack("=4sI", socket.inet_aton(group), socket.INADDR_ANY)
+        receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+    except OSError as error:
+        receiver.close()
+        raise _refused(error, group, port) from error
+    return receiver
+
+
+def _refused(error: OSError, group: str, port: int) -> LinkwrightError:
+    return LinkwrightError(
+        Diagnostic(
+            "CLI461",
+            phrase("multicast to {group}:{port} is not possible here", group=group, port=port),
+            notes=(Note(foreign(error.strerror or error)),),
+            hint=phrase("it needs a network interface with a route for multicast, and a port that nobody has alone"),
+        )
+    )
