@@ -309,3 +309,12 @@ async def test_many_displays_that_wait_describe_no_endpoints_but_publishers(monk
         assert len(described) == before
         other.destroy()
         await eventually(lambda: "there is" not in shown[7].status[0].text)
+
+
+async def test_a_path_is_no_warning_before_the_first_plan_once_somebody_plans():
+    path = RvizConfig.parse(FILE.replace("PointStamped", "Path").replace("/clicked_point", "/plan"))
+    async with world(path) as w:
+        assert w.status("Path")["Topic"][0] == "warn", "nobody publishes the topic"
+        w.graph.create_node("planner").create_publisher("nav_msgs/msg/Path", "/plan", 5)
+        awaited = ("ok", "No messages received: nothing came yet from planner")
+        await eventually(lambda: w.status("Path")["Topic"] == awaited)

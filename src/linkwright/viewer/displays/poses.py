@@ -122,6 +122,7 @@ class PoseDisplay(RecentDisplay):
 
     CLASS = "rviz_default_plugins/Pose"
     MESSAGE = "geometry_msgs/msg/PoseStamped"
+    OCCASIONAL = True
     SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape())
 
     def content(self, message: Any) -> DataContent | None:
@@ -266,6 +267,7 @@ class PathDisplay(RecentDisplay):
 
     CLASS = "rviz_default_plugins/Path"
     MESSAGE = "nav_msgs/msg/Path"
+    OCCASIONAL = True
     LENGTH = ("Buffer Length",)
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),

@@ -123,6 +123,9 @@ class TopicDisplay(DataDisplay, ABC):
     TRANSFORMED: ClassVar[bool] = True
     """Whether messages wait until the frame in their header can be placed in the Fixed Frame at their time."""
 
+    OCCASIONAL: ClassVar[bool] = False
+    """Whether messages come only on occasion, such as plans: that none came yet from a publisher is no warning."""
+
     FOLLOWS_TRANSFORMS: ClassVar[bool] = False
     """Whether `transforms_came` is called though messages do not wait: the display places parts of them itself."""
 
@@ -306,10 +309,16 @@ class TopicDisplay(DataDisplay, ABC):
             return
         self.say(
             self.TOPIC_ROW,
-            "warn",
+            "ok" if self._is_awaited() else "warn",
             self._incompatibility or phrase("No messages received: {reason}", reason=self._silence()),
         )
         self._tell_count_later()
+
+    def _is_awaited(self) -> bool:
+        """Whether messages come only on occasion, and somebody is there to publish them."""
+        message, topic, _ = self.subscription()
+        publishers = self.context.published.publishers(topic)
+        return self.OCCASIONAL and self._incompatibility is None and any(kind == message for _, kind in publishers)
 
     def _tell_count_later(self) -> None:
         def tell() -> None:
