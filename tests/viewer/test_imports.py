@@ -27,9 +27,7 @@ def test_panels_and_displays_are_imported_when_they_are_asked_for():
     done = subprocess.run([sys.executable, "-c", OPENING], capture_output=True, text=True, cwd=root, check=True)
     opened, watching = (set(line.split()) for line in done.stdout.splitlines())
     room = "linkwright.viewer."
-    late = {
-        f"{room}features.monitor.{name}" for name in ("log", "node_graph", "parameters", "plots", "teleop", "topics")
-    }
+    late = {f"{room}features.monitor.{name}" for name in ("node_graph", "parameters", "plots", "teleop", "topics")}
     late |= {f"{room}displays.{name}" for name in ("image", "map", "marker", "point_clouds")}
     assert not opened & {*late, f"{room}features.export.feature", "linkwright.sdf.reader", "linkwright.sdf.writer"}
     assert watching & late == {f"{room}features.monitor.node_graph"}

@@ -23,7 +23,7 @@ export class LogPanel implements Panel {
   private readonly count = h("span", { class: "note" });
   private readonly details = h("div", { class: "log-details" });
   private chosen: LogLine | null = null;
-  private nodes = "";
+  private nodes: string | null = null;
 
   constructor(private readonly state: LogState) {
     const words = strings.monitor.log;

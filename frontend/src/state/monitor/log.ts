@@ -35,6 +35,8 @@ export class LogState {
   private text = "";
   private waiting: LogLine[] = [];
   private opened = false;
+  /** The next records are the first of a connection: the server begins with the past, of which the page may have a part. */
+  private begins = true;
 
   constructor(
     private readonly connection: Connection,
@@ -43,11 +45,13 @@ export class LogState {
     const saved = storage.getItem(SAVED_KEY);
     this.levels = new Set(saved === null ? LEVELS : saved.split(",").map(Number));
     connection.on("hello", () => {
+      this.begins = true;
       if (this.opened) this.announce();
     });
     connection.on("log_lines", ({ lines, missed }) => {
       this.missed += missed;
-      this.take(lines);
+      this.take(this.begins ? this.unknownOf(lines) : lines);
+      this.begins = false;
     });
   }
 
@@ -95,6 +99,11 @@ export class LogState {
     this.filter();
   }
 
+  private unknownOf(lines: readonly LogLine[]): LogLine[] {
+    const known = new Set([...this.lines, ...this.waiting].map(keyOf));
+    return lines.filter((line) => !known.has(keyOf(line)));
+  }
+
   private take(lines: readonly LogLine[]): void {
     if (this.paused) {
       this.waiting.push(...lines);
@@ -125,4 +134,8 @@ export class LogState {
   private announce(): void {
     this.connection.send({ type: "watch_log", watched: this.opened });
   }
+}
+
+function keyOf({ time, node, message }: LogLine): string {
+  return JSON.stringify([time, node, message]);
 }

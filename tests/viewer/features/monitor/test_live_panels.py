@@ -399,6 +399,22 @@ async def test_the_log_is_followed_and_begins_with_the_past():
         assert abs(line["time"] - time.time()) < 5
 
 
+async def test_the_log_has_what_was_said_while_it_was_not_shown():
+    async with opened() as (made, client):
+        log = made.graph.create_node("talker").get_logger()
+        node = made.viewer.context.node
+        await eventually(lambda: node.count_subscribers("/rosout") > 0)  # before any page shows a log
+        log.info("first")
+        await client.send("watch_log", watched=True)
+        lines = (await client.until("log_lines"))["lines"]
+        assert "first" in [line["message"] for line in lines]
+        await client.send("watch_log", watched=False)
+        await made.graph.settle()
+        log.info("second")
+        await client.send("watch_log", watched=True)
+        assert [line["message"] for line in (await client.until("log_lines"))["lines"]] == ["second"]
+
+
 @skipping
 async def test_a_flood_is_cut_and_counted():
     async with opened() as (made, client):

@@ -9,7 +9,7 @@ from typing import Any
 from linkwright.graph import MessageInfo
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
-from linkwright.viewer.protocol.message import encode
+from linkwright.viewer.protocol.message import ServerMessage, encode
 from linkwright.viewer.protocol.monitor import LogLine, LogLines, WatchLog
 from linkwright.viewer.web.audience import Page
 
@@ -19,7 +19,7 @@ _MOST_WAITING = 1000
 """Records that wait for one page; of more only the newest are sent."""
 
 _KEPT = 1000
-"""Records of the past for a page that begins to watch while another does."""
+"""Records of the past for a page that begins to watch."""
 
 
 class _Reader:
@@ -51,36 +51,43 @@ class _Reader:
 
 
 class LogFeature(PageFeature):
-    """Sends pages the records of ``/rosout``."""
+    """Sends pages the records of ``/rosout``; keeps the last ones while there are pages."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._readers: dict[Page, _Reader] = {}
+        self._watching: set[Page] = set()
         self._past: deque[LogLine] = deque(maxlen=_KEPT)
         self._tap: TopicTap | None = None
         self._turn = Paced(self._send, _PERIOD)
 
-    def receive(self, page: Page, message: WatchLog) -> None:
-        """Start or stop sending records to a page."""
-        if not message.watched:
-            self.page_gone(page)
-            return
-        if page in self._readers:
-            return
-        self._readers[page] = _Reader(self._past)
+    def opening(self) -> list[ServerMessage]:
+        """Begin to keep records."""
         if self._tap is None:
             self._tap = TopicTap(self.context, _TOPIC, self._take)
+        return []
+
+    def receive(self, page: Page, message: WatchLog) -> None:
+        """Start or stop sending records to a page; those that come meanwhile are sent when it starts again."""
+        if not message.watched:
+            self._watching.discard(page)
+            return
+        self._watching.add(page)
+        if page not in self._readers:
+            self._readers[page] = _Reader(self._past)
         self._turn.ask()
 
     def page_gone(self, page: Page) -> None:
-        """Forget the page."""
+        """Forget the page; leave the topic after the last one."""
+        self._watching.discard(page)
         self._readers.pop(page, None)
-        if not self._readers:
+        if len(self.context.pages) == 0:
             self.close()
 
     def close(self) -> None:
         """Leave the topic."""
         self._readers.clear()
+        self._watching.clear()
         self._past.clear()
         self._turn.cancel()
         if self._tap is not None:
@@ -103,6 +110,7 @@ class LogFeature(PageFeature):
         self._turn.ask()
 
     def _send(self) -> None:
-        for page, reader in self._readers.items():
+        for page in self._watching:
+            reader = self._readers[page]
             if len(reader):
                 page.outbox.put(reader.key, reader)
