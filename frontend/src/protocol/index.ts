@@ -104,7 +104,7 @@ import type {
   WatchSeries,
   WatchTopics,
 } from "./monitor";
-import type { CommandNavigation, NavigationState, WatchNavigation } from "./navigation";
+import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
 import type { AskPoint, CellGrid, CloudPoints, PointFields } from "./points";
 import type { RecordTopics, RecordingState, SaveMinutes, StopRecording } from "./recording";
 import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
@@ -202,6 +202,7 @@ export type ServerMessage =
   | ExportReady
   | Folder
   | FrameTable
+  | GoalOutcome
   | Hello
   | InertiaFindings
   | JointPositions

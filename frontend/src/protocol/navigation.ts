@@ -31,3 +31,10 @@ export interface NavigationState {
   problem: string;
   type: "navigation_state";
 }
+
+/** Whether the last goal failed, to be told over the scene. */
+export interface GoalOutcome {
+  reason: string;
+  failed: boolean;
+  type: "goal_outcome";
+}

@@ -32,6 +32,7 @@ class Nav2:
         node = graph.create_node("nav2")
         self.active = True
         self.refuses = False
+        self.log = node.get_logger()
         self.commands: list[tuple[str, int]] = []
         self.cancelled = 0
         for name in ("navigation", "localization"):
@@ -120,6 +121,32 @@ async def test_progress_of_the_goal_is_told_and_forgotten_with_the_next_goal():
         await client.until("navigation_state", goal="active", eta=None, recoveries=None)
         nav2.goal(4, 4)
         await client.until("navigation_state", goal="succeeded")
+
+
+async def test_a_failed_goal_is_told_with_the_error_of_its_node_until_the_next_goal():
+    async with world() as w:
+        nav2 = Nav2(w.graph)
+        async with page(w.viewer) as client:
+            await client.opened()
+            nav2.goal(2)
+            w.graph.create_node("camera").get_logger().error("no light")
+            nav2.log.error("Goal failed: the goal is in an obstacle")
+            nav2.goal(6)
+            told = await client.until("goal_outcome", failed=True)
+            assert told["reason"] == "Goal failed: the goal is in an obstacle"
+            nav2.goal(6, 2)
+            await client.until("goal_outcome", failed=False, reason="")
+
+
+async def test_a_goal_that_failed_before_the_page_came_is_no_news():
+    async with world() as w:
+        nav2 = Nav2(w.graph)
+        nav2.goal(6)
+        async with page(w.viewer) as client:
+            await client.opened()
+            nav2.goal(6, 5)
+            told = [each for each in await client.drain(0.6) if isinstance(each, dict)]
+            assert not any(each["failed"] for each in told if each["type"] == "goal_outcome")
 
 
 async def test_buttons_command_both_managers_in_the_order_of_nav2():

@@ -8,6 +8,7 @@ import { VoiceNotice } from "../voice/voice-notice";
 import { CardColumn, type Below } from "./card-column";
 import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
+import { GoalNotice } from "./goal-notice";
 import { InspectMenu } from "./inspect-menu";
 import { LineNotice } from "./line-notice";
 import { MeshNotice } from "./mesh-notice";
@@ -40,7 +41,7 @@ export class ScenePanel implements Panel {
     const sign = new OrientationSign(session);
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);
     this.notices.append(simulation.element, notice.element, banner.element);
-    const told = [new LineNotice(session), new OwnerNotice(session), new MeshNotice(session.meshProgress), new VoiceNotice(session.voice)];
+    const told = [new GoalNotice(session.monitor.navigation), new LineNotice(session), new OwnerNotice(session), new MeshNotice(session.meshProgress), new VoiceNotice(session.voice)];
     this.column.element.append(inspect.element, card.element, ...told.map((each) => each.element));
     this.box = h(
       "div",

@@ -1,10 +1,12 @@
 import type { Connection } from "../../connection/connection";
-import type { NavigationCommand, NavigationState as Told } from "../../protocol";
+import type { GoalOutcome, NavigationCommand, NavigationState as Told } from "../../protocol";
 import { Signal } from "../../signal";
 
 /** The state of nav2; asked for only while the panel is seen. */
 export class NavigationState {
   readonly changed = new Signal();
+  /** A goal failed, or another was accepted. */
+  readonly outcomeChanged = new Signal<GoalOutcome>();
   /** Null before the server told. */
   told: Told | null = null;
   private opened = false;
@@ -17,6 +19,7 @@ export class NavigationState {
       this.told = told;
       this.changed.emit();
     });
+    connection.on("goal_outcome", (outcome) => this.outcomeChanged.emit(outcome));
   }
 
   setOpen(opened: boolean): void {

@@ -150,6 +150,7 @@ export const monitor = {
       canceled: "canceled",
       aborted: "aborted",
     },
+    failed: "The goal was given up",
     commands: { startup: "Startup", pause: "Pause", resume: "Resume", reset: "Reset", cancel: "Cancel" },
     hints: {
       startup: "Configure and activate the nodes of nav2",

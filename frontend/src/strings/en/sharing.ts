@@ -12,7 +12,7 @@ export const sharing = {
   slowLineHint: "The robot's movements go first; the rest comes in less detail until the connection is faster.",
   slowPage: "This page draws slowly",
   slowPageHint: "The browser does not draw as fast as the robot moves: fewer or simpler displays, a smaller window or a graphics card help.",
-  plainLight: "Where the light is Automatic, it is the camera's: a studio would be slower.",
+  plainLight: "Where the light is Automatic, it is a soft one at the camera: a studio would be slower.",
   software: (name: string): string => `The browser draws without a graphics card (${name}).`,
   points: (step: number): string => `1 in ${step} points`,
   image: ({ columns, rows, width, height, quality }: ReducedImage): string =>

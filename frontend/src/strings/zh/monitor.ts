@@ -151,6 +151,7 @@ export const monitor: Strings["monitor"] = {
       canceled: "已取消",
       aborted: "已中止",
     },
+    failed: "已放弃该目标",
     commands: { startup: "启动", pause: "暂停", resume: "继续", reset: "重置", cancel: "取消" },
     hints: {
       startup: "配置并激活 nav2 的节点",

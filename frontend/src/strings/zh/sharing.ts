@@ -6,7 +6,7 @@ export const sharing: typeof english = {
   slowLineHint: "机器人的运动优先传送；其余内容在连接变快之前以较低的细节显示。",
   slowPage: "此页面绘制较慢",
   slowPageHint: "浏览器绘制的速度跟不上机器人的运动：减少或简化显示项、缩小窗口，或者使用显卡，会有帮助。",
-  plainLight: "“自动”光照现在用相机光：影棚会更慢。",
+  plainLight: "“自动”光照现在用相机处的柔光：影棚会更慢。",
   software: (name) => `浏览器没有使用显卡绘制（${name}）。`,
   points: (step) => `每 ${step} 个点取 1 个`,
   image: ({ columns, rows, width, height, quality }) => `WebP ${columns} × ${rows}（原图 ${width} × ${height}），质量 ${quality}`,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from linkwright.graph import ActionClient, Node
@@ -24,22 +25,28 @@ class GoalSender:
         self._goal = get_action(kind).Goal
         self._client = ActionClient(node, kind, name)
 
-    def send(self, pose: Any) -> None:
-        """Send a pose; the log warns when no server accepts it.
+    def send(self, pose: Any, refused: Callable[[str], None]) -> None:
+        """Send a pose; the log has an error when no server accepts it.
 
         Args:
             pose: a geometry_msgs/msg/PoseStamped.
+            refused: called with the error.
         """
-        if not self._client.server_is_ready():
-            self._log.error(f"{self._name} action server is not available. Is the initial pose set?")
-            return
-        self._client.send_goal_async(self._goal(pose=pose)).add_done_callback(self._answered)
+
+        def refuse(reason: str) -> None:
+            self._log.error(reason)
+            refused(reason)
+
+        def answered(answer: Future[Any]) -> None:
+            handle = None if answer.cancelled() or answer.exception() is not None else answer.result()
+            if handle is not None and not handle.accepted:
+                refuse("Goal was rejected by the action server")
+
+        if self._client.server_is_ready():
+            self._client.send_goal_async(self._goal(pose=pose)).add_done_callback(answered)
+        else:
+            refuse(f"{self._name} action server is not available. Is the initial pose set?")
 
     def destroy(self) -> None:
         """Leave the graph."""
         self._client.destroy()
-
-    def _answered(self, answer: Future[Any]) -> None:
-        handle = None if answer.cancelled() or answer.exception() is not None else answer.result()
-        if handle is not None and not handle.accepted:
-            self._log.error("Goal was rejected by the action server")

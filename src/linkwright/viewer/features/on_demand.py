@@ -31,6 +31,8 @@ from linkwright.viewer.web.audience import Page
 _SIMULATION = "simulation:SimulationFeature"
 _MODELLING = "modelling.feature:ModellingFeature"
 _RECORDING = "recording:RecordingFeature"
+_LOG = "monitor.log:LogFeature"
+_OUTCOME = "monitor.goal_outcome:GoalOutcomeFeature"
 
 _ANSWERED_BY: dict[str, tuple[type, ...]] = {
     "displays:DisplaysFeature": (displays.SetProperty, robot.MeshStatus, markers.MarkerFeedback, images.PictureSize),
@@ -56,7 +58,8 @@ _ANSWERED_BY: dict[str, tuple[type, ...]] = {
         modelling.UndoWorld,
         modelling.UngroupThing,
     ),
-    "monitor.log:LogFeature": (monitor.WatchLog,),
+    _LOG: (monitor.WatchLog,),
+    _OUTCOME: (),
     "monitor.navigation:NavigationFeature": (navigation.CommandNavigation, navigation.WatchNavigation),
     "monitor.node_graph:NodeGraphFeature": (monitor.WatchNodeGraph,),
     "monitor.parameters:ParametersFeature": (monitor.DumpParameters, monitor.SetParameter, monitor.WatchParameters),
@@ -87,7 +90,12 @@ _ANSWERED_BY: dict[str, tuple[type, ...]] = {
 }
 """The messages that each feature receives, by its module and class below this package."""
 
-_WOKEN_BY = {"/simulation_state": _SIMULATION, "/world_description": _MODELLING}
+_WOKEN_BY = {
+    "/simulation_state": _SIMULATION,
+    "/world_description": _MODELLING,
+    "/navigate_to_pose/_action/status": _OUTCOME,
+    "/rosout": _LOG,
+}
 """Topics on which a publisher means that there is something to tell pages."""
 
 _WHILE_NOT_MADE: dict[str, ServerMessage] = {

@@ -15,6 +15,7 @@ from linkwright.viewer.config.tools import TOOL_KINDS, ToolEntry, ToolsConfig, t
 from linkwright.viewer.config.views import view_classes
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.protocol.navigation import GoalOutcome
 from linkwright.viewer.protocol.views_and_tools import (
     AddTool,
     ChangeSavedView,
@@ -254,7 +255,7 @@ class ToolsFeature(PageFeature):
         if goals is not None:
             message, known = self._stamped(manager, _POSE, place)
             self._tell_pose("goal", message.header, _fill(message.pose, known), known)
-            goals.send(message)
+            goals.send(message, lambda reason: manager.publish(GoalOutcome(reason, failed=True)))
             return
         found = self._find(manager, chosen.tool, _POSE_TOOLS)
         if found is None:

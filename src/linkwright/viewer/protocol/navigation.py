@@ -50,3 +50,18 @@ class NavigationState(ServerMessage):
     recoveries: int | None
     busy: bool
     problem: str
+
+
+class GoalOutcome(ServerMessage):
+    """Whether the last goal failed, to be told over the scene.
+
+    Attributes:
+        reason: the last error of the node that gave it up, or why it was not sent; empty where none is known.
+        failed: whether it failed; false from when another goal is accepted.
+    """
+
+    reason: str
+    failed: bool
+
+
+NO_GOAL_FAILED = GoalOutcome("", failed=False)

@@ -17,6 +17,7 @@ from linkwright.graph import Client, DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.answers import answered
 from linkwright.viewer.context import ViewerContext
+from linkwright.viewer.features.monitor.goal_outcome import accepted_at
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.navigation import (
     CommandNavigation,
@@ -173,7 +174,7 @@ class _Watch:
     def _goals_changed(self, message: Any) -> None:
         if not message.status_list:
             return
-        last = max(message.status_list, key=_accepted)
+        last = max(message.status_list, key=accepted_at)
         goal = bytes(last.goal_info.goal_id.uuid)
         fields: dict[str, Any] = {"goal": _GOALS.get(last.status, "none")}
         if goal != self._goal:
@@ -229,11 +230,6 @@ class _Watch:
         if answer.return_code != 0:
             return phrase("the goal could not be cancelled: code {code}", code=answer.return_code)
         return None
-
-
-def _accepted(status: Any) -> tuple[int, int]:
-    stamp = status.goal_info.stamp
-    return stamp.sec, stamp.nanosec
 
 
 def _seconds(duration: Any) -> float:

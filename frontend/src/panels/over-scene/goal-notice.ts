@@ -1,0 +1,21 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { NavigationState } from "../../state/monitor/navigation";
+import { strings } from "../../strings";
+
+/** Over the scene after a goal of navigation failed: why, until another goal is accepted or the user closes it. */
+export class GoalNotice {
+  readonly element = h("div", { class: "line-notice failed", role: "alert", data: { notice: "goal" } });
+
+  constructor(navigation: NavigationState) {
+    const words = strings.monitor.navigation;
+    const reason = h("div");
+    const close = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
+    this.element.append(h("header", {}, h("strong", {}, words.failed), close), reason);
+    this.element.hidden = true;
+    navigation.outcomeChanged.on((outcome) => {
+      reason.textContent = outcome.reason;
+      this.element.hidden = !outcome.failed;
+    });
+  }
+}
