@@ -87,6 +87,15 @@ async def test_what_has_one_name_is_there_already(stage):
     assert len(scans) == 1
 
 
+async def test_topics_are_there_before_the_simulation_has_them(stage):
+    words = (SCAN, "/odom@nav_msgs/msg/Odometry[gz.msgs.Odometry", "/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist")
+    ParameterBridge(stage.graph, NodeOptions(arguments=[*words, "/both@std_msgs/msg/String@gz.msgs.StringMsg"]))
+    topics = dict(stage.graph.get_topic_names_and_types())
+    assert {"/scan", "/odom", "/cmd_vel", "/both"} <= topics.keys()
+    counts = {name: (stage.node.count_publishers(name), stage.node.count_subscribers(name)) for name in topics}
+    assert [counts[name] for name in ("/scan", "/cmd_vel", "/both")] == [(1, 0), (0, 1), (1, 1)]
+
+
 async def test_a_remapped_name_is_bridged(stage):
     kind = "nav_msgs/msg/Odometry"
     moved = heard(stage, kind, "/odom")

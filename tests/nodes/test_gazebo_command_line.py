@@ -18,6 +18,7 @@ FACTORY = "-s libgazebo_ros_init.so -s libgazebo_ros_factory.so"
         (f"gazebo --verbose {FACTORY} /w/a.world", {"world": "/w/a.world", "gui": True}),
         (f"gzserver /w/a.world {FACTORY}", {"world": "/w/a.world"}),
         (f"gzserver {FACTORY} -u --seed 7 a.world", {"world": "a.world", "pause": True, "seed": 7}),
+        ("gzserver '' extra-gazebo-args --ros-args", {}),
         ("/usr/bin/gazebo -e bullet --seed=7 a.world", {"world": "a.world", "seed": 7, "gui": True}),
     ],
 )
@@ -36,6 +37,7 @@ def test_classic(line, parameters):
         ("gz sim -r -s -v 4 /w/a.sdf", {"pause": False, "gui": False, "world": "/w/a.sdf"}),
         ("gz sim -v4 a.sdf -r", {"pause": False, "gui": True, "world": "a.sdf"}),
         ("gz sim -v a.sdf", {"pause": True, "gui": True, "world": "a.sdf"}),
+        ("gz sim -r '' a.sdf", {"pause": False, "gui": True, "world": "a.sdf"}),
         ("ign gazebo --headless-rendering -z 100 -r a.sdf", {"pause": False, "gui": True, "world": "a.sdf"}),
         ("gz sim --gui-config g.config --physics-engine p a.sdf", {"pause": True, "gui": True, "world": "a.sdf"}),
     ],

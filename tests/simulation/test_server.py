@@ -62,6 +62,33 @@ async def simulator(tmp_path, *parts: str, **parameters):
         await graph.close()
 
 
+SHAPES = {
+    "URDF": '<robot name="r"><link name="base"><collision><geometry>{}</geometry></collision></link></robot>',
+    "SDF": '<sdf version="1.7"><model name="r"><link name="base"><visual name="v"><geometry>{}</geometry></visual>'
+    "</link></model></sdf>",
+}
+
+
+@pytest.mark.parametrize("language", SHAPES)
+async def test_a_model_with_an_unknown_shape_is_refused_with_the_reason(tmp_path, language):
+    async with simulator(tmp_path) as it:
+        text = SHAPES[language].format("<pyramid/>")
+        answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
+        assert not answer.success
+        assert "<pyramid> in <geometry>" in answer.status_message
+        assert "is not a shape" in answer.status_message
+        assert "one" not in it.simulator.server.simulation.scene.models
+
+
+@pytest.mark.parametrize("shape", ["", "<box/>", '<cylinder radius="1"/>', '<box size="1 a 1"/>'])
+async def test_a_robot_with_a_shape_without_measures_is_refused(tmp_path, shape):
+    async with simulator(tmp_path) as it:
+        text = SHAPES["URDF"].format(shape)
+        answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
+        assert not answer.success
+        assert "of link 'base'" in answer.status_message
+
+
 async def test_models_come_and_go_by_services(tmp_path):
     async with simulator(tmp_path) as it:
         sent = {"name": "one", "xml": URDF, "robot_namespace": ""}

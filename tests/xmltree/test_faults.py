@@ -140,6 +140,27 @@ def test_a_text_in_gbk_is_known_by_its_pairs() -> None:
     assert "GBK" not in str(told("<a n='rübe'/>".encode("latin-1"))[-1])
 
 
+@pytest.mark.parametrize(
+    ("text", "language", "column"),
+    [
+        ("<a>\n <% 3.times do |i| %><b/><% end %></a>", "ERB", 2),
+        ('<a>\n  <b n="<%= 3 %>"/></a>', "ERB", 9),
+        ("<%\nn = 3\n%>\n<a/>", "ERB", 1),
+        ("{% macro a(b) %}\n<a/>", "Jinja", 1),
+        ("{#- told -#}\n<a/>", "Jinja", 1),
+    ],
+)
+def test_a_template_is_named_for_what_it_is(text: str, language: str, column: int) -> None:
+    code, message, _, at, hint = told(text)
+    assert (code, at) == ("XML206", column)
+    assert message == f"this is a template in {language}, of which XML is yet to be made"
+    assert "give that file" in str(hint)
+
+
+def test_what_is_wrong_before_a_template_begins_is_told_first() -> None:
+    assert told("<a>1 < 2 <% %></a>")[1] == "'<' does not begin a tag"
+
+
 def test_an_unknown_encoding() -> None:
     with pytest.raises(LinkwrightError) as caught:
         parse(b'<?xml version="1.0" encoding="klingon"?><a>\xff</a>', "x")

@@ -26,6 +26,15 @@ _UNQUOTED = re.compile(r"([^\s=/>\"'<]+)\s*=\s*$")
 _QUOTE_LEFT_OPEN = re.compile(r"""([^\s=/>"'<]+)\s*=\s*(["'])[^"'<>]*\s[^\s=/>"'<]+\s*=\s*\2$""")
 """A value that ends in what looks like the next attribute: name="a type=" and so on."""
 _LONE_AMPERSAND = re.compile(r"&[^\s;&<>\"']*$")
+_TEMPLATES = (
+    (
+        re.compile(r"<%.*?%>", re.DOTALL),
+        "ERB",
+        phrase("run `erb TEMPLATE > FILE`, and give that file"),
+    ),
+    (re.compile(r"\{[%#].*?[%#]\}", re.DOTALL), "Jinja", phrase("have Jinja make a file of it, and give that file")),
+)
+"""What stands in templates, the name of their language, and what to do."""
 _DASHES_IN_COMMENT = re.compile(r"<!--(?:(?!-->).)*--$", re.DOTALL)
 _NAME = re.compile(r"[^\s=/>\"'&;<]+")
 
@@ -100,6 +109,8 @@ class _Fault:
             message = phrase("'{name}' is empty", name=self._source.name)
             hint = phrase('a description begins with <robot name="...">; was the file saved?')
             return Diagnostic("XML105", message, span=self._source.span(0, 0), hint=hint, source=self._source)
+        if template := self._template():
+            return template
         if code == _MISMATCH:
             return self._mismatched_tag()
         if self._offset >= len(self._text.rstrip()) and code in (_NO_ELEMENT, _UNCLOSED_TOKEN) and self._open:
@@ -133,6 +144,15 @@ class _Fault:
         if code == _SYNTAX and self._open == []:
             return self._no_xml()
         return self._diagnostic("XML206", _words(error))
+
+    def _template(self) -> Diagnostic | None:
+        """A text that a program makes XML of, where what that program replaces is what XML forbids."""
+        for pattern, language, hint in _TEMPLATES:
+            tag = pattern.search(self._text)
+            if tag is not None and tag.start() <= self._offset:
+                message = phrase("this is a template in {language}, of which XML is yet to be made", language=language)
+                return self._diagnostic("XML206", message, len(tag[0].split("\n")[0]), at=tag.start(), hint=hint)
+        return None
 
     def _diagnostic(
         self, code: str, message: Phrase, length: int = 1, *, at: int | None = None, hint: Phrase | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +43,33 @@ def code_of(caught) -> str:
 
 def lists_of(folder: Path):
     return {split: json.loads((folder / f"annotations/instances_{split}.json").read_text()) for split in SPLITS}
+
+
+LIT = """<scene><ambient>0.2 0.2 0.2 1</ambient><background>0 1 1 1</background></scene>
+<light name="red" type="directional"><pose>0 0 8 0 0 0</pose><diffuse>1 0 0 1</diffuse><specular>0 0 0 1</specular>
+  <direction>0 0.3 -1</direction></light>"""
+
+
+def test_lights_and_background_of_the_world_are_kept_where_that_is_asked_for(tmp_path):
+    path = tmp_path / "lit.world"
+    path.write_text(world_text(LIT, GROUND, BALL.format(name="ball", pose="1 0 0.2 0 0 0")))
+    made = {}
+    for kept in ((), ("lights",)):
+        source = Source(
+            (str(path),), (), None, replace(OPTIONS, distractors=0, form="png", kept=("colours", "lens", *kept))
+        )
+        studio = Studio(source)
+        try:
+            pictures = [np.asarray(Image.open(BytesIO(studio.take(index).data)).convert("RGB")) for index in range(4)]
+        finally:
+            studio.close()
+        made[kept] = np.concatenate(pictures).reshape(-1, 3).astype(int)
+    lit = made["lights",]
+    sky = (lit == [0, 255, 255]).all(axis=1)
+    assert sky.any()
+    ground = lit[~sky & (lit[:, 0] > 60)]
+    assert (ground[:, 0] > 1.3 * ground[:, 1]).mean() > 0.9, "red light"
+    assert not (made[()] == [0, 255, 255]).all(axis=1).any()
 
 
 def test_all_forms_say_the_same(source, tmp_path):

@@ -1,7 +1,8 @@
 """parameter_bridge and static_bridge of ros_gz_bridge, and image_bridge of ros_gz_image.
 
 Topics of gz are topics of the graph here, with the names and types that they have after a bridge. So a bridge has work
-to do only where the two sides have different names or types: it hands messages on from one to the other.
+to do only where the two sides have different names or types: it hands messages on from one to the other. The others it
+only announces, since programs look for them before the simulation has begun or the robot has come.
 """
 
 from __future__ import annotations
@@ -110,9 +111,12 @@ class _Bridge(SingleNode):
         gz_type = TYPES_OF_GZ.get(topic.gz_type, topic.ros_type)
         gz_topic = "/" + self._gz_name(topic.gz_topic).lstrip("/")
         same_name = self._node.resolve_topic_name(topic.ros_topic) == gz_topic
-        if (same_name and topic.ros_type == gz_type) or topic.ros_type == _CLOCK:  # the simulation publishes /clock
+        if topic.ros_type == _CLOCK:  # the simulation publishes it
             return
         to_ros, to_gz = (topic.direction in (way, "BIDIRECTIONAL") for way in ("GZ_TO_ROS", "ROS_TO_GZ"))
+        if same_name and topic.ros_type == gz_type:
+            self._announce(topic, to_ros=to_ros, to_gz=to_gz)
+            return
         if same_name and to_gz:  # in ROS the name is the bridge's, with its type
             gz_topic = gz_side(gz_topic)
         ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
@@ -120,6 +124,14 @@ class _Bridge(SingleNode):
             self._hand_on(topic, gz, ros)
         if to_gz:
             self._hand_on(topic, ros, gz)
+
+    def _announce(self, topic: BridgedTopic, *, to_ros: bool, to_gz: bool) -> None:
+        """Have a topic in the graph before the simulation has it, as with a bridge of gz; nothing is handed on."""
+        if to_ros:
+            self._node.create_publisher(topic.ros_type, topic.ros_topic, topic.publisher_queue)
+        if to_gz:
+            profile = QoSProfile(topic.subscriber_queue, reliability=ReliabilityPolicy.BEST_EFFORT)
+            self._node.create_subscription(topic.ros_type, topic.ros_topic, lambda _: None, profile, raw=True)
 
     def _gz_name(self, name: str) -> str:
         """The name of a topic of gz, in the node's namespace if that is configured."""

@@ -57,7 +57,7 @@ def classic_server(words: Sequence[str], *, window: bool = False) -> SimulatorCo
     own, ros = _divided(words)
     options, others = _read(own, _CLASSIC_VALUES.split())
     parameters = _seed(options) | ({"gui": True} if window else {})
-    if others:
+    if others and others[0]:
         parameters["world"] = others[0]
     if "-u" in options or "--pause" in options:
         parameters["pause"] = True
@@ -71,8 +71,8 @@ def gz_server(words: Sequence[str]) -> SimulatorCommand:
     if "-g" in options:
         return SimulatorCommand("ros_gz_sim", "gzclient")
     parameters = _seed(options) | {"pause": "-r" not in options, "gui": "-s" not in options}
-    if others:
-        parameters["world"] = others[0]
+    if any(others):
+        parameters["world"] = next(filter(None, others))
     return SimulatorCommand("ros_gz_sim", "gzserver", parameters, ros)
 
 
@@ -83,9 +83,12 @@ def _divided(words: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def _read(words: list[str], with_value: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """The options with their values, empty for those without, and the other words."""
+    """The options with their values, empty for those without, and the other words; empty ones count, blank ones do not.
+
+    A launch file that has no world gives ``gzserver`` an empty one, and what comes after it is no world.
+    """
     options, others = {}, []
-    rest = [word for word in words if word.strip()]
+    rest = [word for word in words if word.strip() or not word]
     while rest:
         word = rest.pop(0)
         name, equals, value = word.partition("=")

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.descriptions import DescriptionLibrary
-from linkwright.diagnostics import Diagnostic, LinkwrightError, has_errors, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, has_errors, joined, phrase
 from linkwright.sdf.from_urdf import model_from_robot
 from linkwright.sdf.includes import resolve_includes
 from linkwright.sdf.models import Model
 from linkwright.sdf.reader import read
 from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.shapes import GEOMETRY
 from linkwright.sdf.text import parse_as_gazebo
+from linkwright.urdf import Robot
+from linkwright.xmltree import Element
 
 _NAME = "<the description>"
+_SHAPED = ("visual", "collision")
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +29,12 @@ class Entity:
     Attributes:
         model: the model, with its includes resolved; of a robot every link is kept.
         diagnostics: what is remarkable about it.
+        unread: errors because of which shapes are missing in it.
     """
 
     model: Model
     diagnostics: tuple[Diagnostic, ...]
+    unread: tuple[Diagnostic, ...] = ()
 
 
 def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) -> Entity:
@@ -47,7 +54,8 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
         if reading.robot is None or not reading.robot.links:
             raise LinkwrightError(*_errors(reading.diagnostics))
         converted = model_from_robot(reading.robot, lump_fixed_joints=False)
-        return Entity(converted.model, converted.diagnostics)
+        unread = _errors(reading.diagnostics) if _lacks_shapes(reading.robot) else ()
+        return Entity(converted.model, converted.diagnostics, tuple(unread))
     sdf = read(document)
     if sdf.sdf is None:
         raise LinkwrightError(*_errors(sdf.diagnostics))
@@ -63,7 +71,33 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
             else phrase("it is a world; only models come into one")
         )
         raise LinkwrightError(Diagnostic("SIM142", message, hint=hint))
-    return Entity(included.sdf.models[0], findings)
+    return Entity(included.sdf.models[0], findings, tuple(_unknown_shapes(document.root)))
+
+
+def _lacks_shapes(robot: Robot) -> bool:
+    """Whether what is written as a shape of a link is none, or not as it has to be; urdfdom refuses such robots."""
+    return any(
+        len(link.visuals) + len(link.collisions) < sum(each.tag in _SHAPED for each in link.element.elements())
+        for link in robot.links.values()
+        if link.element is not None
+    )
+
+
+def _unknown_shapes(root: Element) -> Iterator[Diagnostic]:
+    """Errors for elements in the place of shapes, which are none of SDF."""
+    for parent in root.walk():
+        for geometry in parent.elements("geometry") if parent.tag in _SHAPED else ():
+            for shape in geometry.elements():
+                if shape.tag not in GEOMETRY.child_rules and ":" not in shape.tag:
+                    owner = parent.attributes.get("name", "")
+                    message = phrase(
+                        "<{tag}> in <geometry> of {kind} '{name}' is not a shape",
+                        tag=shape.tag,
+                        kind=foreign(parent.tag),
+                        name=owner,
+                    )
+                    hint = phrase("the shapes are {names}", names=joined(sorted(GEOMETRY.child_rules)))
+                    yield Diagnostic("SIM145", message, shape.span(), hint=hint, source=shape.source)
 
 
 def _errors(findings: tuple[Diagnostic, ...] | list[Diagnostic]) -> list[Diagnostic]:

@@ -24,7 +24,7 @@ from linkwright.simulation.plugins.entities import (
     transform_in,
 )
 from linkwright.simulation.plugins.node import PluginNode
-from linkwright.simulation.server.entities import entity_from
+from linkwright.simulation.server.entities import Entity, entity_from
 from linkwright.simulation.server.loading import WorldLoader
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld
@@ -120,7 +120,9 @@ class Services:
         Raises:
             LinkwrightError: what is wrong with it.
         """
-        entity = entity_from(text, self._server.simulation.finder, self._library)
+        return self._put(entity_from(text, self._server.simulation.finder, self._library), name, pose, namespace)
+
+    def _put(self, entity: Entity, name: str, pose: Transform, namespace: str) -> str:
         placed = compose(pose, transform_of(entity.model.pose.pose))
         name = name or entity.model.name
         self._server.spawn(entity.model, name, placed, namespace)
@@ -153,7 +155,10 @@ class Services:
     def _spawn(self, request: Any, response: Any) -> Any:
         def spawn() -> str:
             pose = compose(self._entities.frame(request.reference_frame), transform_in(request.initial_pose))
-            name = self.spawn(request.xml, request.name, pose, request.robot_namespace)
+            entity = entity_from(request.xml, self._server.simulation.finder, self._library)
+            if entity.unread:
+                raise LinkwrightError(*entity.unread)
+            name = self._put(entity, request.name, pose, request.robot_namespace)
             for function in self.on_spawned:
                 function(name, request.xml)
             return f"SpawnEntity: Successfully spawned entity [{request.name}]"

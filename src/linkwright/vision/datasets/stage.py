@@ -216,7 +216,7 @@ class Stage:
             kind: [model.material(f"{kind} {number}").id for number in range(_PATTERNS)] for kind in _SIZES
         }
         self.begin()
-        self.light((), np.zeros(3), np.zeros(3))
+        self.simulation.world = self._own
         self.renderer.close()
         self.renderer = make_renderer(self.simulation)  # pictures depend on nothing that was drawn before
 
