@@ -213,6 +213,8 @@ def test_messages_in_a_frame_that_does_not_exist():
     assert found.message == "'/scan' of '/laser' is in frame 'lazer', which does not exist"
     assert "static_transform_publisher" in found.hint
     near = only(replace(WELL, frames=(FrameSeen("/scan", "/laser", "whel"),)), "DOC310")
+    rays = [FrameSeen(topic, "/laser", "mbot::laser::lidar") for topic in ("/world_rays", "/world_rays/others")]
+    assert not codes(replace(WELL, frames=tuple(rays))), "they are in frames of the simulated world"
     assert near.hint == "did you mean 'wheel'?"
     assert codes(replace(WELL, frames=(FrameSeen("/scan", "/laser", "base"),))) == []
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
+from linkwright.extensions import extensions
 from linkwright.graph import Graph, LogLevel, LogRecord
 from linkwright.messages import get_message
 from linkwright.sdf.plugins import library_name
@@ -16,13 +17,32 @@ from linkwright.simulation.exchange import Exchange
 from linkwright.simulation.plugins.calls import logged_calls
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import parameter, parameters_from
-from linkwright.simulation.plugins.registry import is_of_gz, needs_nothing
+from linkwright.simulation.plugins.registry import (
+    _BUILT_IN,
+    _OWN_SYSTEMS,
+    _SENSORS_OF_SYSTEMS,
+    SENSORS,
+    is_of_gz,
+    needs_nothing,
+)
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.testing import Recording
 from tests.simulation.worlds import GROUND, box, mbot, model, simulated
 
 SECOND = 1_000_000_000
+CLASSIC_SYSTEMS = ("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin")
+"""What they do is tested in tests/simulation/test_server.py and test_classic_services.py."""
+UNSIMULATED = (
+    "elevator",
+    "wheel-slip",
+    "follow-actor",
+    "log",
+    "log-playback",
+    "model-photo-shoot",
+    "air-speed",
+    "buoyancy",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +80,21 @@ def test_systems_that_are_built_in_need_nothing():
     assert not needs_nothing("gz-sim-diff-drive-system")
     assert is_of_gz("gz-sim7-diff-drive-system")
     assert not is_of_gz("libgazebo_ros_camera.so")
+
+
+def test_what_is_called_simulated_is():
+    known = extensions(SENSORS)
+    assert [kind for kinds in _SENSORS_OF_SYSTEMS.values() for kind in kinds if kind not in known] == []
+    for library in _BUILT_IN:
+        name = library.removeprefix("gz-sim-").removesuffix("-system")
+        assert name in (*_OWN_SYSTEMS, *_SENSORS_OF_SYSTEMS) or library in CLASSIC_SYSTEMS, library
+
+
+@pytest.mark.parametrize("name", UNSIMULATED)
+async def test_a_system_that_nothing_simulates_is_told_of(name):
+    plugin = f'<plugin name="a" filename="gz-sim-{name}-system"/>'
+    async with served(robot(plugin)) as (_, __, log):
+        assert [each.text for each in log] == [f"plugins and sensors that are not simulated: gz-sim-{name}-system"]
 
 
 def test_parameters_come_by_their_types_and_old_names():

@@ -13,6 +13,8 @@ from linkwright.urdf import Joint
 _JOINT_STATE = "sensor_msgs/msg/JointState"
 _WORLD, _WORLD_POSES = "world", "/world_poses"
 """The frame of a simulated world, and the topic that tells where its links are."""
+_OF_THE_WORLD = ("/world_rays", "/world_rays/others")
+"""Topics in frames of a simulated world, ``robot::link``, of which viewers learn by its own topic and not by tf."""
 
 
 def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
@@ -323,7 +325,7 @@ def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Itera
     if seen.publishers_of(_WORLD_POSES):
         known.add(_WORLD)
     for each in seen.frames:
-        if each.frame not in known | robot_frames:
+        if each.topic not in _OF_THE_WORLD and each.frame not in known | robot_frames:
             yield Diagnostic(
                 "DOC310",
                 phrase(

@@ -488,3 +488,30 @@ async def test_noise_on_colours_is_the_same_for_the_same_seed():
             seen.append(picture_of(image).astype(float))
     assert (seen[0] == seen[1]).all()
     assert np.std(seen[0][:, :, 0]) == pytest.approx(0.02 * 255, rel=0.2)
+
+
+PLACES = {
+    "ahead": "0.5 2 1",
+    "near": "0 0.4 1",
+    "far": "0 4.5 1",
+    "left": "-1.2 2 1",
+    "above": "0 2 1.6",
+    "behind": "0 -2 1",
+}
+
+
+async def test_a_logical_camera_names_the_models_in_its_view():
+    view = "<near>0.5</near><far>4</far><horizontal_fov>1.0</horizontal_fov><aspect_ratio>2</aspect_ratio>"
+    looks = f"<pose>0 0 1 0 0 {pi / 2}</pose><topic>seen</topic><logical_camera>{view}</logical_camera>"
+    boxes = [
+        box(name, f"{place} 0 0 0", "0.1 0.1 0.1").replace("<link", "<static>true</static><link", 1)
+        for name, place in PLACES.items()
+    ]
+    async with served(carrier(sensor("logical_camera", looks)), *boxes) as (server, graph, log):
+        (image,) = await heard(server, graph, "/seen")
+        (seen,) = image.model
+        assert seen.name == "ahead"
+        assert (seen.pose.position.x, seen.pose.position.y) == pytest.approx((2.0, -0.5))
+        assert image.pose.position.z == pytest.approx(1.0)
+        assert image.header.frame_id == "robot/head/eye"
+        assert not log

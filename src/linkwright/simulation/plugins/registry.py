@@ -24,20 +24,30 @@ if TYPE_CHECKING:
 
 PLUGINS, SENSORS = "linkwright.simulated_plugins", "linkwright.simulated_sensors"
 
-_SYSTEMS = (
-    *("physics", "user-commands", "scene-broadcaster", "sensors", "imu", "contact", "navsat", "altimeter"),
-    *("air-pressure", "air-speed", "magnetometer", "forcetorque", "logical-camera", "label", "wheel-slip"),
-    *("follow-actor", "log", "log-playback", "elevator", "model-photo-shoot"),
-)
+_SENSORS_OF_SYSTEMS = {
+    "sensors": ("camera", "depth_camera", "rgbd_camera", "gpu_lidar", "segmentation", "boundingbox_camera"),
+    "imu": ("imu",),
+    "contact": ("contact",),
+    "navsat": ("navsat",),
+    "altimeter": ("altimeter",),
+    "air-pressure": ("air_pressure",),
+    "magnetometer": ("magnetometer",),
+    "forcetorque": ("force_torque",),
+    "logical-camera": ("logical_camera",),
+    "cpu-lidar": ("lidar",),
+}
+"""The systems of gz that publish what sensors measure, and the types of these; each is simulated."""
+_OWN_SYSTEMS = ("physics", "user-commands", "scene-broadcaster", "label")
+"""The systems of gz for what the simulation itself does: move, take and delete models, tell of the world, label it."""
 _NONE = ("", "__default__")
 """Values of ``filename`` for no library, in files that programs wrote."""
 _BUILT_IN = frozenset(
     (
-        *(f"gz-sim-{name}-system" for name in _SYSTEMS),
+        *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_OF_SYSTEMS)),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
     )
 )
-"""Libraries of other simulators for what this one does itself."""
+"""Libraries of other simulators for what this one does itself; all others that no plugin simulates are told of."""
 
 
 def is_of_gz(filename: str) -> bool:

@@ -1,0 +1,48 @@
+"""The logical camera of gz: the names and poses of the models in its view, without a picture.
+
+Source: gz-sensors (topic, what is in view), ros_gz (messages). A model is in view when the origin of its frame is.
+"""
+
+from __future__ import annotations
+
+from math import tan
+
+from linkwright.geometry.single import Transform, compose, invert
+from linkwright.messages import get_message
+from linkwright.sdf.sensors import LogicalCamera
+from linkwright.simulation.plugins.entities import pose_message
+from linkwright.simulation.plugins.parameters import NoParameters
+from linkwright.simulation.plugins.sensors.base import OneTopic
+
+_IMAGE, _MODEL = "ros_gz_interfaces/msg/LogicalCameraImage", "ros_gz_interfaces/msg/LogicalCameraImageModel"
+
+
+class GzLogicalCamera(OneTopic[NoParameters]):
+    """``logical_camera`` of gz."""
+
+    def make_sensor(self) -> None:
+        """Take the shape of its view."""
+        self._view = self.sensor.sensor.logical_camera or LogicalCamera()
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.output = self.gz_output(_IMAGE, "logical_camera")
+
+    def measure(self) -> None:
+        """Find the models in view, and publish them."""
+        camera = compose(self.simulation.link_pose(self.sensor.link), self.sensor.pose)
+        message = self.message(_IMAGE, self.gz_frame())
+        message.pose = pose_message(camera)
+        into = invert(camera)
+        for name in self.simulation.scene.models:
+            pose = compose(into, self.simulation.model_pose(name))
+            if is_in_view(self._view, pose):
+                message.model.append(get_message(_MODEL)(name, pose_message(pose)))
+        self.output.publish(message)
+
+
+def is_in_view(view: LogicalCamera, pose: Transform) -> bool:
+    """Whether the origin of a frame is in view; its pose is that in the frame of the camera, which looks along x."""
+    x, y, z = pose[:3]
+    across = tan(view.horizontal_fov / 2)
+    return view.near <= x <= view.far and abs(y) <= x * across and abs(z) <= x * across / view.aspect_ratio
