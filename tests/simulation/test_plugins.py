@@ -43,6 +43,7 @@ UNSIMULATED = (
     "air-speed",
     "buoyancy",
 )
+WITHOUT_ALTERNATIVE = ("wheel-slip", "buoyancy")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +95,11 @@ def test_what_is_called_simulated_is():
 async def test_a_system_that_nothing_simulates_is_told_of(name):
     plugin = f'<plugin name="a" filename="gz-sim-{name}-system"/>'
     async with served(robot(plugin)) as (_, __, log):
-        assert [each.text for each in log] == [f"plugins and sensors that are not simulated: gz-sim-{name}-system"]
+        told, *instead = [each.text for each in log]
+        assert told == f"plugins and sensors that are not simulated: gz-sim-{name}-system"
+        assert [each.split(": ")[0] for each in instead] == [f"use instead of gz-sim-{name}-system"] * (
+            name not in WITHOUT_ALTERNATIVE
+        )
 
 
 def test_parameters_come_by_their_types_and_old_names():

@@ -21,6 +21,7 @@ from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World
 from linkwright.simulation.exchange import Exchange
+from linkwright.simulation.plugins.alternatives import alternative_to
 from linkwright.simulation.plugins.bridged import BridgedTopics
 from linkwright.simulation.plugins.calls import Calls, findings_of
 from linkwright.simulation.plugins.node import PluginNode
@@ -315,6 +316,9 @@ class SimulationServer:
         if new:
             names = joined(new)
             self.node.get_logger().info(phrase("plugins and sensors that are not simulated: {names}", names=names))
+        for name in new:
+            if (other := alternative_to(name)) is not None:
+                self.node.get_logger().info(phrase("use instead of {name}: {other}", name=name, other=other))
 
     def _class(self, place: PluginPlace) -> PluginClass | None:
         if place.plugin is None:

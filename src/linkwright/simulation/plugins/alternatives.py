@@ -1,0 +1,37 @@
+"""What to use instead of plugins and sensors that are not simulated, where something else does their work."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.sdf.plugins import library_name
+
+_STILL_AIR = phrase("in still air, the velocity that gz-sim-odometry-publisher-system publishes")
+_WHEELS = phrase("wheels, and gz-sim-diff-drive-system")
+_MOVED = phrase("gz-sim-velocity-control-system")
+_WIDE = phrase("a camera with a wide <horizontal_fov>")
+
+_ALTERNATIVES = {
+    "air_speed": _STILL_AIR,
+    "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
+    "gz-sim-air-speed-system": _STILL_AIR,
+    "gz-sim-apply-joint-force-system": phrase("the service /apply_joint_effort"),
+    "gz-sim-apply-link-wrench-system": phrase("the service /apply_link_wrench"),
+    "gz-sim-camera-video-recorder-system": phrase("`linkwright bag record` with the topic of the camera"),
+    "gz-sim-elevator-system": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
+    "gz-sim-follow-actor-system": phrase("an <actor> with the waypoints of a <script>"),
+    "gz-sim-hydrodynamics-system": _MOVED,
+    "gz-sim-log-playback-system": phrase("`linkwright bag play`"),
+    "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
+    "gz-sim-model-photo-shoot-system": phrase("a camera in front of the model"),
+    "gz-sim-thruster-system": _MOVED,
+    "gz-sim-track-controller-system": _WHEELS,
+    "gz-sim-tracked-vehicle-system": _WHEELS,
+    "gz-sim-trajectory-follower-system": _MOVED,
+    "wide_angle_camera": _WIDE,
+    "wideanglecamera": _WIDE,
+}
+
+
+def alternative_to(name: str) -> Phrase | None:
+    """Return what to use instead of a plugin's library or a type of sensor; None where nothing does its work."""
+    return _ALTERNATIVES.get(library_name(name))
