@@ -21,6 +21,7 @@ TYPES = {
     "tricycle": "tricycle_steering_controller/TricycleSteeringController",
     "bicycle": "bicycle_steering_controller/BicycleSteeringController",
     "mecanum": "mecanum_drive_controller/MecanumDriveController",
+    "husarion": "mecanum_drive_controller/MecanumDriveController",
 }
 
 
@@ -31,7 +32,7 @@ async def test_a_parameter_file_is_read_whole(stand, name):
     for joint in ("steer_left", "steer_right"):
         stand.joint(joint, commands=("position",), position=0.0)
     parameters = read_parameter_file(FILE).for_node(f"/{name}")
-    controller = stand.start(controller_class(TYPES[name]), name, **parameters)
+    controller = stand.start(controller_class(TYPES[name]).variant(list(parameters)), name, **parameters)
     await stand.step(controller)
     assert not warnings(stand)
 

@@ -14,6 +14,8 @@ from tests.control.robots import joint, manager, robot
 
 WHEELS = robot(joint("left", "velocity") + joint("right", "velocity"), joints=("left", "right"))
 DRIVE, PID = "diff_drive_controller/DiffDriveController", "pid_controller/PidController"
+MECANUM = "mecanum_drive_controller/MecanumDriveController"
+CORNERS = {"front_left": "left", "front_right": "right", "rear_left": "left", "rear_right": "right"}
 SAID = {"wheel_separation": 0.4, "wheel_radius": 0.1, "cmd_vel_timeout": 9.0, "publish_rate": 100.0}
 
 
@@ -86,3 +88,14 @@ async def test_a_drive_whose_wheel_tells_no_number_is_deactivated_and_stands(gra
     assert base.manager.controllers["base"].controller.state is INACTIVE
     assert base.wheels() == [0.0, 0.0]
     assert any("Either the left or right wheel position is invalid" in each.text for each in log)
+
+
+async def test_the_manager_takes_the_controller_of_that_type_whose_parameters_are_given(graph):
+    wheels = {f"{corner}_wheel_name": side for corner, side in CORNERS.items()}
+    sizes = {"wheel_separation_x": 0.2, "wheel_separation_y": 0.2, "wheel_radius": 0.1, "open_loop": True}
+    made = manager(graph, WHEELS, {"base": {"type": MECANUM}}, base={**wheels, **sizes})
+    assert made.load("base")
+    assert made.configure("base")
+    topics = dict(graph.get_topic_names_and_types())
+    assert "/base/cmd_vel" in topics
+    assert "/base/reference" not in topics

@@ -26,7 +26,7 @@ Everything is called in one thread, that of the updates. Names, order and meanin
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
@@ -115,6 +115,11 @@ class Controller(ABC, Generic[P]):
         self._parameters: ParameterTable[P] = ParameterTable(place.node.graph_node, self.PARAMETERS)
         for told in self._parameters.unknown():
             self.node.logger.warning(told)
+
+    @classmethod
+    def variant(cls, given: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - for those that share a name
+        """The class for the names of given parameters: another one where two packages share the name of a type."""
+        return cls
 
     @property
     def parameters(self) -> P:

@@ -6,12 +6,14 @@ follows arcs, and a command that is no number stops the robot.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from math import cos, isfinite, nan, sin
+from typing import Any
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
+from linkwright.control.controllers.husarion_mecanum_controller import HusarionMecanumController
 from linkwright.control.controllers.parameters import above, not_empty, parameter
 from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
 from linkwright.control.hardware.interfaces import VELOCITY
@@ -78,6 +80,11 @@ class MecanumDriveController(Controller[Parameters]):
     """A mecanum drive: wheel velocities from the commanded velocity, sideways too, and odometry from the wheels."""
 
     PARAMETERS = Parameters
+
+    @classmethod
+    def variant(cls, given: Collection[str]) -> type[Controller[Any]]:
+        """Husarion's controller of the same type name, where its parameters are given."""
+        return HusarionMecanumController if "front_left_wheel_name" in given else cls
 
     def command_interfaces(self) -> InterfaceNames:
         """The velocities of the wheels: front left, front right, rear right, rear left."""

@@ -120,9 +120,8 @@ class ControllerManager:
             rate = node.declare_parameter("update_rate", int(self.update_rate)).value
             if not is_before_iron() and node.declare_parameter("is_async", False).value:
                 node.get_logger().info(phrase("is_async is asked for: it is updated in the loop, as all are"))
-            return made(
-                ControllerPlace(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
-            )
+            place = ControllerPlace(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
+            return made.variant(node.undeclared_overrides())(place)
         except LinkwrightError as error:
             self._tell(error)
         except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others

@@ -1,0 +1,100 @@
+from __future__ import annotations
+
+from math import cos, sin
+
+import pytest
+
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.husarion_mecanum_controller import HusarionMecanumController
+from linkwright.control.controllers.mecanum_drive_controller import MecanumDriveController
+from tests.control.controllers.driving import roll, stamped, twist
+
+NAME = "base"
+CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
+ROBOT = {f"{corner}_wheel_name": corner for corner in CORNERS} | {
+    "wheel_separation_x": 0.4,
+    "wheel_separation_y": 0.6,
+    "wheel_radius": 0.1,
+    "velocity_rolling_window_size": 1,
+}
+
+
+@pytest.fixture
+def wheels(stand):
+    """A stand with four wheels."""
+    for joint in CORNERS:
+        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    return stand
+
+
+def told(stand, forward: float, sideways: float, turning: float) -> None:
+    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, forward, turning, sideways))
+
+
+def commanded(stand) -> list[float]:
+    return [stand.commands[f"{corner}/velocity"].value for corner in CORNERS]
+
+
+def test_it_is_the_controller_of_that_type_where_its_parameters_are_given():
+    assert MecanumDriveController.variant(list(ROBOT)) is HusarionMecanumController
+    assert MecanumDriveController.variant(["front_left_wheel_command_joint_name"]) is MecanumDriveController
+    assert HusarionMecanumController.variant(list(ROBOT)) is HusarionMecanumController
+
+
+@pytest.mark.parametrize(
+    ("velocity", "wheels_turn"),
+    [
+        ((1.0, 0.0, 0.0), [10.0, 10.0, 10.0, 10.0]),
+        ((0.0, 1.0, 0.0), [-10.0, 10.0, 10.0, -10.0]),
+        ((0.0, 0.0, 1.0), [-5.0, 5.0, -5.0, 5.0]),
+    ],
+)
+async def test_each_wheel_turns_as_the_motion_needs_with_and_without_header(wheels, velocity, wheels_turn):
+    controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, use_stamped_vel=False)
+    told(wheels, *velocity)
+    await wheels.step(controller)
+    assert commanded(wheels) == pytest.approx(wheels_turn)
+    forward, sideways, turning = velocity
+    message = twist(-forward, -turning, -sideways)
+    wheels.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", message)
+    await wheels.step(controller)
+    assert commanded(wheels) == pytest.approx([-each for each in wheels_turn])
+
+
+async def test_a_command_holds_for_its_time(wheels):
+    controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, cmd_vel_timeout=0.1)
+    told(wheels, 1.0, 0.0, 0.0)
+    await wheels.step(controller, 0.05)
+    assert commanded(wheels) == [10.0] * 4
+    await wheels.step(controller, 0.05, count=3)
+    assert commanded(wheels) == [0.0] * 4
+
+
+async def test_limits_hold_for_every_axis_and_what_they_leave_is_published(wheels):
+    limits = {"linear": {"y": {"has_velocity_limits": True, "max_velocity": 0.5}}}
+    controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, **limits, publish_limited_velocity=True)
+    heard = wheels.heard("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
+    told(wheels, 0.2, 2.0, 0.0)
+    await wheels.step(controller)
+    assert (heard[-1].twist.linear.x, heard[-1].twist.linear.y) == pytest.approx((0.2, 0.5))
+
+
+@pytest.mark.parametrize("source", [{"position_feedback": True}, {"position_feedback": False}, {"open_loop": True}])
+async def test_odometry_is_the_arc_that_was_driven(wheels, source):
+    controller = wheels.start(HusarionMecanumController, NAME, **ROBOT, **source, cmd_vel_timeout=60.0)
+    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    told(wheels, 0.3, 0.4, 0.5)
+    await roll(wheels, controller, 501)
+    place, velocity = heard[-1].pose.pose, heard[-1].twist.twist
+    turn = 2.5
+    x = (0.3 * sin(turn) + 0.4 * (cos(turn) - 1.0)) / 0.5
+    y = (0.3 * (1.0 - cos(turn)) + 0.4 * sin(turn)) / 0.5
+    assert (place.position.x, place.position.y) == pytest.approx((x, y), abs=0.02)
+    assert (velocity.linear.x, velocity.linear.y, velocity.angular.z) == pytest.approx((0.3, 0.4, 0.5))
+
+
+@pytest.mark.parametrize("missing", [f"{CORNERS[0]}_wheel_name", "wheel_radius", "wheel_separation_x"])
+def test_what_is_missing_is_named(wheels, missing):
+    given = {name: value for name, value in ROBOT.items() if name != missing}
+    with pytest.raises(ControllerError, match=missing):
+        wheels.make(HusarionMecanumController, NAME, **given).on_configure()
