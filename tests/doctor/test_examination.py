@@ -306,6 +306,19 @@ def test_twist_against_twist_stamped():
 
 
 TWIST = "geometry_msgs/msg/Twist"
+EITHER = tuple(subscription("/behavior_server", "/cmd_vel_teleop", kind) for kind in (TWIST, f"{TWIST}Stamped"))
+
+
+@pytest.mark.parametrize("kinds", [(), (TWIST,), (f"{TWIST}Stamped",), (TWIST, f"{TWIST}Stamped")])
+def test_a_node_that_takes_velocities_of_either_type_hears_all(kinds):
+    sent = [publisher(f"/teleop_{number}", "/cmd_vel_teleop", kind) for number, kind in enumerate(kinds)]
+    assert not {"DOC201", "DOC202"} & set(codes(more(WELL, *EITHER, *sent)))
+
+
+def test_a_node_that_takes_either_type_does_not_hide_one_that_takes_another():
+    sent = publisher("/teleop", "/cmd_vel_teleop", TWIST)
+    other = subscription("/base", "/cmd_vel_teleop", f"{TWIST}Stamped")
+    assert "DOC202" in codes(more(WELL, *EITHER, sent, other))
 
 
 def test_velocities_that_nobody_takes():

@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 from linkwright.doctor import Observation, observe
-from linkwright.graph import EndpointInfo, EndpointKind, Graph, NodeIdentity, QoSProfile
+from linkwright.graph import DurabilityPolicy, EndpointInfo, EndpointKind, Graph, NodeIdentity, QoSProfile
 from linkwright.graph.endpoints.transport import Transport
 from linkwright.messages import get_message
 
@@ -167,3 +167,20 @@ async def test_a_simulators_own_stamps_and_poses_are_taken_for_what_they_are(joi
     seen = watched.result()
     assert [(each.parent, each.child) for each in seen.transforms] == [("odom", "base")]
     assert [(each.topic, each.behind_ns) for each in seen.stamps] == [("/robot1/tf", 0)]
+
+
+async def test_what_was_kept_for_late_subscribers_and_what_goes_by_a_steady_clock_is_of_no_age(joined: Graph) -> None:
+    server = joined.create_node("map_server")
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    old_map = server.create_publisher("nav_msgs/msg/OccupancyGrid", "/map", kept)
+    unset = server.create_publisher("nav_msgs/msg/OccupancyGrid", "/unset", kept)
+    bond = server.create_publisher("bond/msg/Status", "/bond", 10)
+    scan = server.create_publisher("sensor_msgs/msg/LaserScan", "/scan", 10)
+    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=0.5))
+    while not watched.done():
+        for each in (old_map, unset, bond, scan):
+            message = each.msg_type()
+            message.header.stamp.sec = 0 if each is unset else 17
+            each.publish(message)
+        await asyncio.sleep(0.01)
+    assert [(each.topic, each.zero) for each in watched.result().stamps] == [("/scan", False), ("/unset", True)]

@@ -49,7 +49,8 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
     by_topic: dict[str, dict[str, list[EndpointInfo]]] = {}
     for endpoint in (*seen.of_kind(EndpointKind.PUBLISHER), *seen.of_kind(EndpointKind.SUBSCRIPTION)):
         by_topic.setdefault(endpoint.name, {}).setdefault(endpoint.type_name, []).append(endpoint)
-    for topic, types in sorted(by_topic.items()):
+    for topic, all_types in sorted(by_topic.items()):
+        types = _without_takers_of_all(all_types)
         if len(types) < 2:
             continue
         notes = tuple(note for name, endpoints in sorted(types.items()) for note in _who(endpoints, name))
@@ -77,6 +78,24 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
                 notes=notes,
                 hint=phrase("give one of them another topic: --ros-args -r OLD:=NEW"),
             )
+
+
+def _without_takers_of_all(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
+    """The endpoints of a topic by type, without nodes that subscribe to all that is published; none if all do."""
+    every = [each for endpoints in types.values() for each in endpoints]
+    published = {each.type_name for each in every if each.kind is EndpointKind.PUBLISHER}
+    heard: dict[str, set[str]] = {}
+    for each in every:
+        if each.kind is EndpointKind.SUBSCRIPTION:
+            heard.setdefault(node_of(each), set()).add(each.type_name)
+    takers = {node for node, names in heard.items() if len(names) > 1 and names >= published}
+    if takers and takers == set(heard):
+        return {}
+    kept: dict[str, list[EndpointInfo]] = {}
+    for each in every:
+        if each.kind is EndpointKind.PUBLISHER or node_of(each) not in takers:
+            kept.setdefault(each.type_name, []).append(each)
+    return kept
 
 
 def _who(endpoints: list[EndpointInfo], type_name: str) -> Iterator[Note]:

@@ -42,6 +42,8 @@ _TRANSFORMS = ("tf", "tf_static")
 _MODELS = "/model/"
 """The prefix of topics of gz, which are not ROS's before a bridge carries them."""
 _STRING, _CLOCK = "std_msgs/msg/String", "rosgraph_msgs/msg/Clock"
+_BOND = "bond/msg/Status"
+"""Bonds stamp by a steady clock, which no other clock is compared with."""
 _ENVIRONMENT = (
     "ROS_DOMAIN_ID",
     "ROS_LOCALHOST_ONLY",
@@ -131,6 +133,7 @@ class _Watcher:
         self._transforms: dict[tuple[str, str], tuple[dict[str, set[str]], bool, bool]] = {}
         self._joints: dict[str, tuple[set[str], set[str]]] = {}
         self._stamps: dict[tuple[str, str], tuple[int, int]] = {}
+        self._latched: set[str] = set()
         self._frames: dict[tuple[str, str], str] = {}
         self._disputes: dict[str, Dispute] = {}
         self.descriptions: dict[tuple[str, str], DescriptionSeen] = {}
@@ -190,7 +193,7 @@ class _Watcher:
             self._listen(endpoint, lambda message, _info: self._on_clock(message))
         elif kind == TWIST:
             self._listen(endpoint, lambda data, info: self._on_velocity(topic, data, info), raw=True)
-        elif _begins_with_header(kind):
+        elif kind != _BOND and _begins_with_header(kind):
             driving = kind == TWIST_STAMPED
             self._listen(endpoint, lambda data, info: self._on_stamped(topic, data, info, driving=driving), raw=True)
 
@@ -199,6 +202,8 @@ class _Watcher:
         offers = [each.qos for each in self._publishers(endpoint.name)]
         latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
         reliable = all(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
+        if latched:
+            self._latched.add(endpoint.name)
         qos = QoSProfile(
             100,
             ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
@@ -264,6 +269,9 @@ class _Watcher:
         self._frames[topic, sender] = _frame_of(data)
 
     def _note_stamp(self, topic: str, sender: str, seconds: int, nanoseconds: int) -> None:
+        """Note the stamp of a message; one that was kept for late subscribers, as maps are, may be of any age."""
+        if topic in self._latched and (seconds or nanoseconds):
+            return
         self._stamps[topic, sender] = (seconds * _SECOND + nanoseconds, time.time_ns())
 
     # --- what is made of it ------------------------------------------------------------------------------------------
