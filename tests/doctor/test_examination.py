@@ -381,6 +381,12 @@ def test_quality_of_service_that_does_not_match_names_policy_and_sides():
     ]
 
 
+def test_what_a_node_publishes_itself_is_not_meant_for_it():
+    text = "std_msgs/msg/String"
+    seen = more(WELL, subscription("/voice", "/voice/text_input", text), publisher("/voice", "/voice/text", text))
+    assert codes(seen) == []
+
+
 @pytest.mark.parametrize("published", ["/robot1/scan", "/scann"])
 def test_a_topic_that_nobody_publishes_and_one_that_may_be_meant(published):
     scan = "sensor_msgs/msg/LaserScan"

@@ -184,3 +184,17 @@ async def test_what_was_kept_for_late_subscribers_and_what_goes_by_a_steady_cloc
             each.publish(message)
         await asyncio.sleep(0.01)
     assert [(each.topic, each.zero) for each in watched.result().stamps] == [("/scan", False), ("/unset", True)]
+
+
+@pytest.mark.parametrize("topic", ["/tf", "/tf_static"])
+async def test_transforms_that_are_published_and_have_not_come_are_waited_for(joined: Graph, topic: str) -> None:
+    sender = joined.create_node("robot_state_publisher").create_publisher(TRANSFORMS, topic, 10)
+    message = sender.msg_type(transforms=[TransformStamped(child_frame_id="base")])
+    asyncio.get_running_loop().call_later(0.5, sender.publish, message)
+    assert [each.child for each in (await seen_of(joined, Outside())).transforms] == ["base"]
+
+
+async def test_transforms_that_never_come_are_waited_for_a_few_seconds_only(joined: Graph, monkeypatch) -> None:
+    monkeypatch.setattr("linkwright.doctor.watching._TRANSFORMS_WITHIN", 0.3)
+    joined.create_node("robot_state_publisher").create_publisher(TRANSFORMS, "/tf", 10)
+    assert not (await seen_of(joined, Outside())).transforms

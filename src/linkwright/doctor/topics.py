@@ -185,16 +185,23 @@ def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
 def _misnamed(seen: Observation) -> Iterator[tuple[str, str, list[EndpointInfo], str]]:
     """Topics without a publisher, with type and subscriptions, and the published one that is probably meant."""
     published: dict[str, set[str]] = {}
+    senders: dict[str, set[str]] = {}
     for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
         published.setdefault(endpoint.name, set()).add(endpoint.type_name)
+        senders.setdefault(endpoint.name, set()).add(node_of(endpoint))
     wanting: dict[tuple[str, str], list[EndpointInfo]] = {}
     for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION):
         if endpoint.name not in published and endpoint.name not in _EVERYWHERE and "/_action/" not in endpoint.name:
             wanting.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
     heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
     for (topic, type_name), endpoints in sorted(wanting.items()):
-        # What somebody hears already is probably meant for them.
-        unheard = [name for name, types in published.items() if type_name in types and name not in heard]
+        # What somebody hears already is probably meant for them, and a node does not mean to hear itself.
+        takers = set(nodes_of(endpoints))
+        unheard = [
+            name
+            for name, types in published.items()
+            if type_name in types and name not in heard and not takers & senders[name]
+        ]
         like = _alike(topic, unheard)
         if like is not None:
             yield topic, type_name, endpoints, like

@@ -62,6 +62,8 @@ _NAMED_WITHIN = 1.0
 """Seconds for a process to tell whose its endpoints are; those of no ROS node never are anybody's."""
 _FIXED_FRAME = "fixed_frame"
 _LOOK_AGAIN = 0.01
+_TRANSFORMS_WITHIN = 5.0
+"""How much longer than asked for it looks, in seconds, where transforms are published and none came."""
 _LENGTH_TOLERANCE = 1e-3
 _SECOND = 1_000_000_000
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
@@ -96,9 +98,9 @@ async def observe(
     while True:
         watcher.subscribe()
         left = end - time.monotonic()
-        if left <= 0:
+        if left <= (-_TRANSFORMS_WITHIN if watcher.waits_for_transforms() else 0):
             break
-        await asyncio.sleep(min(left, 0.25))
+        await asyncio.sleep(min(left, 0.25) if left > 0 else _LOOK_AGAIN)
     sim_time, lifecycle, shown_in = await asyncio.gather(
         watcher.sim_time(), watcher.lifecycle(), watcher.fixed_frames()
     )
@@ -134,6 +136,7 @@ class _Watcher:
         self._joints: dict[str, tuple[set[str], set[str]]] = {}
         self._stamps: dict[tuple[str, str], tuple[int, int]] = {}
         self._latched: set[str] = set()
+        self._awaited: set[str] = set()
         self._frames: dict[tuple[str, str], str] = {}
         self._disputes: dict[str, Dispute] = {}
         self.descriptions: dict[tuple[str, str], DescriptionSeen] = {}
@@ -158,6 +161,11 @@ class _Watcher:
             if all(each.node is not None for each in self._graph.endpoints()):
                 break
             await asyncio.sleep(_LOOK_AGAIN)
+
+    def waits_for_transforms(self) -> bool:
+        """Whether transforms are published of which none came: on a busy machine the first take seconds."""
+        heard = {topic for senders, _, _ in self._transforms.values() for topic in senders}
+        return not self._awaited <= heard
 
     @property
     def _own(self) -> str:
@@ -184,6 +192,7 @@ class _Watcher:
             if last not in _TRANSFORMS or topic.startswith(_MODELS):
                 return  # the poses of a simulated world are of no frames; a bridge takes those of gz's models to /tf
             is_static = last == _TRANSFORMS[1]
+            self._awaited.add(topic)
             self._listen(endpoint, lambda message, info: self._on_transforms(topic, is_static, message, info))
         elif kind == _JOINT_STATE:
             self._listen(endpoint, lambda message, info: self._on_joints(topic, message, info))
