@@ -12,17 +12,9 @@ from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Element
 
 _PARAMETER = re.compile(
-    r"""
-    \s* (?P<name>[^\s:=]+?) \s*
-    (?P<sign>:?=) \s*
-    (?P<forward>\^\|?)?
-    (?P<default> \$\{.*?\} | \$\(.*?\) | (?: '[^']*' | "[^"]*" | [^\s'"] )+ | )
-    (?:\s+|$)
-    """,
-    re.VERBOSE,
+    r"\s*(?P<name>[^\s:=]+?)\s*:?=\s*(?P<forward>\^\|?)?(?P<expression>(?:\$\{.*?\}|\$\(.*?\))(?=\s|$))?"
 )
 _BARE = re.compile(r"\s*(?P<name>\S+)\s*")
-_SIGN = re.compile(r"\s*[^\s:=]+\s*:?=")
 
 
 class Parameter(NamedTuple):
@@ -57,25 +49,52 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
     """
     parameters: list[Parameter] = []
     with_sign: dict[str, Parameter] = {}
+    ends = _ends_of_words(text)
     at = 0
     while at < len(text):
         match = _PARAMETER.match(text, at)
         if match is not None:
-            name, default = match["name"], match["default"] or None
-            parameter = Parameter(name, default, bool(match["forward"]), match.start("name"), match.start("default"))
-            parameters.append(parameter)
+            start = match.end() if match["expression"] is None else match.start("expression")
+            at = match.end() if start < match.end() else ends[start]
+            if at < 0:
+                end = len(text.rstrip())
+                message = phrase("this parameter's default has a quote that is never closed")
+                raise Fault("XAC412", message, match.start("name"), end)
+            name = match["name"]
+            parameter = Parameter(name, text[start:at] or None, bool(match["forward"]), match.start("name"), start)
             with_sign[name] = parameter
-        elif _SIGN.match(text, at):
-            end = len(text.rstrip())
-            raise Fault("XAC412", phrase("this parameter's default has a quote that is never closed"), at, end)
         else:
             match = _BARE.match(text, at)
             if match is None:
                 break  # only blanks are left
-            parameters.append(Parameter(match["name"], None, False, match.start("name"), match.end("name")))
-        at = match.end()
+            at = match.end()
+            parameter = Parameter(match["name"], None, False, match.start("name"), match.end("name"))
+        parameters.append(parameter)
     # Of parameters declared twice the default that is written last holds for all, as in ros/xacro.
     return tuple(with_sign.get(parameter.name, parameter) for parameter in parameters)
+
+
+def _ends_of_words(text: str) -> list[int]:
+    """Return where the word that begins at each offset ends, or -1 where a quote in it is never closed.
+
+    A word ends at a blank, and in quotes there may be blanks. As in ros/xacro, a quote is closed by the first one of
+    its kind behind which the word can end: ``'''`` is one word, a quote in quotes.
+    """
+    ends = [len(text)] * (len(text) + 1)
+    behind = {"'": -1, '"': -1}  # where a word ends that goes on behind the nearest quote that can close it
+    for at in range(len(text) - 1, -1, -1):
+        letter, following = text[at], ends[at + 1]
+        if letter.isspace():
+            ends[at] = at
+            if letter == "\n":
+                behind = dict.fromkeys(behind, -1)
+        elif letter in behind:
+            ends[at] = behind[letter]
+            if following >= 0:
+                behind[letter] = following
+        else:
+            ends[at] = following
+    return ends
 
 
 class Macro:
