@@ -60,7 +60,7 @@ def test_markers_of_another_dictionary_are_asked_for(tmp_path, capsys, model):
 
 
 def test_a_dictionary_that_is_none_or_is_not_wanted_is_refused(picture, capsys):
-    assert main(["vision", "detect", str(picture), "-m", "aruco", "--dictionary", "6X6_25"]) == 1
+    assert main(["vision", "detect", str(picture), "-m", "aruco", "--dictionary", "6X6250"]) == 1
     assert "did you mean '6X6_250'" in capsys.readouterr().err
     assert main(["vision", "detect", str(picture), "-m", "colours", "--dictionary", "6X6_250"]) == 1
     assert "only 'aruco' and 'apriltag' have it: leave it out" in capsys.readouterr().err

@@ -36,7 +36,7 @@ def test_nothing_near():
     [
         (["effort"], "did you mean 'effort'?"),
         (["effort", "effort2"], "did you mean 'effort' or 'effort2'?"),
-        (["effort", "effort2", "effort34"], "did you mean 'effort', 'effort2' or 'effort34'?"),
+        (["effort", "effort2", "effort_2"], "did you mean 'effort', 'effort2' or 'effort_2'?"),
         (["velocity"], None),
     ],
 )
@@ -71,6 +71,31 @@ def test_an_address_is_told_that_nothing_is_fetched(tmp_path, address):
     hint = "files are not fetched from the network: download it, and name the file"
     assert missing_file_hint(Path(address)) == hint
     assert missing_file_hint(tmp_path / address) == hint
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "meant"),
+    [
+        ("ur_description", "ur_descriptions", True),
+        ("ur_descripton", "ur_description", True),
+        ("robot_state_pub", "robot_state_publisher", True),
+        ("description_ur", "ur_description", True),
+        ("wheelLeft", "wheel_left", True),
+        ("my_bot_gazebo", "my_bot_gazebo_plugins", True),
+        ("tf2_rs", "tf2_ros", True),
+        ("cnt", "count", True),
+        ("ur_description", "sr_description", False),
+        ("ur_description", "tiago_description", False),
+        ("kortex_bringup", "husky_bringup", False),
+        ("arm_1_link", "arm_2_link", False),
+        ("left_wheel", "right_wheel", False),
+        ("front_camera_link", "rear_camera_link", False),
+        ("joint_state_controller", "joint_trajectory_controller", False),
+        ("diff_drive_controller", "tricycle_controller", False),
+    ],
+)
+def test_names_that_share_a_common_word_are_of_other_things(name: str, other: str, meant: bool) -> None:
+    assert nearest(name, [other]) == ([other] if meant else [])
 
 
 @pytest.mark.parametrize(

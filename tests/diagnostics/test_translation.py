@@ -112,13 +112,13 @@ def test_message_notes_and_hint_are_translated_and_nothing_else() -> None:
         span,
         Severity.WARNING,
         (Note(phrase("the macro '{name}' is defined here", name="base"), span),),
-        did_you_mean("whell", ["wheel", "whirl", "shell"]),
+        did_you_mean("whell", ["wheel", "wheels", "wheel_2"]),
         source,
     )
     chinese = translate(english, "zh")
     assert chinese.message == "没有名为“whell”的宏"
     assert chinese.notes == (Note("宏“base”在这里定义", span),)
-    assert chinese.hint == "是不是想写“wheel”、“shell”或“whirl”？"
+    assert chinese.hint == "是不是想写“wheel”、“wheels”或“wheel_2”？"
     assert (chinese.code, chinese.span, chinese.severity, chinese.source) == ("XAC401", span, Severity.WARNING, source)
 
 

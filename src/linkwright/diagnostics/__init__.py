@@ -15,7 +15,13 @@ from linkwright.diagnostics.phrase import (
 )
 from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_colour
 from linkwright.diagnostics.source import SourceText, Span
-from linkwright.diagnostics.suggest import did_you_mean, is_misspelt, missing_file_hint, nearest
+from linkwright.diagnostics.suggest import (
+    did_you_mean,
+    is_misspelt,
+    missing_file_hint,
+    nearest,
+    words_of,
+)
 from linkwright.diagnostics.translation import translated
 
 __all__ = [
@@ -49,4 +55,5 @@ __all__ = [
     "to_data",
     "translated",
     "wants_colour",
+    "words_of",
 ]

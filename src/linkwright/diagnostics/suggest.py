@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -16,10 +17,17 @@ _LISTED = 8
 _ADDRESSES = ("http:", "https:", "ftp:")
 _MOST_COMPARED = 1_000
 """Of more names than these, only those are compared that begin alike and are about as long."""
+_WORD = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
+_SHORT = 2
+"""In words of so few letters a slip leaves nothing to know them by, but for two letters that are swapped."""
 
 
 def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
-    """The candidates most like `name`, best first; upper and lower case count as alike."""
+    """The candidates that `name` may stand for, best first; upper and lower case count as alike.
+
+    Names that look alike because they share a common word, such as those of two robots' descriptions, are not meant:
+    what differs must be slips of the pen, words left out, or words in another order.
+    """
     from difflib import get_close_matches  # here, because most runs of a command end without a hint
 
     by_fold: dict[str, str] = {}
@@ -30,7 +38,52 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
     if len(by_fold) > _MOST_COMPARED:
         near = [other for other in by_fold if abs(len(other) - len(folded)) < 3 and other[:2] == folded[:2]]
         near = near[:_MOST_COMPARED]
-    return [by_fold[match] for match in get_close_matches(folded, near, n=limit, cutoff=0.6)]
+    close = get_close_matches(folded, near, n=4 * limit, cutoff=0.6)
+    return [by_fold[match] for match in close if _is_alike(name, by_fold[match])][:limit]
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name, in lower case, split at separators, capitals and numbers."""
+    return [word.casefold() for word in re.findall(_WORD, name)]
+
+
+def _is_alike(name: str, other: str) -> bool:
+    """Whether one name may stand for another: the words that they do not share are slips of the pen, or extra."""
+    words, others = words_of(name), words_of(other)
+    if "".join(words) == "".join(others):
+        return True
+    own = list(words)
+    theirs = []
+    for word in others:
+        if word in own:
+            own.remove(word)
+        else:
+            theirs.append(word)
+    if not own or not theirs:
+        return len(own) + len(theirs) < len(words) + len(others)
+    if len(own) == len(theirs):
+        return all(any(_is_slip(word, meant) for meant in theirs) for word in own)
+    return _is_slip("".join(words), "".join(others))
+
+
+def _is_slip(word: str, meant: str) -> bool:
+    """Whether a word is another one misspelt or cut short; no number is a slip for another."""
+    shorter, longer = sorted((word, meant), key=len)
+    if word.isdigit() or meant.isdigit():
+        return False
+    if len(longer) == len(shorter) and sorted(word) == sorted(meant):
+        return _is_within(word, meant, 1 + len(word) // 4)
+    if word[0] == meant[0] and _is_left_of(shorter, longer):
+        return True
+    if len(shorter) <= _SHORT or (len(shorter) == len(longer) and word[0] != meant[0]):
+        return False
+    return longer.startswith(shorter) or _is_within(word, meant, max(1, len(longer) // 3))
+
+
+def _is_left_of(shorter: str, longer: str) -> bool:
+    """Whether letters of the longer word, half of them or more, make the shorter one: ``cnt`` of ``count``."""
+    letters = iter(longer)
+    return len(shorter) < len(longer) <= 2 * len(shorter) and all(letter in letters for letter in shorter)
 
 
 def is_misspelt(name: str, names: Iterable[str]) -> bool:

@@ -6,12 +6,10 @@ names of different things, and a fix that takes one for the other breaks the rob
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
-from linkwright.diagnostics import is_misspelt
+from linkwright.diagnostics import is_misspelt, words_of
 
-_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+")
 _SHORTEST = 3
 """Shorter words, such as ``fl`` and ``fr`` of wheels, are never taken for misspellings of each other."""
 
@@ -19,12 +17,12 @@ _SHORTEST = 3
 def misspelling_of(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that is misspelt; None where there is none, or several with different words."""
     meant = [each for each in known if each != name and _is_slip(name, each)]
-    return meant[0] if len({"".join(_words(each)) for each in meant}) == 1 else None
+    return meant[0] if len({"".join(words_of(each)) for each in meant}) == 1 else None
 
 
 def _is_slip(name: str, known: str) -> bool:
     """Whether a name is a known one but for its case, its separators, or a slip in one of its words."""
-    words, others = _words(name), _words(known)
+    words, others = words_of(name), words_of(known)
     if not words or not others:
         return False
     if "".join(words) == "".join(others):
@@ -34,10 +32,6 @@ def _is_slip(name: str, known: str) -> bool:
         return _is_slip_of_word("".join(words), "".join(others)) and not any(map(str.isdigit, name + known))
     different = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
     return len(different) == 1 and _is_slip_of_word(*different[0])
-
-
-def _words(name: str) -> list[str]:
-    return [word.casefold() for word in _WORD.findall(name)]
 
 
 def _is_slip_of_word(word: str, known: str) -> bool:
