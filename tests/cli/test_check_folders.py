@@ -302,3 +302,33 @@ def test_plugins_for_webots_are_no_robot(here, capsys):
     (here / "p" / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
     assert main(["check", "p"]) == 0
     assert "driver.urdf" not in capsys.readouterr().out
+
+
+def test_one_thing_to_mend_is_told_once(here, capsys, monkeypatch):
+    """A package that two files want, and a model's mistake that is found in the model and in its world."""
+    (here / "p" / "models" / "box").mkdir(parents=True)
+    box = '<model name="box"><link name="l"><pose>0 0 0 0 0</pose></link></model>'
+    (here / "p" / "models" / "box" / "model.sdf").write_text(f'<sdf version="1.6">{box}</sdf>')
+    world = '<world name="w"><include><uri>model://box</uri></include></world>'
+    (here / "p" / "w.world").write_text(f'<sdf version="1.6">{world}</sdf>')
+    (here / "p" / "package.xml").write_text("<package format='3'><name>p</name><depend>q</depend></package>")
+    xacro = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    for name in ("one", "two"):
+        inside = '<xacro:include filename="$(find q)/q.xacro"/><link name="base"/>'
+        (here / "p" / f"{name}.urdf.xacro").write_text(f'<robot name="r" {xacro}>{inside}</robot>')
+    monkeypatch.chdir(here / "p")
+    main(["check", "--format", "concise", "."])
+    lines = capsys.readouterr().out.splitlines()
+    assert sum("SDF121" in line for line in lines) == 1
+    assert sum("PKG101" in line for line in lines) == 1
+
+
+def test_models_that_gazebo_fetches_are_told_of_where_their_world_is_named(here, capsys):
+    (here / "p").mkdir()
+    place = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Table"
+    include = f"<include><uri>{place}</uri></include>"
+    (here / "p" / "w.world").write_text(f'<sdf version="1.6"><world name="w">{include}</world></sdf>')
+    main(["check", "--format", "concise", "p"])
+    assert "SDF160" not in capsys.readouterr().out
+    main(["check", "--format", "concise", "p/w.world"])
+    assert "info[SDF160]" in capsys.readouterr().out

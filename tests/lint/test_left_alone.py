@@ -81,7 +81,13 @@ _HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
 
 
 @pytest.mark.parametrize(
-    ("inside", "codes"), [(f'<xacro:if value="false">{_HARDWARE}</xacro:if>', []), ("", ["LW124"])]
+    ("inside", "codes"),
+    [
+        (f'<xacro:if value="false">{_HARDWARE}</xacro:if>', []),
+        ('<hardware><xacro:if value="false"><plugin>p/P</plugin></xacro:if></hardware>', []),
+        ("<hardware/>", ["LW124"]),
+        ("", ["LW124"]),
+    ],
 )
 def test_hardware_that_an_argument_chooses(told, inside, codes):
     control = f'<ros2_control name="c" type="system">{inside}</ros2_control>'
@@ -94,6 +100,15 @@ def test_hardware_that_an_argument_chooses(told, inside, codes):
 def test_transmissions_beside_ros2_control(told, control, codes):
     inside = f'<link name="base"/>{moving("a", "")}<transmission name="t"><joint name="j_a"/></transmission>'
     assert told(robot(inside + control), "LW127") == codes
+
+
+@pytest.mark.parametrize(
+    ("included", "codes"), [("", []), ('<xacro:macro name="laser"><link name="laser"/></xacro:macro>', ["LW704"])]
+)
+def test_an_include_of_a_file_that_is_yet_to_be_filled(told, included, codes):
+    text = robot('<xacro:include filename="more.xacro"/><link name="base"/>', PREFIX)
+    files = {"more_dot_xacro": f"<robot {PREFIX}>{included}</robot>"}
+    assert told(text, "LW704", name="r.urdf.xacro", **files) == codes
 
 
 _WHEEL = '<xacro:macro name="wheel" params="name prefix"><link name="${name}"/></xacro:macro>'

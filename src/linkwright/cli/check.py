@@ -11,11 +11,20 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, counted, has_errors, phrase, print_diagnostics
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Severity,
+    Span,
+    counted,
+    has_errors,
+    phrase,
+    print_diagnostics,
+)
 from linkwright.diagnostics.alike import alike_together
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 from linkwright.diagnostics.translation import localized
@@ -30,6 +39,11 @@ if TYPE_CHECKING:
 
 
 _USAGE = 2
+_Found: TypeAlias = "dict[tuple[str, Span | None, str], Diagnostic]"
+_OF_NAMED_FILES = frozenset({"LINT302", "SDF160", "SDF162"})
+"""Findings whose information matters where a file was named: it is no robot by itself, or Gazebo fetches its models."""
+_ONCE = "PKG101"
+"""A package that is not here is one thing to mend, however many files name it."""
 _TESTS = re.compile(r"tests?\d*")
 """What folders of tests are called."""
 
@@ -170,7 +184,7 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
         raise LinkwrightError(
             Diagnostic("CLI302", phrase("there is nothing to check in {named}", named=named), hint=hint)
         )
-    found: dict[tuple[str, object, str], Diagnostic] = {}
+    found: _Found = {}
     checked = None
     for file in targets.files:
         checked, trouble = _examine(file, words, targets)
@@ -185,11 +199,11 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
 
 
 def _of_a_folder(said: Iterable[Diagnostic], *, is_fixture: bool) -> Iterator[Diagnostic]:
-    """The findings that matter where a file was not named: of what tests need, errors alone.
-
-    That a file is no robot by itself only matters where it was named.
-    """
-    return (each for each in said if each.code != "LINT302" and (each.severity is Severity.ERROR or not is_fixture))
+    """The findings that matter where a file was not named: of what tests need, errors alone."""
+    for each in said:
+        is_info = each.severity is Severity.INFO
+        if each.severity is Severity.ERROR or not (is_fixture or (is_info and each.code in _OF_NAMED_FILES)):
+            yield each
 
 
 def _is_fixture(file: Path, paths: Sequence[Path]) -> bool:
@@ -198,7 +212,7 @@ def _is_fixture(file: Path, paths: Sequence[Path]) -> bool:
     return any(_TESTS.fullmatch(part) for parts in below for part in parts)
 
 
-def _add(found: dict[tuple[str, object, str], Diagnostic], more: Iterable[Diagnostic]) -> None:
+def _add(found: _Found, more: Iterable[Diagnostic]) -> None:
     """Add what is new; a file that two robots include says the same twice.
 
     Of a finding's element nothing is wanted any more, and it would keep its whole description in memory.
@@ -206,9 +220,17 @@ def _add(found: dict[tuple[str, object, str], Diagnostic], more: Iterable[Diagno
     from linkwright.lint.finding import Finding
 
     for diagnostic in more:
-        key = (diagnostic.code, diagnostic.span, diagnostic.message)
+        key = (diagnostic.code, _place(diagnostic), diagnostic.message)
         if key not in found:
             found[key] = replace(diagnostic, element=None) if isinstance(diagnostic, Finding) else diagnostic
+
+
+def _place(diagnostic: Diagnostic) -> Span | None:
+    """Where it is, however the file was named: by itself, or by one that includes it."""
+    span = diagnostic.span
+    if span is None or diagnostic.code == _ONCE:
+        return None
+    return replace(span, file=str(Path(span.file).resolve()))
 
 
 def _examine(

@@ -60,15 +60,20 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
 
 
 def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Put what a world misses into one finding for models and one for their meshes, with the others in its notes."""
+    """Put what a world misses into one finding for models and one for their meshes, with the others in its notes.
+
+    What Gazebo fetches by itself is not among what has to be mended, and has findings of its own.
+    """
     kept: list[Diagnostic] = []
-    groups: dict[str, list[Diagnostic]] = {}
+    groups: dict[tuple[str, Severity], list[Diagnostic]] = {}
     for each in found:
-        group = groups.setdefault(each.code, [])
+        group = groups.setdefault((each.code, each.severity), [])
         if each.code not in _LEFT_OUT or not group:
             kept.append(each)
         group.append(each)
-    return [_with_others(each, groups[each.code][1:]) if each.code in _LEFT_OUT else each for each in kept]
+    return [
+        _with_others(each, groups[each.code, each.severity][1:]) if each.code in _LEFT_OUT else each for each in kept
+    ]
 
 
 def _with_others(first: Diagnostic, others: list[Diagnostic]) -> Diagnostic:
@@ -128,7 +133,7 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
             )
             named = (each for each in element.walk() if each.tag in _ADDRESSES)
             place = next((each for each in named if each.text().strip() == geometry.uri), element)
-            yield _warning("SDF162", message, place, found.hint)
+            yield replace(_warning("SDF162", message, place, found.hint), severity=found.severity)
 
 
 def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:

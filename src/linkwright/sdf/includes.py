@@ -144,7 +144,7 @@ class _Resolver:
         found = self._finder.model(include.uri, path.parent)
         if isinstance(found, Missing):
             message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=found.reason)
-            self._tell("SDF160", message, include, found.hint)
+            self._tell("SDF160", message, include, found.hint, found.severity)
             return None
         if found in chain or found == path or len(chain) >= _DEEPEST:
             self._tell("SDF161", phrase("'{uri}' includes itself", uri=include.uri), include, None)

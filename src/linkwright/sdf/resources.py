@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
-from linkwright.diagnostics import LinkwrightError, Phrase, did_you_mean, joined, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, Severity, did_you_mean, joined, phrase
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
@@ -43,10 +43,17 @@ _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
 
 
 class Missing(NamedTuple):
-    """The reason why a URI cannot be resolved, and a hint."""
+    """The reason why a URI cannot be resolved, and a hint.
+
+    Attributes:
+        reason: why.
+        hint: what to do.
+        severity: of a finding about it; an information where Gazebo fetches the resource by itself.
+    """
 
     reason: Phrase
     hint: Phrase | None
+    severity: Severity = Severity.WARNING
 
 
 class ResourceFinder:
@@ -214,7 +221,7 @@ class ResourceFinder:
         hint = phrase(
             "nothing is fetched from the network: `gz fuel download -u '{uri}'` puts it into the cache", uri=address
         )
-        return Missing(phrase("'{name}' of Fuel is not in the cache", name=name), hint)
+        return Missing(phrase("'{name}' of Fuel is not in the cache", name=name), hint, Severity.INFO)
 
     def _caches(self) -> Iterator[Path]:
         given = self._environment.get("GZ_FUEL_CACHE_PATH") or self._environment.get("IGN_FUEL_CACHE_PATH")

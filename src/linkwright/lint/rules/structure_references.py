@@ -21,6 +21,11 @@ def _names(subject: Subject, tag: str) -> set[str]:
     return {element.attributes.get("name", "") for element in subject.elements(tag)}
 
 
+def _without_siblings(name: str, known: Iterable[str]) -> list[str]:
+    """Return the known names with the same numbers in them; ``arm_2`` is not meant by ``arm_1``."""
+    return [each for each in known if _NUMBER.findall(each) == _NUMBER.findall(name)]
+
+
 def _kind_meant(gazebo: Element, name: str) -> str:
     """Return whether a `<gazebo>` is meant for a ``link`` or a ``joint``, by what it holds and then by the name."""
     held = {child.tag for child in gazebo.elements()}
@@ -70,7 +75,7 @@ class GazeboReferenceUnknown(Rule):
             if name and name not in links | joints:
                 kind = _kind_meant(element, name)
                 known = {"link": links, "joint": joints}.get(kind, links | joints)
-                alike = [each for each in known if _NUMBER.findall(each) == _NUMBER.findall(name)]
+                alike = _without_siblings(name, known)
                 meant = misspelling_of(name, alike)
                 yield self.report(
                     phrase("<gazebo> refers to '{name}', which is neither a link nor a joint", name=name),
@@ -116,7 +121,7 @@ class TransmissionJointUnknown(Rule):
                         phrase("<transmission> is of joint '{name}', which does not exist", name=name),
                         joint,
                         "name",
-                        hint=did_you_mean(name, known) or phrase("give the name of a joint"),
+                        hint=did_you_mean(name, _without_siblings(name, known)) or phrase("give the name of a joint"),
                     )
 
 
@@ -156,7 +161,8 @@ class ControlJointUnknown(Rule):
                     phrase("<ros2_control> has joint '{name}', which the robot does not have", name=name),
                     joint,
                     "name",
-                    hint=did_you_mean(name, known) or phrase('add <joint name="{name}" ...> to the robot', name=name),
+                    hint=did_you_mean(name, _without_siblings(name, known))
+                    or phrase('add <joint name="{name}" ...> to the robot', name=name),
                     fix=replace_value(joint, "name", meant, safe=False) if meant else None,
                 )
 
@@ -239,9 +245,9 @@ class ControlPluginMissing(Rule):
             hardware = system.first("hardware")
             if hardware is None and any(misspelling_of(child.tag, ["hardware"]) for child in system.elements()):
                 continue  # misspelt, which another rule says
-            if hardware is None and "<hardware" in _written(system):
-                continue  # an argument chooses it, and has no value that does
             plugin = hardware.first("plugin") if hardware is not None else None
+            if plugin is None and ("<hardware" if hardware is None else "<plugin") in _written(system):
+                continue  # an argument chooses it, and has no value that does
             if plugin is None or not plugin.text().strip():
                 missing = "<hardware>" if hardware is None else "<plugin>"
                 yield self.report(

@@ -328,7 +328,10 @@ def _included_paths(facts: XacroFacts) -> dict[int, Path]:
 
 
 def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
-    """Whether a file, or one that it includes, puts anything into the robot or defines anything used outside."""
+    """Whether a file, or one that it includes, puts anything into the robot or defines anything used outside.
+
+    An empty file is one to be filled, and left alone.
+    """
     inside: dict[Path, FileFacts] = {}
     waiting = [path]
     while waiting:
@@ -344,6 +347,8 @@ def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
             if nested is None:
                 return True
             waiting.append(nested)
+    if not any(file.macros or file.properties or file.arguments for file in inside.values()):
+        return True
     outside = [file for other, file in facts.files.items() if other not in inside]
     names = {name for file in outside for name in file.names | file.blocks}
     called = {name for file in outside for name in file.called}

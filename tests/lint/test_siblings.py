@@ -1,0 +1,56 @@
+"""What refers to a name that is not there never gets the name of another thing: not as a fix, not as a hint."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.lint.engine import examine
+from linkwright.lint.finding import Finding
+from linkwright.lint.settings import Settings
+
+JOINT = '<joint name="{0}_joint" type="continuous"><parent link="base"/><child link="{0}_link"/></joint>'
+HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
+REFERENCES = {
+    "LW120 link": '<gazebo reference="{}_link"><mu1>1</mu1></gazebo>',
+    "LW120 joint": '<gazebo reference="{}_joint"><preserveFixedJoint>true</preserveFixedJoint></gazebo>',
+    "LW120": '<gazebo reference="{}"/>',
+    "LW121": '<transmission name="t"><joint name="{}_joint"/></transmission>',
+    "LW122": f'<ros2_control name="c" type="system">{HARDWARE}<joint name="{{}}_joint"/></ros2_control>',
+}
+NUMBERED = [("arm_2", "arm_1"), ("wheel12", "wheel1"), ("leg_3_knee", "leg_4_knee")]
+SIBLINGS = [*NUMBERED, ("fl_wheel", "fr_wheel"), ("lwheel", "rwheel"), ("left_arm", "right_arm"), ("rear", "front")]
+
+
+def finding(tmp_path, rule, written, there):
+    body = '<visual><geometry><sphere radius="1"/></geometry></visual>'
+    parts = f'<link name="base">{body}</link><link name="{there}_link"/>{JOINT.format(there)}'
+    path = tmp_path / "r.urdf"
+    path.write_text(f'<robot name="r">{parts}{REFERENCES[rule].format(written)}</robot>')
+    (found,) = examine(path, settings=Settings(select=(rule.split()[0],))).diagnostics
+    assert isinstance(found, Finding)
+    return found
+
+
+@pytest.mark.parametrize("rule", REFERENCES)
+@pytest.mark.parametrize(("written", "there"), SIBLINGS)
+def test_no_fix_takes_a_siblings_name(tmp_path, rule, written, there):
+    assert finding(tmp_path, rule, written, there).fix is None
+
+
+@pytest.mark.parametrize("rule", REFERENCES)
+@pytest.mark.parametrize(("written", "there"), NUMBERED)
+def test_no_hint_gives_a_siblings_number(tmp_path, rule, written, there):
+    assert f"'{there}_" not in str(finding(tmp_path, rule, written, there).hint)
+
+
+@pytest.mark.parametrize(
+    ("rule", "written", "meant"),
+    [
+        ("LW120 link", "elbw", "elbow_link"),
+        ("LW120 joint", "elbw", "elbow_joint"),
+        ("LW122", "elbw", "elbow_joint"),
+    ],
+)
+def test_a_slip_gets_the_name_of_its_own_kind(tmp_path, rule, written, meant):
+    found = finding(tmp_path, rule, written, "elbow")
+    assert [edit.replacement for edit in found.fix.edits] == [meant]
