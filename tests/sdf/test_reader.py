@@ -504,3 +504,12 @@ def test_frames_in_whatever_has_a_pose_are_let_be():
     frame = '<frame name="f"><pose>0 0 0 0 0 0</pose></frame>'
     box = "<geometry><box><size>1 1 1</size></box></geometry>"
     model(f'<link name="a">{frame}<visual name="v">{frame}{box}</visual></link>')
+
+
+@pytest.mark.parametrize(("text", "taken"), [("0x0002", 2), ("0XFF", 255), ("2.5", 2), ("7 8", 7)])
+def test_a_whole_number_is_what_libsdformat_takes(text, taken):
+    collision = f'<collision name="c"><max_contacts>{text}</max_contacts></collision>'
+    document, _ = parse_as_gazebo(
+        f'<sdf version="1.9"><model name="m"><link name="a">{collision}</link></model></sdf>', "m"
+    )
+    assert read(document).sdf.models[0].links[0].collisions[0].max_contacts == taken

@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.diagnostics import Note, Phrase, counted, did_you_mean, joined, nearest, phrase, term
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule
-from linkwright.sdf.values import COUNTS, INTEGER, NUMBER, TIME, TRUTH, numbers
+from linkwright.sdf.values import COUNTS, INTEGER, NUMBER, TIME, TRUTH, beginning, numbers
 from linkwright.urdf.findings import Findings
 from linkwright.urdf.values import number_hint, vector_hint
 from linkwright.xmltree import Element
@@ -53,10 +53,17 @@ class SdfReport(Findings):
         self.error("SDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """Report an invalid value; the default is used in its place."""
+        """Report an invalid value; the default is used in its place.
+
+        Where one number is wanted, libsdformat takes what the text begins with, and leaves the rest: a warning.
+        """
         inside = attribute is rule.text
         text = element.text().strip() if inside else element.attributes[attribute.name]
         message, hint = _explained(_place(element, rule, attribute, owner), text, attribute, element)
+        taken = beginning(text) if attribute.type in (NUMBER, INTEGER) else None
+        if taken is not None and isfinite(taken):
+            self.warning("SDF121", message, element, None if inside else attribute.name, hint=hint)
+            return int(taken) if attribute.type is INTEGER else taken
         self.error("SDF121", message, element, None if inside else attribute.name, hint=hint)
         return UNREADABLE
 

@@ -52,7 +52,15 @@ def _joined(values: Iterable[float]) -> str:
     return " ".join(map(plain, values))
 
 
+def beginning(text: str) -> float | None:
+    """Return the number that a text begins with, which libsdformat takes alone (``std::stod``); None where none is."""
+    found = _NUMBER.match(text.strip())
+    return None if found is None else float(found[0])
+
+
 def _integer(text: str) -> int:
+    if text.strip()[:2].casefold() == "0x":
+        return int(text, 16)
     value = number(text)
     if not value.is_integer():
         raise ValueError(text)
