@@ -36,6 +36,7 @@ class Known:
     Attributes:
         shows: a text that it prints, at the latest after the last line of its block.
         hears: the topic that it subscribes to, which the reader waits for.
+        node: the node that it starts, which the reader waits for.
         goes_on: whether it goes on until the reader presses Ctrl-C, at the end of the block.
         complains: part of the error that it prints, because the page shows what goes wrong.
         may_fail: whether it also may end with an error, as where there is no network.
@@ -43,6 +44,7 @@ class Known:
 
     shows: str = ""
     hears: str = ""
+    node: str = ""
     goes_on: bool = True
     complains: str = ""
     may_fail: bool = False
@@ -131,6 +133,7 @@ class Terminal:
     def close(self) -> None:
         """Close the terminal's window."""
         self._shell.send_signal(signal.SIGHUP)
+        os.write(self._own, b"\n")  # a shell that the signal meets just before it reads looks at it after the next line
         self._shell.wait(PATIENCE)
         self._reading.join(PATIENCE)
         os.close(self._own)
@@ -183,12 +186,16 @@ class Reader:
             self._page.type(line)
             self._page.wait_for(_ANY_PAGE)
             self._launched = time.monotonic()
+            while known.node and not self._is_there(known.node):
+                assert not self._page.is_free, f"{line!r} has ended:\n{self._page.said}"
         elif known.goes_on:
             before = self._subscribers(known.hears)
             terminal = Terminal(self._environment, self._folder())
             self._beside.append(terminal)
             terminal.type(line)
             while known.hears and self._subscribers(known.hears) == before:
+                self._try_again(terminal)
+            while known.node and not self._is_there(known.node):
                 self._try_again(terminal)
         else:
             self._first.type(line)
@@ -212,6 +219,9 @@ class Reader:
         self._first.status()
         found = re.search(r"Subscription count: (\d+)", self._first.said)
         return int(found[1]) if found is not None else 0
+
+    def _is_there(self, node: str) -> bool:
+        return node in self._first.run("linkwright node list").splitlines()
 
     def _end_beside(self) -> None:
         for terminal in self._beside:

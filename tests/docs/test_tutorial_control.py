@@ -143,9 +143,14 @@ def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]
     follow(
         LANGUAGES["en"],
         {
-            "linkwright run my_control first_move": Known(),
+            "linkwright run my_control first_move": Known(node="/first_move"),
             "linkwright run teleop_twist_keyboard teleop_twist_keyboard": Known(shows="stop"),
-            "linkwright run my_control one_metre --ros-args -p distance:=2.0": Known(hears="/odom"),
-            "linkwright run my_control stop_ahead": Known(hears="/scan"),
+            "linkwright run my_control one_metre --ros-args -p distance:=2.0": Known(node="/one_metre"),
+            "linkwright run my_control stop_ahead": Known(node="/stop_ahead"),
+            "linkwright launch my_control stop_ahead.launch.py": Known(node="/stop_ahead"),
+            **{
+                f"linkwright launch my_robot_control {name}.launch.py": Known(node=f"/{name}")
+                for name in ("drive_square", "follow_wall", "follow_line", "avoid_obstacles", "go_to_pose")
+            },
         },
     )

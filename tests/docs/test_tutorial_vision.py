@@ -61,6 +61,9 @@ def test_each_line_works_for_a_reader_with_the_wheel(follow: Callable[..., Path]
         LANGUAGES["en"],
         {
             "linkwright topic hz /yolo/detections": Known(shows="average rate"),
-            "linkwright shell -- python follow_colour.py": Known(hears="/yolo/detections"),
+            "linkwright shell -- python follow_colour.py": Known(node="/follow_colour"),
+            "linkwright launch my_robot_vision follow_object.launch.py model:=colours thing:=red": Known(
+                node="/follow_object"
+            ),
         },
     )
