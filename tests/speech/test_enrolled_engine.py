@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from unittest.mock import Mock
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.speech.engine import EngineOptions, make_engine
 from linkwright.speech.enrolled.engine import EnrolledEngine
 from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.recognition import Guess
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.sound.samples import BLOCK, RATE
 from tests.speech.voices import WORDS, babble, beside, say
@@ -65,6 +68,46 @@ def test_a_word_is_recognised_faster_slower_higher_lower_and_softer(engine, name
 def test_a_word_is_recognised_in_noise(engine, name):
     samples = say(WORDS[name], speed=1.05, level=2000, noise=2000 / 10 ** (15 / 20), silence=0.8, seed=10)
     assert finals(engine, samples) == [name]
+
+
+def in_a_room(samples, direct, seed):
+    """In a room with a reverberation time of 0.4 s; its energy is so many dB below that of the direct sound."""
+    at = np.arange(int(0.4 * RATE)) / RATE
+    decay = np.random.default_rng(seed).normal(size=len(at)) * 10 ** (-3 * at / 0.4)
+    decay *= 10 ** (-direct / 20) / np.sqrt(np.sum(decay**2))
+    decay[0] = 1.0
+    size = len(samples) + len(decay)
+    sound = np.fft.irfft(np.fft.rfft(samples, size) * np.fft.rfft(decay, size), size)[: len(samples)]
+    return np.rint(sound).astype(np.int16)
+
+
+def heard_in_a_room(engine, phones, number):
+    said = say(phones, speed=(0.9, 1.1)[number % 2], level=2000, silence=0.8, seed=20 + number)
+    return finals(engine, in_a_room(said, 8.0, number))
+
+
+def test_what_was_enrolled_close_is_recognised_two_metres_away_in_a_room(engine):
+    said = [(name, heard_in_a_room(engine, WORDS[name], number)) for name in WORDS for number in range(3)]
+    assert all(set(found) <= {name, ""} for name, found in said)
+    assert sum(found == [name] for name, found in said) >= 13
+
+
+@pytest.mark.parametrize("phones", OTHERS)
+def test_what_was_not_enrolled_is_no_command_in_a_room(engine, phones):
+    assert set(heard_in_a_room(engine, phones, 1)) <= {""}
+
+
+def test_a_phrase_with_a_number_asks_for_more_confidence(words, tmp_path, monkeypatch):
+    phrases = ("stop", "two metres", "两米")
+    numbered = Words({name: words.takes("stop") for name in phrases})
+    numbered.write(tmp_path / "words.json")
+    engine = EnrolledEngine(EngineOptions(phrases, model=tmp_path / "words.json"))
+    for name, confidence, expected in (
+        *((name, 0.6, name if name == "stop" else "") for name in phrases),
+        *((name, 0.8, name) for name in phrases),
+    ):
+        monkeypatch.setattr(engine._recogniser, "guess", Mock(return_value=Guess(name, confidence, 0, 9)))
+        assert finals(engine, say("mumi", silence=0.8)) == [expected]
 
 
 def in_babble(phones, seed):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.nodes.voice.presses import Presses
 from tests.nodes.voice.fakes import final, partial
 from tests.waiting import eventually
 
@@ -78,3 +79,26 @@ async def test_who_listens_to_all_does_not_tell_what_is_no_command(engine, talk)
     await eventually(lambda: engine.finished)
     await robot.say_nothing_more()
     assert robot.said["response"] == []
+
+
+def missed(presses, times):
+    answers = []
+    for _ in range(times):
+        presses.begin()
+        presses.note_unknown(final(""))
+        answers.append("enrol" in str(presses.end()))
+    return answers
+
+
+def test_after_three_presses_without_a_command_enrolling_is_proposed():
+    assert missed(Presses(is_enrolled=True), 7) == [False, False, True, False, False, True, False]
+    assert missed(Presses(), 6) == [False] * 6
+
+
+def test_a_command_between_them_begins_the_count_anew():
+    presses = Presses(is_enrolled=True)
+    missed(presses, 2)
+    presses.begin()
+    presses.settle()
+    presses.end()
+    assert missed(presses, 3) == [False, False, True]

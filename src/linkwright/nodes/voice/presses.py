@@ -10,6 +10,9 @@ from linkwright.speech.engine import Heard
 
 SAY_IT_AGAIN = phrase("I did not hear all of that: say it again")
 
+_MISSED = 3
+"""Presses in a row without any command after which enrolling is proposed."""
+
 
 @dataclass(slots=True)
 class _Press:
@@ -27,9 +30,15 @@ class _Press:
 
 
 class Presses:
-    """Presses whose sound the engine still processes. It lags behind, so the next may have begun."""
+    """Presses whose sound the engine still processes. It lags behind, so the next may have begun.
 
-    def __init__(self) -> None:
+    Args:
+        is_enrolled: whether words are those that the user enrolled, and can be enrolled where they are said.
+    """
+
+    def __init__(self, *, is_enrolled: bool = False) -> None:
+        self._is_enrolled = is_enrolled
+        self._missed = 0
         self._presses: deque[_Press] = deque()
 
     def begin(self) -> None:
@@ -38,6 +47,7 @@ class Presses:
 
     def settle(self) -> None:
         """Record that something was done or answered."""
+        self._missed = 0
         if self._presses:
             self._presses[0].is_settled = True
 
@@ -60,6 +70,9 @@ class Presses:
             return None
         if press.has_gaps:
             return SAY_IT_AGAIN
+        self._missed += 1
+        if self._is_enrolled and self._missed % _MISSED == 0:
+            return phrase("I know none of what you say: enrol your words in the Voice panel, here where you speak")
         if press.unknown.nearest:
             return phrase(
                 "I heard something that is none of the commands: '{text}' is the nearest", text=press.unknown.nearest

@@ -74,7 +74,6 @@ class VoiceCommander(SingleNode):
         self._held = False
         self._spoken = False
         self._stopped = False
-        self._presses = Presses()
         with starting(self._node):
             self._start()
 
@@ -128,6 +127,7 @@ class VoiceCommander(SingleNode):
         # Silence may not wait for simulated time, which may stand still.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self._silence = node.create_timer(silence, self._silent, clock=clock, autostart=False)
+        self._presses = Presses(is_enrolled=engine == "enrolled")
         if engine:
             where = words if engine == "enrolled" and words else model
             # Who enrols words may say them in any language.

@@ -48,6 +48,11 @@ def number(words: Words) -> float | None:
     return _english(words) if words[0].isascii() else _chinese(words)
 
 
+def has_number(words: Words) -> bool:
+    """Whether any of the words is a number; the articles "a" and "an" are none here."""
+    return any(word not in _ONE and number((word,)) is not None for word in words)
+
+
 def _english(words: Words) -> float | None:
     for tail, fraction in AND_FRACTION.items():
         if words[-len(tail) :] == tail:

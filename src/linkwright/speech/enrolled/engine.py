@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
+from linkwright.speech.commands.numbers import has_number
+from linkwright.speech.commands.words import words_of
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
 from linkwright.speech.enrolled.recognition import ACCEPTED, Guess, Recogniser
 from linkwright.speech.enrolled.words import Words, words_path
@@ -25,6 +27,8 @@ _NEAR = 0.1
 """Confidence from which a word is told as the nearest: that have most words in noise that are missed, and one of twenty
 other words.
 """
+_OF_A_NUMBER = 0.7
+"""Confidence from which a phrase with a number counts: other numbers make phrases that differ in one short word."""
 
 
 class EnrolledEngine(SpeechEngine):
@@ -123,7 +127,9 @@ class EnrolledEngine(SpeechEngine):
 
     def _name(self, guess: Guess | None) -> str | None:
         """The recognised phrase, if any."""
-        if guess is None or guess.confidence < ACCEPTED:
+        if guess is None:
+            return None
+        if guess.confidence < (_OF_A_NUMBER if has_number(words_of(guess.name)) else ACCEPTED):
             return None
         return self._phrases.get(_plain(guess.name))
 

@@ -76,7 +76,7 @@ def _compared(words: Words, name: str, take: Take) -> Diagnostic | None:
     """Compare a take with those of its word and with other words; a word's first take has nothing to compare with."""
     if not words.takes(name):
         return None
-    costs, backwards = Recogniser(words).compare(take)
+    costs, backwards = Recogniser(words, rooms=()).compare(take)
     own = costs.pop(name)
     if own > _UNLIKE * backwards:
         return _refused(

@@ -6,17 +6,20 @@ take where it is farthest, relative to how far the user's own takes of the word 
 differ in one sound are told apart by it; on what the take costs relative to the background and to takes played
 backwards; and on how far the sound is above the noise: in noise all costs come near each other, and more is asked of a
 word. The cost by itself does not count: what is usual differs between voices and microphones.
+
+Each take is compared as it was said, and as rooms would return it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, log, log10
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.speech.enrolled.matching import Match, Templates, loudness
+from linkwright.speech.enrolled.rooms import ROOMS, Room
 from linkwright.speech.enrolled.words import Take, Words
 from linkwright.speech.sound.spectra import Powers
 
@@ -24,6 +27,8 @@ ACCEPTED = 0.5
 """Confidence from which a word counts as said."""
 
 _LEAST = 1e-3
+_NEVER = np.float32(1e9)
+_REVERBERATION_HEARD = 20.0  # dB above the noise: below, noise covers how words fade, and all are like a far one
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,17 +53,20 @@ class Recogniser:
 
     Args:
         words: all that are enrolled; those that nobody asks for are good for telling what is none of the others.
+        rooms: in which they may be said, besides the one in which they were enrolled.
     """
 
-    def __init__(self, words: Words) -> None:
+    def __init__(self, words: Words, rooms: tuple[Room, ...] = ROOMS) -> None:
         self.names = words.names
-        takes = [(number, take) for number, name in enumerate(self.names) for take in words.takes(name)]
-        backwards = [_backwards(words.takes(name)) for name in self.names]
-        self._word = np.array([number for number, _ in takes] + [-1] * len(backwards))
-        self._templates = Templates(tuple(take for _, take in takes) + tuple(backwards))
         self._takes = [words.takes(name) for name in self.names]
+        close = [(word, take) for word, takes in enumerate(self._takes) for take in takes]
+        close += [(-1, _backwards(takes)) for takes in self._takes]
+        far = [(word, room.returns(take)) for room in rooms for word, take in close]
+        self._word = np.array([word for word, _ in (*close, *far)])
+        self._is_far = np.arange(len(self._word)) >= len(close)
+        self._templates = Templates(tuple(take for _, take in (*close, *far)))
         self._own: dict[int, float] = {}  # see `_own_worst`
-        self.longest = int(self._templates.lengths.max())
+        self.longest = max(len(take.powers) for takes in self._takes for take in takes)
 
     def guess(self, powers: Powers, noise: NDArray[np.float64]) -> Guess:
         """Find the nearest word.
@@ -68,9 +76,10 @@ class Recogniser:
             noise: power of the background, shape ``(BANDS,)``.
         """
         match = self._templates.match(powers, noise)
+        if 10.0 * log10(loudness(powers) / float(noise.sum())) < _REVERBERATION_HEARD:
+            match = replace(match, cost=np.where(self._is_far, _NEVER, match.cost))
         costs = self._costs(match)
-        order = np.argsort(costs)
-        word = int(order[0])
+        word = int(np.argmin(costs))
         take = int(np.flatnonzero(self._word == word)[match.cost[self._word == word].argmin()])
         first, last = int(match.first[take]), int(match.last[take])
         is_nearest = costs[word] < min(self._nonsense(match), float(match.background[take]))
