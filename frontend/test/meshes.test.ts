@@ -155,6 +155,8 @@ describe("the library of meshes", () => {
     expect(await answering(() => Promise.resolve(refused))).toBe("a link leads out of the package");
     const large = new Response("", { headers: { "Content-Length": "7000000000" } });
     expect(await answering(() => Promise.resolve(large))).toBe("the file has 7000 MB, and meshes of at most 500 MB are drawn");
+    const packed = new Response("", { headers: { "Content-Encoding": "gzip", "Content-Length": "7", "X-Unpacked-Length": "7000000000" } });
+    expect(await answering(() => Promise.resolve(packed))).toBe("the file has 7000 MB, and meshes of at most 500 MB are drawn");
   });
 });
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import random
 import re
 from contextlib import suppress
 from pathlib import Path
@@ -67,6 +68,25 @@ async def raw(viewer, target: str, *, host: str | None = None, method: str = "GE
 def mesh_url(viewer) -> str:
     display = next(display for display in viewer.displays if display.CLASS.endswith("RobotModel"))
     return display.scene.links[0].visuals[0].url
+
+
+async def test_a_mesh_goes_compressed_to_a_browser_that_takes_it(served, robot):
+    url, mesh = mesh_url(served.viewer), robot / "meshes" / "arm.stl"
+    text = "facet normal 0 0 1\n" * 1000
+    write(mesh, text)
+    _, plain, head = await raw(served.viewer, url)
+    assert plain == text
+    assert "content-encoding" not in head
+    status, packed, head = await raw(served.viewer, url, Accept_Encoding="gzip, br")
+    assert (status, len(packed) < len(text) / 10) == (200, True)
+    for line in ("content-encoding: gzip", "vary: accept-encoding", f"x-unpacked-length: {len(text)}"):
+        assert line in head
+    tag = next(line for line in head.split("\r\n") if line.startswith("etag")).partition(": ")[2]
+    assert (await raw(served.viewer, url, Accept_Encoding="gzip", If_None_Match=tag))[:2] == (304, "")
+    mesh.write_bytes(random.Random(1).randbytes(20_000))
+    assert "content-encoding" not in (await raw(served.viewer, url, Accept_Encoding="gzip"))[2], (
+        "it would not be smaller"
+    )
 
 
 async def test_the_mesh_is_served_and_comes_again_only_when_it_changed(served, robot):

@@ -78,8 +78,9 @@ async function reached<T>(answer: Promise<T>): Promise<T> {
 }
 
 async function bytesOf(response: Response, report: LoadReport): Promise<ArrayBuffer> {
-  const said = Number(response.headers.get("Content-Length") ?? NaN);
-  const total = Number.isFinite(said) && !response.headers.has("Content-Encoding") ? said : null;
+  const { headers } = response;
+  const said = Number(headers.get(headers.has("Content-Encoding") ? "X-Unpacked-Length" : "Content-Length") ?? NaN);
+  const total = Number.isFinite(said) ? said : null;
   if (total !== null) limit(total);
   const reader = response.body?.getReader();
   if (!reader) return reached(response.arrayBuffer());

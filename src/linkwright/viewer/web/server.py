@@ -20,7 +20,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.http_server import SERVER_LOGGER, web
 from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
 from linkwright.viewer.web.audience import Page, language_asked
-from linkwright.viewer.web.files import CONTENT_TYPES, Downloads, FileRefusedError, MeshFolders
+from linkwright.viewer.web.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.viewer.web.uploads import Guests, Uploads
 
 if TYPE_CHECKING:
@@ -42,6 +42,10 @@ _IDLE = 30.0
 _BACKLOG = 128
 _BLOCK = 256 * 1024
 """Bytes of a long file that are read at once."""
+
+_LEAST_PACKED, _WORTH_PACKING, _PACKING_LEVEL = 4096, 0.9, 1
+"""Meshes from so many bytes on go compressed, where so small a part of them is left. The next levels take twice the
+time and leave a tenth less."""
 
 _GOODBYE = 0.5
 """Seconds a page has to answer a closing handshake, and a request to end."""
@@ -263,7 +267,9 @@ class WebServer:
         except FileRefusedError as error:
             return web.Response(status=error.status, text=f"Refused: {error}.\n")
         self._admit(request)
-        return await _file_response(request, path, CONTENT_TYPES[path.suffix.lower()], "private, no-cache")
+        content_type = CONTENT_TYPES[path.suffix.lower()]
+        packs = _takes_gzip(request) and path.suffix.lower() not in IMAGE_TYPES  # images are packed already
+        return await _file_response(request, path, content_type, "private, no-cache", packs=packs)
 
     async def _export(self, request: web.Request) -> web.StreamResponse:
         file = self._downloads.take(request.match_info["key"])
@@ -358,8 +364,12 @@ def _refused(status: int, reason: str) -> web.Response:
     return response
 
 
-async def _file_response(request: web.Request, path: Path, content_type: str, cache: str) -> web.Response:
+async def _file_response(
+    request: web.Request, path: Path, content_type: str, cache: str, *, packs: bool
+) -> web.Response:
     """A whole file, with an ETag that an edit changes; 304 where the browser has it already.
+
+    With `packs` it goes compressed where that makes it clearly smaller, and says how long it is unpacked.
 
     aiohttp's own FileResponse also looks for compressed files beside the one asked for, which nobody has checked.
     """
@@ -367,10 +377,17 @@ async def _file_response(request: web.Request, path: Path, content_type: str, ca
         read = await asyncio.to_thread(_read, path, request.headers.get("If-None-Match", ""))
     except OSError:
         raise _no_file() from None
-    headers = {"Cache-Control": cache, "ETag": read.tag}
+    headers = {"Cache-Control": cache, "ETag": read.tag, "Vary": "Accept-Encoding"}
     if read.body is None:
         return web.Response(status=304, headers=headers)
-    response = web.Response(body=read.body, headers={**headers, "Content-Type": content_type})
+    headers["Content-Type"] = content_type
+    body = read.body
+    if packs and len(body) >= _LEAST_PACKED:
+        packed = await asyncio.to_thread(gzip.compress, body, _PACKING_LEVEL, mtime=0)
+        if len(packed) < _WORTH_PACKING * len(body):
+            headers |= {"Content-Encoding": "gzip", "X-Unpacked-Length": str(len(body))}
+            body = packed
+    response = web.Response(body=body, headers=headers)
     response.last_modified = read.modified
     return response
 
