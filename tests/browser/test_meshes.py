@@ -97,8 +97,10 @@ def test_a_mesh_that_comes_slowly_is_told_until_it_is_there(start, open_page, ro
     notice = page.locator("[data-notice='meshes']")
     notice.wait_for()
     assert "box.stl" in notice.inner_text()
+    page.get_by_text("Status: Loading", exact=True).wait_for()
     held[0].continue_()
     notice.wait_for(state="hidden")
+    page.locator(".row", has_text="Status: Ok").nth(1).wait_for()
     page.wait_for_function("window.linkwright?.ready === true")
     assert state(page, "robot.visuals") == len(KINDS)
 

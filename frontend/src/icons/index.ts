@@ -97,4 +97,4 @@ export function displayIcon(cls: string): IconName {
 }
 
 /** The sign of a status level or severity. */
-export const LEVEL_ICONS = { ok: "check", warn: "warn", warning: "warn", error: "error", info: "info" } as const;
+export const LEVEL_ICONS = { ok: "check", loading: "clock", warn: "warn", warning: "warn", error: "error", info: "info" } as const;

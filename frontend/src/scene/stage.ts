@@ -55,6 +55,8 @@ export class Stage {
   private readonly robotLight = new RobotLight();
   private readonly backdrop = new Backdrop();
   private robotSettled = false;
+  /** The displays of which something was still being loaded in the last frame. */
+  private loading = "";
   /** When the robot was drawn with all meshes, though nothing of it has a place. */
   private placelessSince: number | null = null;
   /** What nothing lies over. */
@@ -77,6 +79,7 @@ export class Stage {
     const invalidate = (): void => this.loop.invalidate();
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
     this.marks = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
+    session.displays.isLoading = ({ id }) => this.drawings.get(id)?.drawing.settled?.() === false;
     this.aids.add(this.focalShape.root);
     this.viewport.scene.add(this.aids, this.marks.root, this.robotLight.root, this.backdrop.root);
     this.listen();
@@ -256,12 +259,19 @@ export class Stage {
     const { lighting } = this;
     for (const robot of this.robots()) robot.light = lighting;
     let settled = true;
+    let loading = "";
     const now = performance.now();
     for (const { display, drawing, pacing } of this.drawings.values()) {
       drawing.root.visible = display.enabled;
       if (!display.enabled) continue;
       if (pacing.due(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
-      settled &&= drawing.settled?.() ?? true;
+      const isThere = drawing.settled?.() ?? true;
+      settled &&= isThere;
+      if (!isThere) loading += ` ${display.id}`;
+    }
+    if (loading !== this.loading) {
+      this.loading = loading;
+      this.session.displays.statusChanged.emit(null);
     }
     this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
     if (settled && this.session.robot !== null) this.placelessSince ??= now;

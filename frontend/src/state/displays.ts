@@ -4,6 +4,9 @@ import { PropertyNode, PropertyRows } from "./properties";
 
 const GROUP = "rviz_common/Group";
 
+/** How a row stands: as the server says, or "loading" while what it would draw is on its way. */
+export type ShownLevel = StatusLevel | "loading";
+
 /** The rows of a status that are no "ok", errors first. */
 export function troublesOf(status: readonly StatusRow[]): StatusRow[] {
   return [...status.filter((row) => row.level === "error"), ...status.filter((row) => row.level === "warn")];
@@ -88,6 +91,10 @@ export class DisplaysState {
   globalOptions = new PropertyRows([]);
   globalStatus: readonly StatusRow[] = [];
   globalLevel: StatusLevel = "ok";
+  /** Whether the server has told of displays. */
+  known = false;
+  /** Whether something of a display is still being loaded, such as its meshes; the scene knows. */
+  isLoading: (display: DisplayState) => boolean = () => false;
   private owners = new Map<string, { node: PropertyNode; display: DisplayState | null }>();
 
   setTree(tree: Tree): void {
@@ -106,6 +113,7 @@ export class DisplaysState {
     this.globalOptions = new PropertyRows(tree.global_options.map((property) => new PropertyNode(property)));
     this.globalStatus = tree.global_status;
     this.globalLevel = tree.global_level;
+    this.known = true;
     this.index();
     this.treeChanged.emit();
   }
@@ -148,6 +156,11 @@ export class DisplaysState {
     for (const [index, each] of this.displays.entries()) {
       if (each === display || each.enabled !== before[index]) this.enabledChanged.emit(each);
     }
+  }
+
+  /** The level that the status of a display is shown with: nothing is "ok" before it is there. */
+  levelOf(display: DisplayState): ShownLevel {
+    return display.level === "ok" && display.enabled && this.isLoading(display) ? "loading" : display.level;
   }
 
   /** The displays in a group, or the outermost ones, in their order. */

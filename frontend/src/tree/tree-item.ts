@@ -1,5 +1,6 @@
 import type { IconName } from "../icons";
-import type { PropertyKind, PropertyValue, StatusLevel } from "../protocol";
+import type { PropertyKind, PropertyValue } from "../protocol";
+import type { ShownLevel } from "../state/displays";
 
 /** One row of a property tree, as the tree draws it. */
 export interface TreeItem {
@@ -11,7 +12,7 @@ export interface TreeItem {
   readonly description: string;
   readonly icon?: IconName;
   /** Colours the row; a sign is shown too unless it is a display's own row. */
-  readonly level?: StatusLevel;
+  readonly level?: ShownLevel;
   readonly showLevelIcon?: boolean;
   readonly strong?: boolean;
   readonly muted?: boolean;

@@ -57,7 +57,7 @@ export class DiagnosticsPanel implements Panel {
   }
 
   private showNone(): void {
-    this.none.hidden = this.findings.childElementCount + this.displays.childElementCount > 0;
+    this.none.hidden = !this.session.displays.known || this.findings.childElementCount + this.displays.childElementCount > 0;
   }
 
   private rowButton(display: DisplayState): HTMLElement {

@@ -1,7 +1,7 @@
 import { displayIcon } from "../../icons";
-import type { PropertyValue, StatusLevel, StatusRow } from "../../protocol";
+import type { PropertyValue, StatusRow } from "../../protocol";
 import { DRAWINGS } from "../../scene/displays/registry";
-import type { DisplayState } from "../../state/displays";
+import type { DisplayState, ShownLevel } from "../../state/displays";
 import type { Session } from "../../state/session";
 import { shortName } from "../../state/views/catalog";
 import { strings } from "../../strings";
@@ -12,6 +12,7 @@ import { displayRows } from "./robot-rows";
 /** The rows of the Displays panel, read from the session each time the tree is drawn. */
 export function displayItems(session: Session): TreeItem[] {
   const { displays } = session;
+  if (!displays.known) return [];
   const set = (id: string, value: PropertyValue): void => session.setProperty(id, value);
   return [
     {
@@ -22,6 +23,7 @@ export function displayItems(session: Session): TreeItem[] {
       description: "",
       icon: "options",
       strong: true,
+      wide: true,
       expanded: true,
       children: () => displays.globalOptions.nodes.map((node) => propertyItem(node, set)),
     },
@@ -38,8 +40,9 @@ function displayItem(
   const drawn = isDrawn(display);
   const status: TreeItem[] = [];
   if (display.enabled && display.status.length > 0) {
-    const name = `${strings.tree.status}: ${strings.tree.levels[display.level]}`;
-    status.push(statusItem(`${display.id}#status`, name, display.level, display.status, false));
+    const level = session.displays.levelOf(display);
+    const name = `${strings.tree.status}: ${strings.tree.levels[level]}`;
+    status.push(statusItem(`${display.id}#status`, name, level, display.status, false));
   }
   const within = (): TreeItem[] =>
     session.displays.within(display).map((each) => displayItem(session, each, set));
@@ -114,7 +117,7 @@ function isOnlyContent(session: Session, display: DisplayState): boolean {
 }
 
 /** A group shows the worst of what is in it. */
-function worstWithin(session: Session, display: DisplayState): StatusLevel {
+function worstWithin(session: Session, display: DisplayState): ShownLevel {
   const levels = [display, ...session.displays.displays.filter((each) => each.isWithin(display))]
     .filter((each) => each.enabled)
     .map((each) => each.level);
@@ -124,7 +127,7 @@ function worstWithin(session: Session, display: DisplayState): StatusLevel {
 function statusItem(
   key: string,
   name: string,
-  level: StatusLevel,
+  level: ShownLevel,
   rows: readonly StatusRow[],
   strong: boolean,
 ): TreeItem {
@@ -146,7 +149,7 @@ function statusItem(
         kind: "group",
         value: row.text,
         description: row.text,
-        level: row.level,
+        level: level === "loading" && row.level === "ok" ? level : row.level,
         showLevelIcon: true,
       })),
   };
@@ -154,6 +157,6 @@ function statusItem(
 
 /** Among hundreds of links the one that fails must be seen. */
 function worstFirst(rows: readonly StatusRow[]): StatusRow[] {
-  const order: Readonly<Record<StatusLevel, number>> = { error: 0, warn: 1, ok: 2 };
+  const order: Readonly<Record<StatusRow["level"], number>> = { error: 0, warn: 1, ok: 2 };
   return [...rows].sort((a, b) => order[a.level] - order[b.level]);
 }

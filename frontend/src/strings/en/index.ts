@@ -49,7 +49,7 @@ export const en = {
     globalOptions: "Global Options",
     globalStatus: "Global Status",
     status: "Status",
-    levels: { ok: "Ok", warn: "Warn", error: "Error" },
+    levels: { ok: "Ok", loading: "Loading", warn: "Warn", error: "Error" },
     notDrawn: "not drawn",
     notDrawnHelp: "Linkwright keeps this display in the file but does not draw it.",
     enabledHelp: "Switches this display on and off.",

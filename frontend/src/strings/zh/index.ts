@@ -37,7 +37,7 @@ export const zh: Strings = {
     globalOptions: "全局选项",
     globalStatus: "全局状态",
     status: "状态",
-    levels: { ok: "正常", warn: "警告", error: "错误" },
+    levels: { ok: "正常", loading: "加载中", warn: "警告", error: "错误" },
     notDrawn: "未绘制",
     notDrawnHelp: "Linkwright 会在文件中保留此显示项，但不绘制它。",
     enabledHelp: "打开或关闭此显示项。",
