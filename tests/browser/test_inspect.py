@@ -54,6 +54,30 @@ def test_masses_and_inertias_and_what_is_implausible(page):
     until(page, "lw.selected.link === 'fore'")
 
 
+def test_inspect_says_what_is_not_there_and_closes_as_a_menu_does(start, open_page, tmp_path):
+    (tmp_path / "bare.urdf").write_text(
+        '<robot name="bare"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link></robot>'
+    )
+    page = open_page(start("view", str(tmp_path / "bare.urdf")))
+    card, button = page.locator(".inspect-card"), page.locator(".inspect > button")
+    button.click()
+    switch(page, "contrast", "joints")
+    assert "No joint moves" in page.locator(".inspect-facts").inner_text()
+    assert "No link has a <collision>" in page.locator(".inspect-facts").inner_text()
+    page.locator(".canvas-box").focus()
+    page.keyboard.press("Escape")
+    assert card.is_hidden()
+    button.click()
+    box = page.locator(".canvas-box").bounding_box()
+    page.mouse.move(box["x"] + 200, box["y"] + 400)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 260, box["y"] + 400)
+    page.mouse.up()
+    assert card.is_visible(), "who turns the scene wants to see what is inspected"
+    page.mouse.click(box["x"] + 200, box["y"] + 400)
+    assert card.is_hidden()
+
+
 def test_joint_axes_show_limits_and_where_joints_stand(page):
     switch(page, "joints")
     until(page, "lw.inspected.joints?.length === 4")

@@ -104,6 +104,16 @@ def test_measure_shows_the_distance_of_two_points(scene):
     assert state(scene.page, "tool.state")["length"] is None
 
 
+def test_a_measurement_that_hits_nothing_says_so(scene):
+    scene.press("n")
+    box = scene.page.locator(".canvas-box canvas").bounding_box()
+    scene.page.mouse.click(box["x"] + 3, box["y"] + box["height"] - 3)
+    notice = scene.page.locator("[data-notice=tool]")
+    notice.get_by_text("Nothing was hit there").wait_for()
+    scene.click(-0.4, 0)
+    notice.wait_for(state="hidden")
+
+
 def test_focus_camera_looks_at_the_point(scene):
     scene.press("c")
     scene.click(0.25, 0.5)
@@ -170,6 +180,7 @@ def test_the_selection_panel_tells_where_links_are(scene):
 
 def test_pause_freezes_what_is_shown(scene):
     page = scene.page
+    page.get_by_role("button", name="Time", exact=True).click()
     page.get_by_role("button", name="Pause").click()
     until(page, "lw.time.paused")
     scene.viewer.place("tip", 5.0, 1.0, 0.0)

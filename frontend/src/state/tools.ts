@@ -28,6 +28,8 @@ export class ToolsState {
   readonly currentChanged = new Signal<ToolState | null>();
   readonly valueChanged = new Signal<ToolState>();
   readonly hintChanged = new Signal<string>();
+  /** Why the tool in hand did not do what was asked of it; empty when it did. */
+  readonly told = new Signal<string>();
   tools: readonly ToolState[] = [];
   /** What can be added. */
   classes: readonly ToolClass[] = [];

@@ -4,6 +4,7 @@ import type { Inspected } from "../../state/inspect";
 import { general } from "../../state/number-text";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
+import { closesOutside } from "../../widgets/popover";
 import { currentModel } from "../description/current-model";
 
 const CHOICES = ["centers", "boxes", "ellipsoids", "joints", "contrast", "frames"] as const;
@@ -20,6 +21,7 @@ export class InspectMenu {
   private readonly depthText = h("output");
   private readonly scale = h("input", { class: "slider" });
   private readonly open: HTMLButtonElement;
+  private release: () => void = () => undefined;
 
   /** @param resized called when it needs another part of the scene than before. */
   constructor(
@@ -30,12 +32,6 @@ export class InspectMenu {
     this.open = button(words.hint, () => this.toggle(this.card.hidden !== false), "tool", icon("inspect"), words.button);
     this.card.append(...CHOICES.map((choice) => this.choice(choice)), this.depthRow(), this.scaleRow(), this.facts);
     this.element.append(this.open, this.card);
-    this.element.addEventListener("keydown", (event) => {
-      if (event.key !== "Escape" || this.card.hidden) return;
-      this.toggle(false);
-      this.open.focus();
-      event.stopPropagation();
-    });
     const { inspect, description, robotChanged } = session;
     const show = coalesced(() => this.show());
     inspect.changed.on(show);
@@ -47,9 +43,16 @@ export class InspectMenu {
   }
 
   private toggle(open: boolean): void {
+    this.release();
+    this.release = open ? closesOutside([this.element], (back) => this.closed(back)) : () => undefined;
     this.card.hidden = !open;
     this.open.setAttribute("aria-expanded", String(open));
     this.resized();
+  }
+
+  private closed(back: boolean): void {
+    this.toggle(false);
+    if (back) this.open.focus();
   }
 
   private choice(what: keyof Inspected): HTMLElement {
@@ -103,30 +106,44 @@ export class InspectMenu {
     this.showFacts();
   }
 
-  /** The mass of the robot, and each link that is implausible: a click selects it. */
+  /** What of the invisible the robot does not have; its mass, and each link that is implausible: a click selects it. */
   private showFacts(): void {
+    const missing = this.missing().map((text) => h("div", { class: "missing" }, text));
+    this.facts.replaceChildren(...missing, ...this.massFacts());
+    this.facts.hidden = this.facts.childElementCount === 0;
+  }
+
+  /** A choice that shows nothing says why. */
+  private missing(): string[] {
+    const words = strings.description.inspect;
+    const { robot, inspect } = this.session;
+    if (!robot) return [];
+    const { contrast, joints } = inspect.current;
+    const found: string[] = [];
+    if (joints && robot.joints.every(({ kind }) => kind === "fixed")) found.push(words.noJoints);
+    if (contrast && robot.links.every(({ collisions }) => collisions.length === 0)) found.push(words.noCollisions);
+    return found;
+  }
+
+  private massFacts(): HTMLElement[] {
     const words = strings.description.inspect;
     const model = currentModel(this.session);
     const { centers, boxes, ellipsoids } = this.session.inspect.current;
-    this.facts.hidden = !model || !(centers || boxes || ellipsoids);
-    if (!model || this.facts.hidden) return;
+    if (!model || !(centers || boxes || ellipsoids)) return [];
     const mass = [...model.links.values()].reduce((sum, { inertia }) => sum + (inertia?.mass ?? 0), 0);
     const findings = this.session.description.findingsOf(model.display);
     const links = new Set(findings.map(({ link }) => link));
     const weightless = links.size === 0 && [...model.links.values()].every(({ inertia }) => inertia === null);
-    if (weightless) {
-      this.facts.replaceChildren(h("div", {}, words.noInertials));
-      return;
-    }
+    if (weightless) return [h("div", { class: "missing" }, words.noInertials)];
     const rows = findings.map(({ link, code, message, hint }) => {
       const name = { display: model.display, kind: "link" as const, name: link };
       const row = button(hint || message, () => this.session.focus.select(name), "finding", h("strong", {}, link), ` ${message} `, h("code", { class: "code" }, code));
       return h("li", { data: { link } }, row);
     });
-    this.facts.replaceChildren(
+    return [
       h("div", {}, words.mass(general(mass))),
       h("div", {}, links.size > 0 ? words.implausible(links.size) : words.plausible),
       h("ul", {}, ...rows),
-    );
+    ];
   }
 }

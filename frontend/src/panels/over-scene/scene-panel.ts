@@ -17,6 +17,7 @@ import { OwnerNotice } from "./owner-notice";
 import { showSceneMenus } from "./scene-menu";
 import { SelectionCard } from "./selection-card";
 import { SimulationBar } from "./simulation-bar";
+import { ToolNotice } from "./tool-notice";
 import { Toolbar } from "./toolbar";
 
 /** The 3-D view and what lies over it. */
@@ -41,7 +42,14 @@ export class ScenePanel implements Panel {
     const sign = new OrientationSign(session);
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);
     this.notices.append(simulation.element, notice.element, banner.element);
-    const told = [new GoalNotice(session.monitor.navigation), new LineNotice(session), new OwnerNotice(session), new MeshNotice(session.meshProgress), new VoiceNotice(session.voice)];
+    const told = [
+      new ToolNotice(session.tools),
+      new GoalNotice(session.monitor.navigation),
+      new LineNotice(session),
+      new OwnerNotice(session),
+      new MeshNotice(session.meshProgress),
+      new VoiceNotice(session.voice),
+    ];
     this.column.element.append(inspect.element, card.element, ...told.map((each) => each.element));
     this.box = h(
       "div",

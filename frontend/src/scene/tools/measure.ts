@@ -39,7 +39,7 @@ export class MeasureTool implements SceneTool {
     const point = this.context.stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
     if (this.started && point) this.draw(point);
-    if (event.type === "up" && event.button === "left" && point) this.clicked(point);
+    if (event.type === "up" && event.button === "left") this.released(point, event.click);
     if (event.type === "up" && event.button === "right") this.clear();
     this.showLength();
   }
@@ -63,6 +63,12 @@ export class MeasureTool implements SceneTool {
   /** Metres; null before there are two points. */
   private get length(): number | null {
     return this.start && this.end ? distanceBetween(this.start, this.end) : null;
+  }
+
+  /** A drag that ends where nothing is was none of its business. */
+  private released(point: Vector | null, isClick: boolean): void {
+    if (point) this.clicked(point);
+    if (point || isClick) this.context.tell(point ? "" : strings.tools.hints.nothingThere);
   }
 
   private clicked(point: Vector): void {

@@ -17,7 +17,9 @@ export class PublishPointTool implements SceneTool {
     const point = stage.picker.pointAt(event.x, event.y);
     this.context.setCursor(point ? "crosshair" : "default");
     this.context.setHint(point ? strings.tools.hints.point(shown(point)) : strings.tools.hints.pointNowhere);
-    if (!point || !state || event.type !== "up" || event.button !== "left") return;
+    if (event.type !== "up" || event.button !== "left") return;
+    if (!point && event.click) this.context.tell(strings.tools.hints.nothingThere);
+    if (!point || !state) return;
     const [x, y, z] = point;
     session.connection.send({ type: "point_chosen", tool: state.id, x, y, z });
     if (state.rows.bool(true, "Single click")) this.context.finish();

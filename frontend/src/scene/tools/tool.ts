@@ -33,6 +33,8 @@ export interface ToolContext {
   /** Its settings; null of the tool that is there before the server told of any. */
   readonly state: ToolState | null;
   setHint(text: string): void;
+  /** Tells over the scene why it did not do what was asked; an empty text takes that back. */
+  tell(text: string): void;
   /** A CSS cursor. */
   setCursor(cursor: string): void;
   /** The tool did what it is for: the default one is taken in hand. */

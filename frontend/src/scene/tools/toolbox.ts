@@ -77,6 +77,7 @@ export class Toolbox {
       setHint: (text) => {
         tools.hint = text;
       },
+      tell: (text) => tools.told.emit(text),
       setCursor: (cursor) => {
         stage.viewport.canvas.style.cursor = cursor;
       },

@@ -94,6 +94,8 @@ export const description = {
     mass: (kg: string): string => `Mass of the robot: ${kg} kg`,
     implausible: (count: number): string => (count === 1 ? "1 link is implausible:" : `${count} links are implausible:`),
     plausible: "No mass or inertia is implausible.",
+    noJoints: "No joint moves: all are fixed.",
+    noCollisions: "No link has a <collision>: there is none to show.",
     noInertials: "No link has an <inertial>: there is no mass to show.",
   },
   poses: {

@@ -54,6 +54,7 @@ export const tools = {
     hints: {
       select: "Click and drag to select objects on the screen.  Shift: add.  Ctrl: take away.  Alt: camera.  F: focus.",
       measure: "Click on two points to measure their distance.  Right-click to reset.",
+      nothingThere: "Nothing was hit there: click on something that is drawn.",
       pose: "Click and drag mouse to set position/orientation.",
       focus: (point: string): string => `Left-Click: Focus on this point. ${point}`,
       focusNowhere: "Left-Click: Look in this direction.",
@@ -66,6 +67,8 @@ export const tools = {
     label: "What is selected",
   },
   time: {
+    fold: "The fields of the Time panel: pause, synchronization, clocks",
+    paused: "Paused",
     pause: "Pause",
     pauseHint: "Freeze what is shown: no new data is taken",
     sync: "Synchronization",

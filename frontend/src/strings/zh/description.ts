@@ -93,6 +93,8 @@ export const description: DescriptionStrings = {
     mass: (kg) => `机器人总质量：${kg} kg`,
     implausible: (count) => `${count} 个连杆不合理：`,
     plausible: "没有发现不合理的质量或惯量。",
+    noJoints: "没有会动的关节：全部是固定的。",
+    noCollisions: "没有任何连杆带 <collision>：没有可显示的碰撞形状。",
     noInertials: "没有任何连杆带 <inertial>：没有可显示的质量。",
   },
   poses: {

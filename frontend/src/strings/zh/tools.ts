@@ -50,6 +50,7 @@ export const tools: typeof english = {
     },
     hints: {
       select: "点击或拖框选择物体。Shift：加选。Ctrl：减选。Alt：相机。F：聚焦。",
+      nothingThere: "那里没有点中任何东西：请点击画出来的物体。",
       measure: "依次点击两个点以测量距离。右键重新开始。",
       pose: "按下确定位置，拖动确定方向。",
       focus: (point) => `左键：聚焦到此点。${point}`,
@@ -60,6 +61,8 @@ export const tools: typeof english = {
   },
   selected: { none: "未选择任何内容。用“选择”工具点击物体，或拖出选框。", label: "已选择的内容" },
   time: {
+    fold: "时间面板的各项：暂停、同步、时钟",
+    paused: "已暂停",
     pause: "暂停",
     pauseHint: "冻结显示：不再接收新数据",
     sync: "同步",

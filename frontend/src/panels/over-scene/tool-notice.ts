@@ -1,0 +1,23 @@
+import { h } from "../../dom";
+import type { ToolsState } from "../../state/tools";
+
+const TOLD_MS = 4000;
+
+/** Over the scene for some seconds: why the tool in hand did not do what was asked of it. */
+export class ToolNotice {
+  readonly element = h("div", { class: "line-notice", role: "status", data: { notice: "tool" } });
+  private timer: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(tools: ToolsState) {
+    this.element.hidden = true;
+    tools.told.on((text) => this.show(text));
+    tools.currentChanged.on(() => this.show(""));
+  }
+
+  private show(text: string): void {
+    clearTimeout(this.timer);
+    this.element.hidden = text === "";
+    this.element.textContent = text;
+    if (text !== "") this.timer = setTimeout(() => this.show(""), TOLD_MS);
+  }
+}

@@ -1,0 +1,34 @@
+/** A press that moves further, in pixels, is a drag and no click: it turns the scene and closes nothing. */
+const CLICK_REACH = 5;
+
+/**
+ * Calls `close` on Escape, wherever the keyboard is, and on a click outside of all of `inside`, until the returned
+ * function is called. `back` says that the keyboard belongs to what opened it.
+ */
+export function closesOutside(inside: readonly Element[], close: (back: boolean) => void): () => void {
+  let pressed: { x: number; y: number } | null = null;
+  const isInside = ({ target }: Event): boolean => target instanceof Node && inside.some((each) => each.contains(target));
+  const press = (event: PointerEvent): void => {
+    pressed = isInside(event) ? null : { x: event.clientX, y: event.clientY };
+  };
+  const release = (event: PointerEvent): void => {
+    const from = pressed;
+    pressed = null;
+    if (from && Math.hypot(event.clientX - from.x, event.clientY - from.y) < CLICK_REACH) close(false);
+  };
+  const keyed = (event: KeyboardEvent): void => {
+    // A menu or a dialog over it goes first.
+    if (event.key !== "Escape" || (event.target instanceof Element && event.target.closest("dialog, [role=menu], [role=listbox]"))) return;
+    event.preventDefault();
+    event.stopPropagation();
+    close(event.target === document.body || isInside(event));
+  };
+  document.addEventListener("pointerdown", press, true);
+  document.addEventListener("pointerup", release, true);
+  document.addEventListener("keydown", keyed, true);
+  return () => {
+    document.removeEventListener("pointerdown", press, true);
+    document.removeEventListener("pointerup", release, true);
+    document.removeEventListener("keydown", keyed, true);
+  };
+}
