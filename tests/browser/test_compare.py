@@ -204,6 +204,8 @@ def test_the_list_is_in_front_in_a_small_window(start, open_page, files):
     assert panel is not None
     assert first is not None
     assert first["y"] + first["height"] <= panel["y"] + panel["height"]
+    groups = [each.bounding_box() for each in page.locator(".difference-group").all()]
+    assert max(each["x"] + each["width"] for each in groups) > 700, "they stand in columns"
 
 
 def test_the_panel_has_no_finding_of_axe_core(start, open_page, files):

@@ -92,6 +92,7 @@ export class ComparisonPanel implements Panel {
       }),
     );
     const { items } = compared;
+    this.element.classList.toggle("same", items.length === 0);
     this.count.textContent = items.length === 0 ? words.same : words.count(items.length);
     const at = this.list.scrollTop;
     this.list.replaceChildren(...grouped(items).map((group) => this.group(group)));
