@@ -54,7 +54,7 @@ CUT = """async () => {
     }
     return each.scrollWidth > each.clientWidth + 1;
   };
-  const labels = ".toolbar-label, .bar-label, .tick, .check-label, .segmented";
+  const labels = ".row-title, .toolbar-label, .bar-label, .tick, .check-label, .segmented";
   const controls = `button, select, input[placeholder], [role=tab], ${labels}`;
   // What somebody else has named may be any length: its tooltip says the whole of it.
   const ofUsers = ".place, .editing-part, .topic-row button, .link-row button, .tree button";
