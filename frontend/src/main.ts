@@ -37,6 +37,7 @@ import { livePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
 import type { PanelId } from "./panels/panel";
+import { TimeFold } from "./panels/timeline/time-fold";
 import { TimePanel } from "./panels/timeline/time-panel";
 import { TimelineBar } from "./panels/timeline/timeline-bar";
 import { SelectionPanel } from "./panels/views-and-tools/selection-panel";
@@ -123,7 +124,7 @@ function start(app: HTMLElement): void {
     new EditingPanel(session),
     new VoicePanel(session.voice, session.words),
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
-  ], new Layouts(browserStorage()));
+  ], new Layouts(browserStorage()), browserStorage());
   keepCurrent(dock, session);
   new FilePanels(connection, dock);
 
@@ -148,7 +149,8 @@ function start(app: HTMLElement): void {
   const files = new FileCommands(session.configuration);
   app.prepend(new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens)).element);
   takeFileKeys(session, files);
-  app.append(new TimelineBar(session).element, new StatusBar(session, stage).element);
+  const fold = new TimeFold(session.time, dock.strip);
+  app.append(h("div", { class: "foot" }, new TimelineBar(session).element, fold.element, new StatusBar(session, stage).element));
   document.body.append(door.element);
   fullScreenOnF11(scene.box);
   document.addEventListener("keydown", (event) => {

@@ -114,6 +114,11 @@ def test_a_phone_has_all_of_the_title_bar(sized):
 @pytest.mark.parametrize(("width", "height"), [(1024, 600), (1280, 800)])
 def test_every_panel_that_is_open_has_room(sized, width, height):
     page = sized(width, height)
+    foot = box(page, ".foot")
+    assert foot["height"] < 45, "the last minutes and the status are one line"
+    canvas = box(page, ".canvas-box")
+    assert canvas["y"] + canvas["height"] > foot["y"] - 10, "the fields of time are folded"
+    page.get_by_role("button", name="Time", exact=True).click()
     page.wait_for_function("() => document.querySelector('.time-panel').offsetHeight < 45")
 
     def has_room() -> dict[str, bool]:

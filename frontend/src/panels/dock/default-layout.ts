@@ -140,7 +140,7 @@ export function formOf(api: DockviewApi): Form {
 
 /** Of all the window the scene has at least this much there, besides the line of its tools and the timeline that comes later. */
 const SCENE_SHARE = 0.5;
-const LINES_HEIGHT = 54;
+const LINES_HEIGHT = 29;
 const MOST_BELOW = 0.45;
 
 /** The place of a panel on a phone: the scene has one group with everything else below it. */

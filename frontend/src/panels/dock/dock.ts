@@ -1,6 +1,7 @@
 import { createDockview, type DockviewApi, type IContentRenderer } from "dockview";
 import type { PanelName } from "../../protocol";
 import { Signal } from "../../signal";
+import type { TextStorage } from "../../storage";
 import { strings } from "../../strings";
 import type { Panel, PanelId } from "../panel";
 import { ColumnWidths } from "./column-widths";
@@ -26,9 +27,9 @@ export class Dock {
   file: string | null = null;
   /** The panels of displays. */
   readonly displayPanels = new DisplayPanels(() => this.api);
+  readonly strip: TimeStrip;
   private readonly api: DockviewApi;
   private readonly widths: ColumnWidths;
-  private readonly strip: TimeStrip;
   private readonly sceneTab: SceneTab;
   private readonly frontTabs: FrontTabs;
   private readonly panels: ReadonlyMap<string, Panel>;
@@ -41,6 +42,7 @@ export class Dock {
     parent: HTMLElement,
     panels: readonly Panel[],
     private readonly layouts: Layouts,
+    storage: TextStorage,
   ) {
     this.panels = new Map(panels.map((panel) => [panel.id, panel]));
     this.api = createDockview(parent, {
@@ -52,7 +54,7 @@ export class Dock {
       messages: { panelOpened: strings.shell.panelOpened, panelClosed: strings.shell.panelClosed },
     });
     this.widths = new ColumnWidths(this.api);
-    this.strip = new TimeStrip(this.api);
+    this.strip = new TimeStrip(this.api, storage);
     this.sceneTab = new SceneTab(this.api);
     this.frontTabs = new FrontTabs(this.api);
     takeTabKeys(parent, (id) => this.tabs.get(id));
@@ -90,6 +92,7 @@ export class Dock {
   open(id: PanelId): void {
     this.add(id);
     this.api.getPanel(id)?.api.setActive();
+    if (id === "time" && this.strip.isThere) this.strip.unfold(true);
   }
 
   close(id: PanelId): void {

@@ -1,0 +1,25 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { TimeControlState } from "../../state/time";
+import { strings } from "../../strings";
+import type { TimeStrip } from "../dock/time-strip";
+
+/** At the foot of the page: the button that unfolds the fields of RViz's Time panel; it says when time stands still. */
+export class TimeFold {
+  readonly element: HTMLButtonElement;
+
+  constructor(time: TimeControlState, strip: TimeStrip) {
+    const word = h("span", {});
+    this.element = button(strings.time.fold, () => strip.unfold(!strip.isUnfolded), "tool bare time-fold", icon("clock"), word);
+    this.element.setAttribute("aria-label", strings.panels.time);
+    const show = (): void => {
+      this.element.hidden = !strip.isThere;
+      this.element.setAttribute("aria-expanded", String(strip.isUnfolded));
+      this.element.classList.toggle("active", time.paused);
+      word.textContent = time.paused ? strings.time.paused : "";
+    };
+    strip.changed.on(show);
+    time.changed.on(show);
+    show();
+  }
+}
