@@ -138,9 +138,12 @@ export function formOf(api: DockviewApi): Form {
   return matchMedia(LOW).matches ? "low" : api.width <= NARROW ? "narrow" : "wide";
 }
 
-/** Of all the window the scene has at least this much there, besides the line of its tools and the timeline that comes later. */
+/** Of all the window the scene has at least this much there, besides the line of its tools. */
 const SCENE_SHARE = 0.5;
-const LINES_HEIGHT = 29;
+const TOOLS_HEIGHT = 34;
+/** In a window narrower than this the last minutes, which come later, are a line of the foot by themselves. */
+const FOOT_WRAPS = 640;
+const FOOT_LINE = 30;
 const MOST_BELOW = 0.45;
 
 /** The place of a panel on a phone: the scene has one group with everything else below it. */
@@ -148,7 +151,8 @@ function narrowHome(api: DockviewApi, id: PanelId): Home {
   if (id === "scene") return HOMES.scene;
   const others = (Object.keys(HOMES) as PanelId[]).filter((each) => each !== "scene" && each !== id);
   const beside: Home["beside"] = [...others.map((each) => [each, "within"] as const), ["scene", "below"]];
-  const left = api.height - LINES_HEIGHT - SCENE_SHARE * window.innerHeight;
+  const lines = TOOLS_HEIGHT + (window.innerWidth < FOOT_WRAPS ? FOOT_LINE : 0);
+  const left = api.height - lines - SCENE_SHARE * window.innerHeight;
   return { beside, height: Math.round(Math.min(left, api.height * MOST_BELOW)), inactive: !IN_FRONT.includes(id) };
 }
 
