@@ -11,6 +11,7 @@ from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
 
+String = get_message("std_msgs/msg/String")
 PointStamped = get_message("geometry_msgs/msg/PointStamped")
 
 _SILENT = """
@@ -58,8 +59,11 @@ def test_displays_are_added_by_type_and_taken_back(grouped):
 def test_displays_are_added_by_topic(grouped):
     viewer, page = grouped
     viewer.publish("/found", PointStamped())
+    viewer.publish("/other/robot_description", String())
     page.get_by_role("button", name="Add", exact=True).click()
     page.get_by_role("tab", name="By topic").click()
+    described = page.get_by_role("group", name="/other/robot_description")
+    assert described.get_by_role("option").first.inner_text().startswith("RobotModel")
     page.locator(".choice-row", has_text="PointStamped").click()
     page.get_by_role("dialog").get_by_role("button", name="Add", exact=True).click()
     until(page, "lw.displays.length === 5")

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.graph import QoSProfile, ReliabilityPolicy
+from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.visualization import display_tree
 from tests.viewer.configured import TEXT, PointStamped, edit, entries, names, opened, undo
 from tests.viewer.scene import ARM, page, world
+
+String = get_message("std_msgs/msg/String")
 
 
 async def test_groups_are_rows_that_hold_rows():
@@ -107,6 +110,22 @@ async def test_a_display_for_a_topic_takes_what_its_publishers_offer():
         await edit(client, "add_display", cls=cls, name="Found", group=None, topic="/found")
         assert publisher.get_subscription_count() == 1
         assert entries(made)[-1]["Topic"] == {"Reliability Policy": "Best Effort", "Value": "/found"}
+
+
+async def test_a_robot_is_added_by_the_topic_of_its_description():
+    async with opened() as (made, client):
+        qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node = made.graph.create_node("robot_state_publisher")
+        publisher = node.create_publisher(String, "/other/robot_description", qos)
+        publisher.publish(String(data='<robot name="other"><link name="base"/></robot>'))
+        await client.send("ask_display_choices")
+        topics = (await client.until("display_choices"))["topics"]
+        offered = next(each for each in topics if each["topic"] == "/other/robot_description")
+        cls = "rviz_default_plugins/RobotModel"
+        assert cls in offered["classes"]
+        await edit(client, "add_display", cls=cls, name="Other", group=None, topic="/other/robot_description")
+        assert entries(made)[-1]["Description Topic"]["Value"] == "/other/robot_description"
+        assert publisher.get_subscription_count() == 1
 
 
 async def test_removed_displays_leave_their_topics_and_come_back_the_same():

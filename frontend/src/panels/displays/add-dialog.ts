@@ -137,8 +137,10 @@ export class AddDialog {
     const listed = this.offered.topics.filter((each) => each.classes.length > 0 || this.showAll.checked);
     return listed.filter(matches).map((each) => {
       const { topic, message, classes } = each;
-      const rows = classes.map((cls) => this.choice(cls, topic, shortName(cls), aboutDisplay(cls)));
-      const obvious = rows[classes.indexOf(obviousDisplay(each) ?? "")];
+      const first = obviousDisplay(each);
+      const ordered = [...classes].sort((a, b) => Number(b === first) - Number(a === first));
+      const rows = ordered.map((cls) => this.choice(cls, topic, shortName(cls), aboutDisplay(cls)));
+      const [obvious] = rows;
       const name = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
       // The name stands for the display that everybody would take.
       for (const kind of ["click", "dblclick"] as const) {

@@ -155,6 +155,8 @@ class RobotModelDisplay(ViewerDisplay):
     """
 
     CLASS = "rviz_default_plugins/RobotModel"
+    MESSAGE = "std_msgs/msg/String"
+    TOPIC = ("Description Topic",)
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._rows: RobotRows | None = None
