@@ -144,6 +144,7 @@ def test_a_robot_that_was_broken_at_first_is_shown_without_axes_when_it_is_mende
     file.write_text(good.replace("</robot>", "<link/></robot>"))
     page = open_page(start("view", str(file)), wait=False)
     page.locator(".banner").wait_for()
+    page.locator(".waiting").wait_for(state="hidden")  # one thing is said, and the banner says it
     file.write_text(good)
     until(page, "lw.robot?.visuals > 0 && lw.ready")
     page.locator(".banner").wait_for(state="hidden")

@@ -27,6 +27,11 @@ export class DiagnosticsBanner {
     this.update();
   }
 
+  /** Whether a description is broken. */
+  get tellsError(): boolean {
+    return this.session.diagnostics.some(({ severity, code }) => severity === "error" && !NOT_OF_DESCRIPTIONS.test(code));
+  }
+
   private update(): void {
     const all = this.session.diagnostics;
     const errors = all.filter((item) => item.severity === "error");

@@ -61,8 +61,10 @@ export class ScenePanel implements Panel {
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
     const update = (): void => {
       const awaited = session.displays.displays.some(({ cls, enabled }) => enabled && cls.endsWith("/RobotModel"));
-      this.waiting.hidden = session.robot !== null || !awaited;
+      // Where a description is broken the banner says why none comes.
+      this.waiting.hidden = session.robot !== null || !awaited || banner.tellsError;
     };
+    session.diagnosticsChanged.on(update);
     session.robotChanged.on(update);
     session.displays.treeChanged.on(update);
     session.displays.enabledChanged.on(update);
