@@ -43,7 +43,7 @@ def test_unknown_command_names_the_nearest(capsys):
         (["--vesion"], "--version"),
         (["check", "r.urdf", "--strct"], "--strict"),
         (["topic", "echo", "/x", "--onec"], "--once"),
-        (["view", "r.urdf", "--pots=7500"], "--port"),
+        (["view", "r.urdf", "--prot=7500"], "--port"),
         (["--lang", "zh", "check", "r.urdf", "--strct"], "--strict"),
     ],
 )
