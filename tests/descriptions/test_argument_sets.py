@@ -223,6 +223,59 @@ def test_build_files(workspace: Path, text: str) -> None:
     assert values(sets(workspace, "arm/CMakeLists.txt", f"project(arm)\n{text}\n")) == [{"prefix": "c_"}]
 
 
+ROBOT_FILE = "PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro'])"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"""
+def content(arguments={{}}):
+    command = ['xacro ', {ROBOT_FILE}, ' ']
+    for key, value in arguments.items():
+        command.extend([f'{{key}}:=', value, ' '])
+    return Command(command)
+""",
+        f"""
+def content(words):
+    command = ['xacro ', {ROBOT_FILE}, ' ']
+    for word in words:
+        command.append(word)
+    return Command(command)
+""",
+        f"""
+def content(urdf_arguments={{}}):
+    urdf_arguments['plugin'] = 'p'
+    return expanded({ROBOT_FILE}, urdf_arguments)
+""",
+        f"def content(given):\n    return expanded({ROBOT_FILE}, {{'plugin': 'p', **given}})",
+        f"def content(given):\n    return expanded({ROBOT_FILE}, {{'plugin': 'p'}} | given)",
+        f"def content(name):\n    return expanded({ROBOT_FILE}, {{name: 'p'}})",
+        f"def content(given):\n    all = {{}}\n    all.update(given)\n    return expanded({ROBOT_FILE}, all)",
+        f"def content(given):\n    return xacro.process_file({ROBOT_FILE}, mappings=given)",
+    ],
+    ids=["extend", "append", "default", "stars", "or", "key", "update", "process_file"],
+)
+def test_a_helper_whose_callers_are_elsewhere_gives_nothing_that_is_known(workspace: Path, text: str) -> None:
+    (found,) = sets(workspace, "user/launch/helper.py", HEAD + text)
+    assert "" in found.open
+    assert not found.is_complete
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"command = ['xacro ', {ROBOT_FILE}, ' ']\ncommand.extend(['prefix:=', 'a_'])\nCommand(command)",
+        f"command = ['xacro ', {ROBOT_FILE}]\ncommand.append(' prefix:=a_')\nCommand(command)",
+        f"given = {{}}\ngiven.update({{'prefix': 'a_'}})\nexpanded({ROBOT_FILE}, given)",
+        f"words = LaunchConfiguration('words', default='prefix:=a_')\nCommand(['xacro ', {ROBOT_FILE}, ' ', words])",
+    ],
+    ids=["extend", "append", "update", "words"],
+)
+def test_what_a_list_or_mapping_gets_later_is_given(workspace: Path, text: str) -> None:
+    assert values(sets(workspace, "user/launch/later.launch.py", HEAD + text)) == [{"prefix": "a_"}]
+
+
 def test_a_call_without_arguments_is_an_empty_set(workspace: Path) -> None:
     text = """
 import xacro

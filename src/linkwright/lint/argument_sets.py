@@ -164,7 +164,9 @@ class SetCheck:
 
     def _remarked(self, default: _Run, common: frozenset[Key], sets: Sequence[ArgumentSet]) -> Checked:
         """The check with the defaults where callers give values that nobody can tell."""
-        names = dict.fromkeys(name for each in sets for name in each.open)
+        names = dict.fromkeys(name for each in sets for name in each.open if name)
+        if not names:
+            return self._without_callers(default)
         span = next(each.span for each in sets if each.open)
         notes = (Note(phrase("their values are only known when this runs"), span),)
         return self._only(

@@ -42,7 +42,8 @@ class ArgumentSet:
 
     Attributes:
         values: argument -> value.
-        open: the arguments that are given values which are only known when the program runs.
+        open: the arguments that are given values which are only known when the program runs; an empty name stands for
+            arguments of which not even the names are known.
         span: the call that gives them; None for those of a configuration.
         is_certain: whether they are known to be given together.
         varied: the arguments whose values differ from those that the same call gives by default.
@@ -141,6 +142,9 @@ class _Target:
             value = None if value is None else self._with_folders(value)
             if value is None:
                 missing.append(name)
+            elif not name:
+                words = (word.partition(":=") for word in value.split())
+                values.update((word, text) for word, sign, text in words if sign)
             else:
                 values[name] = _unquoted(value) if call.is_command else value
         return ArgumentSet(values, tuple(missing), call.span, is_certain)

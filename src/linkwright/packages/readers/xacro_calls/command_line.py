@@ -14,7 +14,10 @@ _WITH_VALUE = frozenset({"-o", "--output"})
 
 
 def xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
-    """The file and the arguments of a command line that calls xacro; None for any other."""
+    """The file and the arguments of a command line that calls xacro; None for any other.
+
+    What stands for words that cannot be told is an argument without a name.
+    """
     words = list(_words(line))
     start = next((at for at, word in enumerate(words) if _is_program(word)), None)
     if start is None:
@@ -33,6 +36,8 @@ def xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
             arguments[name] = _unquoted((*literal(value), *word[1:]))
         elif word and not first.startswith("-") and path is None and not _is_program(word):
             path = _unquoted(word)
+        elif word and not isinstance(word[0], str):
+            arguments[""] = (*arguments.get("", ()), *word, " ")
     return None if path is None else (path, arguments)
 
 

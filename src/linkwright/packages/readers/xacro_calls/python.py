@@ -10,7 +10,7 @@ from linkwright.packages.readers.python_values import PythonFile, argument_of, c
 from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall
 from linkwright.packages.readers.xacro_calls.command_line import xacro_command
 from linkwright.packages.readers.xacro_calls.python_scopes import Function, Scope, walk
-from linkwright.packages.readers.xacro_calls.python_texts import Entries, Items, PythonTexts, Value
+from linkwright.packages.readers.xacro_calls.python_texts import UNKNOWN_ENTRIES, Entries, Items, PythonTexts, Value
 from linkwright.packages.readers.xacro_calls.texts import Selection, Text, joined, resolve
 
 _ENDINGS = (".xacro", ".urdf")
@@ -105,8 +105,11 @@ class _Reader:
                 paths.append(value)
             elif isinstance(value, Entries) and mapping is None:
                 mapping = value.values
-        if paths and (mapping is not None or name in _WITHOUT_ARGUMENTS):
-            self._note((paths[0], dict(_texts_of(mapping or {}))), node)
+        if mapping is None and name in _WITHOUT_ARGUMENTS:
+            is_given = len(node.args) > 1 or argument_of(node, "mappings") is not None
+            mapping = UNKNOWN_ENTRIES if is_given else {}
+        if paths and mapping is not None:
+            self._note((paths[0], dict(_texts_of(mapping))), node)
 
     def _of_builder(self, node: ast.Call, scope: Scope) -> None:
         """``MoveItConfigsBuilder(...).robot_description(...)``."""

@@ -17,7 +17,7 @@ class Binding:
         value: the expression; None where there is none that could be read.
         path: which item of the value it is, for ``a, (b, c) = value``.
         is_item: whether the name gets the items of the value one after another, as in a loop.
-        is_added: whether the value is added to the one before, as by ``+=``.
+        is_added: whether the value is added to the one before, as by ``+=``, ``append``, ``extend`` and ``update``.
     """
 
     value: ast.expr | None
@@ -82,6 +82,16 @@ def _bind(node: ast.AST, scope: Scope) -> None:
         _bind_target(node.target, Binding(node.iter, is_item=True), scope)
     elif isinstance(node, ast.withitem) and node.optional_vars is not None:
         _bind_target(node.optional_vars, Binding(node.context_expr), scope)
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+        _bind_added(node.func, node.args, scope)
+
+
+def _bind_added(method: ast.Attribute, given: list[ast.expr], scope: Scope) -> None:
+    """Take what a list or mapping of this scope gets by ``append``, ``extend`` or ``update``."""
+    bindings = scope.names.get(method.value.id) if isinstance(method.value, ast.Name) else None
+    if bindings and len(given) == 1 and method.attr in ("append", "extend", "update"):
+        added = ast.copy_location(ast.List(given, ast.Load()), given[0]) if method.attr == "append" else given[0]
+        bindings.append(Binding(added, is_added=True))
 
 
 def _bind_target(target: ast.expr, binding: Binding, scope: Scope) -> None:

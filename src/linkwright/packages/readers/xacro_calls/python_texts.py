@@ -53,6 +53,8 @@ class Entries:
 
 Value = Union[Text, Items, Entries]  # noqa: UP007 - as for `Text`
 _OPEN: Text = (UNKNOWN,)
+UNKNOWN_ENTRIES: Mapping[str, Value] = {"": _OPEN}
+"""What a mapping may have that this file does not tell."""
 
 
 @dataclass(eq=False)
@@ -122,16 +124,18 @@ class PythonTexts:
         for key, value in zip(node.keys, node.values, strict=True):
             inner = self.value(value, scope)
             if key is None:
-                found.update(inner.values if isinstance(inner, Entries) else {})
+                found.update(_entries_of(inner))
             elif name := _plain(self.text(key, scope)):
                 found[name] = inner
+            else:
+                found.update(UNKNOWN_ENTRIES)
         return Entries(found)
 
     def _operation(self, node: ast.BinOp, scope: Scope) -> Value:
         left, right = self.value(node.left, scope), self.value(node.right, scope)
         if isinstance(node.op, ast.Div):
             return joined_path([_as_text(left), _as_text(right)])
-        if isinstance(node.op, ast.Add):
+        if isinstance(node.op, (ast.Add, ast.BitOr)):
             return _sum(left, right)
         if isinstance(node.op, ast.Mod) and (pattern := _plain(_as_text(left))):
             given = [*map(_as_text, right.values)] if isinstance(right, Items) else [_as_text(right)]
@@ -227,7 +231,7 @@ class PythonTexts:
                 value = _sum(value, self._bound(each, home))
         if isinstance(value, Entries) and name in home.entries:
             more = {_plain(self.text(key, home)) or "": self.value(item, home) for key, item in home.entries[name]}
-            value = Entries({**value.values, **more})
+            value = Entries({**value.values, **more, **(UNKNOWN_ENTRIES if "" in more else {})})
         return value
 
     def _bound(self, binding: Binding, scope: Scope) -> Value:
@@ -281,8 +285,9 @@ class PythonTexts:
             at = positions.index(name) if name in positions else len(call.args)
             written = argument_of(call, name) or (call.args[at] if at < len(call.args) else default)
             given.append(self.value(written, calling))
-        if not given:
-            return self.value(default, outer)
+        if not given:  # by what is not in this file
+            value = self.value(default, outer)
+            return Entries({**value.values, **UNKNOWN_ENTRIES}) if isinstance(value, Entries) else value
         return given[0] if len(given) == 1 else self._one_of(call, given)
 
     def _parametrized(self, node: ast.expr, scope: Scope) -> list[str]:
@@ -304,7 +309,13 @@ def _as_text(value: Value) -> Text:
     return _OPEN if isinstance(value, Entries) else value
 
 
+def _entries_of(value: Value) -> Mapping[str, Value]:
+    return value.values if isinstance(value, Entries) else UNKNOWN_ENTRIES
+
+
 def _sum(left: Value, right: Value) -> Value:
+    if isinstance(left, Entries):
+        return Entries({**left.values, **_entries_of(right)})
     if isinstance(left, Items) and isinstance(right, Items):
         return Items((*left.values, *right.values))
     if isinstance(left, tuple) and isinstance(right, tuple):
