@@ -31,10 +31,10 @@ def test_a_target_must_be_a_process(kind: type) -> None:
 
 
 def test_which_events_match() -> None:
-    process = Mock(spec=ExecuteProcess)
+    process = NonCallableMock(spec=ExecuteProcess)
     handler = OnProcessExit(target_action=process, on_exit=Mock())
     assert handler.matches(exited(process))
-    assert not handler.matches(exited(Mock(spec=ExecuteProcess)))
+    assert not handler.matches(exited(NonCallableMock(spec=ExecuteProcess)))
     assert not handler.matches(ProcessStarted(action=process, **ABOUT))  # type: ignore[arg-type]
     by_function = OnProcessExit(target_action=lambda action: action is process, on_exit=Mock())
     assert by_function.matches(exited(process))
