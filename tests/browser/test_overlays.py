@@ -24,6 +24,7 @@ OVERLAYS = (
     ".inspect-card",
     ".selection-card",
     ".line-notice:not([data-notice])",
+    "[data-notice=tool]",
     "[data-notice=owner]",
     "[data-notice=meshes]",
     ".voice-notice",
@@ -71,6 +72,7 @@ def test_nothing_that_lies_over_the_scene_lies_over_something_else(start, open_p
     page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
     page.locator(".selection-card").wait_for()
     unfold(page)
+    page.locator(".inspect > button").click()  # the clicks on rows have closed it
     file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     for width, height in SIZES:

@@ -258,17 +258,15 @@ export class Stage {
     this.focalShape.place(view);
     const { lighting } = this;
     for (const robot of this.robots()) robot.light = lighting;
-    let settled = true;
     let loading = "";
     const now = performance.now();
     for (const { display, drawing, pacing } of this.drawings.values()) {
       drawing.root.visible = display.enabled;
       if (!display.enabled) continue;
       if (pacing.due(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
-      const isThere = drawing.settled?.() ?? true;
-      settled &&= isThere;
-      if (!isThere) loading += ` ${display.id}`;
+      if (drawing.settled?.() === false) loading += ` ${display.id}`;
     }
+    const settled = loading === "";
     if (loading !== this.loading) {
       this.loading = loading;
       this.session.displays.statusChanged.emit(null);
