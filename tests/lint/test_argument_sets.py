@@ -155,7 +155,11 @@ def test_values_of_the_command_line_are_the_only_ones(check):
     assert ("error", "XML101") in codes(check(files, "arm/urdf/arm.urdf.xacro", "name:=a", "type:=lost"))
 
 
-def test_a_value_that_works_beside_another_is_no_error(check):
+DERIVED = ", ' config:=', PathJoinSubstitution(['config', LaunchConfiguration('type'), LaunchConfiguration('dof')])"
+
+
+@pytest.mark.parametrize("derived", ["", DERIVED], ids=["", "with a path made of both"])
+def test_a_value_that_works_beside_another_is_no_error(check, derived):
     launch = """
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
@@ -173,7 +177,8 @@ def generate_launch_description():
     files["arm/urdf/arm.urdf.xacro"] = arm.replace("</robot>", '<xacro:arg name="dof" default="0"/></robot>')
     files["arm/urdf/arm.urdf.xacro"] = arm
     files["arm/launch/view.launch.py"] = launch.replace(
-        "LaunchConfiguration('type'), ", "LaunchConfiguration('type'), ' dof:=', "
+        "LaunchConfiguration('type'), LaunchConfiguration('dof')",
+        "LaunchConfiguration('type'), ' dof:=', LaunchConfiguration('dof')" + derived,
     )
     found = check({**files, "arm/urdf/six_6.xacro": PART, "arm/urdf/seven_7.xacro": PART})
     assert codes(found) == [("info", "LINT303")]

@@ -130,7 +130,7 @@ class _Target:
             for taken, certain in variations(call.arguments.values(), file.choices, selection):
                 found = self._set(call, file, taken, is_certain=certain)
                 first = first or found
-                yield replace(found, varied=_differing(found, first))
+                yield replace(found, varied=_varied(call, found, first))
         if first is None and _is_open(call.path):
             yield self._set(call, file, Selection({}, given), is_certain=False)
 
@@ -224,8 +224,10 @@ def _is_open(path: Text) -> bool:
     return any(_is_open(piece.package) if isinstance(piece, Share) else isinstance(piece, Open) for piece in path)
 
 
-def _differing(one: ArgumentSet, other: ArgumentSet) -> tuple[str, ...]:
-    return tuple(name for name, value in one.values.items() if other.values.get(name) != value)
+def _varied(call: XacroCall, one: ArgumentSet, other: ArgumentSet) -> tuple[str, ...]:
+    """The arguments that differ; where some are a choice themselves, without paths and other texts made of choices."""
+    names = tuple(name for name, value in one.values.items() if other.values.get(name) != value)
+    return tuple(name for name in names if len(call.arguments.get(name, ())) == 1) or names
 
 
 def _unquoted(value: str) -> str:
