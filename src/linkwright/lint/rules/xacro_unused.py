@@ -8,6 +8,7 @@ to include are never reported on for that.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -234,9 +235,9 @@ class UnusedMacroParameter(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.calls_open:
             return  # macros that are called by a value of their name must all take the same parameters
+        shared = _shared_parameters(facts)
         for file in facts.own.values():
             for macro in file.macros:
-                shared = _parameters_of_others(macro, facts)
                 yield from (each for name, each in self._of_macro(macro, file, facts) if name not in shared)
 
     def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
@@ -261,15 +262,15 @@ class UnusedMacroParameter(XacroRule):
                 yield name, self.report(message, macro.element, "params", span=span, hint=hint)
 
 
-def _parameters_of_others(macro: Definition, facts: XacroFacts) -> set[str]:
-    """The parameters of other macros: one that several take is their convention, whoever needs it."""
-    return {
-        parameter.name.lstrip("*")
+def _shared_parameters(facts: XacroFacts) -> set[str]:
+    """The parameters that several macros take: these are their convention, whoever needs them."""
+    taken = Counter(
+        name
         for file in facts.files.values()
-        for other in file.macros
-        if other.element is not macro.element
-        for parameter in file.parameters(other.element)
-    }
+        for macro in file.macros
+        for name in {parameter.name.lstrip("*") for parameter in file.parameters(macro.element)}
+    )
+    return {name for name, count in taken.items() if count > 1}
 
 
 def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], bool]:
