@@ -17,6 +17,7 @@ from tests.browser.axe import violations
 from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import LiveViewer, configuration
 from tests.browser.test_modelling import modelled
+from tests.browser.test_overlays import unfold
 
 pytestmark = pytest.mark.browser
 
@@ -71,7 +72,10 @@ def test_the_page_of_a_robot_and_the_panels_of_its_description(start, open_page,
         box.click()
     page.get_by_role("treeitem").filter(has_text="Links").last.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
+    page.locator(".selection-card .provenance").wait_for(state="attached")
+    unfold(page)
     page.locator(".selection-card .provenance").wait_for()
+    page.locator(".inspect > button").click()  # the clicks on rows have closed it
     assert violations(page) == []
     for name in ("File", "Panels", "Share", "Colours"):
         page.get_by_role("button", name=name, exact=True).click()
