@@ -42,6 +42,7 @@ KNOWN: dict[str, str] = {
     "nodes/teleop/terminal.py": "add_reader msvcrt platform remove_reader termios",
     "packages/readers/cmake_language.py": "platform",
     "processors.py": "sched_getaffinity",
+    "scratch_folders.py": "O_DIRECTORY O_NOFOLLOW fcntl getuid platform",
     "shell/programs.py": "platform",
     "shell/session.py": "/bin/sh /dev/tty CDLL platform preexec_fn setpgid",
     "simulation/rendering/opengl.py": "platform",
@@ -54,6 +55,7 @@ KNOWN: dict[str, str] = {
     "wire/dds/participant.py": "/proc/self/ns/pid",
     "wire/dds/remote.py": "/proc/ kill",
     "wire/dds/settings.py": "fcntl if_nameindex platform",
+    "wire/multicast.py": "SO_REUSEPORT",
     "wire/zenoh/settings.py": "platform",
 }
 """Module -> what it uses of that. Whoever adds a line makes it work, or be left out, where that is not there."""
