@@ -16,6 +16,7 @@ export const values: typeof english = {
   Boxes: "立方体",
   Camera: "相机",
   "Cell Probability": "占据概率",
+  Color: "纯色",
   File: "文件",
   Fixed: "固定坐标系",
   "Flat Squares": "平面方块",
