@@ -7,22 +7,17 @@ number stops the robot.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite, isnan, nan
+from math import isfinite, isnan
 
-from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
-from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
+from linkwright.control.controllers.controller import ControllerError, InterfaceNames
+from linkwright.control.controllers.limited_drive import LimitedDrive, LimitedDriveParameters
 from linkwright.control.controllers.parameters import HUMBLE, above, parameter
 from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
-from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import DifferentialDrive
-from linkwright.messages import Header, Time, Vector3, get_message
-
-_NANOSECONDS = 1_000_000_000
-_NONE = (0.0,) * 6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,14 +28,7 @@ class LinearLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
-class AngularLimits:
-    """Limits of angular velocities."""
-
-    z: SpeedLimits = NO_LIMITS
-
-
-@dataclass(frozen=True, kw_only=True)
-class Parameters:
+class Parameters(LimitedDriveParameters):
     """Parameters of the controller."""
 
     left_wheel_names: tuple[str, ...] = parameter((), description="joints of the wheels on the left side")
@@ -51,25 +39,10 @@ class Parameters:
     wheel_separation_multiplier: float = parameter(1.0, description="corrects wheel_separation")
     left_wheel_radius_multiplier: float = parameter(1.0, description="corrects wheel_radius on the left")
     right_wheel_radius_multiplier: float = parameter(1.0, description="corrects wheel_radius on the right")
-    tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
-    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace where it is empty")
-    odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
-    base_frame_id: str = parameter("base_link", description="the frame of the robot")
-    pose_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the pose")
-    twist_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the velocity")
-    open_loop: bool = parameter(False, description="odometry by what wheels are told, not by what they do")
-    position_feedback: bool = parameter(True, description="odometry by positions of wheels, not by velocities")
-    enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
-    cmd_vel_timeout: float = parameter(0.5, description="how long a command holds, in seconds")
-    publish_limited_velocity: bool = parameter(False, description="whether ~/cmd_vel_out is published")
-    velocity_rolling_window_size: int = parameter(10, description="odometry tells the mean of so many velocities")
-    use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is not taken too", only=HUMBLE)
-    publish_rate: float = parameter(50.0, description="of odometry, in Hz")
     linear: LinearLimits = LinearLimits()
-    angular: AngularLimits = AngularLimits()
 
 
-class DiffDriveController(Controller[Parameters]):
+class DiffDriveController(LimitedDrive[Parameters]):
     """A differential drive: wheel velocities from the commanded velocity, and odometry from the wheels."""
 
     PARAMETERS = Parameters
@@ -91,40 +64,25 @@ class DiffDriveController(Controller[Parameters]):
         """The velocity forward in m/s, and around z in rad/s."""
         return ("linear/velocity", "angular/velocity")
 
+    def limits(self) -> Mapping[str, SpeedLimits]:
+        """Those forward and around z."""
+        return {"linear.x": self.parameters.linear.x, "angular.z": self.parameters.angular.z}
+
     def on_configure(self) -> None:
         """Check the parameters, make the topics.
 
         Raises:
-            ControllerError: wheels or their sizes are missing, or limits are none.
+            ControllerError: wheels or their sizes are missing, or a limit is wrong.
         """
-        said, node = self.parameters, self.node
-        self._said = said
         self._check_wheels()
-        radius = said.wheel_radius
+        said = self.parameters
         self._drive = DifferentialDrive(
             said.wheel_separation_multiplier * said.wheel_separation,
-            said.left_wheel_radius_multiplier * radius,
-            said.right_wheel_radius_multiplier * radius,
+            said.left_wheel_radius_multiplier * said.wheel_radius,
+            said.right_wheel_radius_multiplier * said.wheel_radius,
         )
-        self._limiters = said.linear.x.limiter("linear.x"), said.angular.z.limiter("angular.z")
-        unstamped = "" if said.use_stamped_vel else "~/cmd_vel_unstamped"
-        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=said.cmd_vel_timeout, unstamped=unstamped)
-        prefix = frame_prefix(node, said.tf_frame_prefix, enabled=said.tf_frame_prefix_enable)
-        self._odometry = DriveOdometry(
-            node,
-            "~/odom",
-            "/tf",
-            frame=prefix + said.odom_frame_id,
-            child=prefix + said.base_frame_id,
-            of_pose=variances("pose_covariance_diagonal", said.pose_covariance_diagonal),
-            of_velocity=variances("twist_covariance_diagonal", said.twist_covariance_diagonal),
-            tells_transforms=said.enable_odom_tf,
-            window=said.velocity_rolling_window_size,
-            rate=said.publish_rate,
-        )
-        self._odometry.serve(node)
-        limited = said.publish_limited_velocity
-        self._limited = node.publisher("geometry_msgs/msg/TwistStamped", "~/cmd_vel_out") if limited else None
+        super().on_configure()
+        self._odometry.serve(self.node)
 
     def _check_wheels(self) -> None:
         said = self.parameters
@@ -143,22 +101,6 @@ class DiffDriveController(Controller[Parameters]):
             wrong = above(0.0)(name, getattr(said, name))
             if wrong is not None:
                 raise ControllerError(wrong)
-
-    def on_activate(self) -> None:
-        """Start at rest, and take commands."""
-        for limiter in self._limiters:
-            limiter.restart()
-        for reference in self.references:
-            reference.value = nan
-        self._odometry.odometer.stand()
-        self._angles: tuple[float, float] | None = None
-        self._input.open()
-
-    def on_deactivate(self) -> None:
-        """Stop the wheels."""
-        self._input.close()
-        for command in self.commands:
-            command.value = 0.0
 
     def update_references(self, time_ns: int, period_s: float) -> None:
         """Copy the command into the references; zero where it is missing or too old."""
@@ -185,11 +127,7 @@ class DiffDriveController(Controller[Parameters]):
             self._odometry.odometer.assume((forward, 0.0, turning), period_s)
         else:
             self._measure(period_s, moves=forward != 0.0 or turning != 0.0)
-        self._odometry.tell(time_ns)
-        if self._limited is not None and self._limited.is_wanted:
-            twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, 0.0, 0.0), Vector3(0.0, 0.0, turning))
-            header = Header(Time(*divmod(time_ns, _NANOSECONDS)), "")
-            self._limited.publish(get_message("geometry_msgs/msg/TwistStamped")(header, twist))
+        self._publish(time_ns, forward, 0.0, turning)
 
     def _measure(self, period_s: float, *, moves: bool) -> None:
         """Update the odometry by the mean of each side's wheels; unknown states are tolerated until it moves."""
@@ -207,10 +145,7 @@ class DiffDriveController(Controller[Parameters]):
                     index=wrong % count,
                 )
             )
-        if self._said.position_feedback:
-            before, self._angles = self._angles or (left, right), (left, right)
-            if period_s <= 0.0:
-                return
-            left, right = (left - before[0]) / period_s, (right - before[1]) / period_s
-        forward, turning = self._drive.motion(left, right)
-        self._odometry.odometer.measure((forward, 0.0, turning), period_s)
+        speeds = self._speeds([left, right], period_s)
+        if speeds is not None:
+            forward, turning = self._drive.motion(*speeds)
+            self._odometry.odometer.measure((forward, 0.0, turning), period_s)

@@ -1,0 +1,124 @@
+"""The base of drives that take ``~/cmd_vel`` within limits: topics, odometry, and the parameters that they share.
+
+Source: diff_drive_controller of ros2_controllers, after which Husarion's mecanum controller was made.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import nan
+from typing import Generic, TypeVar
+
+from linkwright.control.controllers.controller import Controller
+from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
+from linkwright.control.controllers.parameters import HUMBLE, parameter
+from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
+from linkwright.control.controllers.velocity_input import VelocityInput
+from linkwright.messages import Header, Time, Vector3, get_message
+
+_NANOSECONDS = 1_000_000_000
+_NONE = (0.0,) * 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class AngularLimits:
+    """Limits of angular velocities."""
+
+    z: SpeedLimits = NO_LIMITS
+
+
+_ANGULAR = AngularLimits()
+
+
+@dataclass(frozen=True, kw_only=True)
+class LimitedDriveParameters:
+    """Parameters of all drives with limits."""
+
+    tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
+    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace where it is empty")
+    odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
+    base_frame_id: str = parameter("base_link", description="the frame of the robot")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the pose")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the velocity")
+    open_loop: bool = parameter(False, description="odometry from the commands of the wheels, not from their states")
+    position_feedback: bool = parameter(True, description="odometry from positions of the wheels, not from velocities")
+    enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
+    cmd_vel_timeout: float = parameter(0.5, description="how long a command holds, in seconds")
+    publish_limited_velocity: bool = parameter(False, description="whether ~/cmd_vel_out is published")
+    velocity_rolling_window_size: int = parameter(10, description="odometry has the mean of so many velocities")
+    use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is left out", only=HUMBLE)
+    publish_rate: float = parameter(50.0, description="of odometry, in Hz")
+    angular: AngularLimits = _ANGULAR
+
+
+P = TypeVar("P", bound=LimitedDriveParameters)
+
+
+class LimitedDrive(Controller[P], Generic[P]):
+    """A drive that follows ``~/cmd_vel`` within limits and publishes its odometry."""
+
+    @abstractmethod
+    def limits(self) -> Mapping[str, SpeedLimits]:
+        """The limits of each axis that it moves along or around, by name, such as ``linear.x``."""
+
+    def on_configure(self) -> None:
+        """Make the limiters and the topics.
+
+        Raises:
+            ControllerError: a limit or a list of variances is wrong.
+        """
+        said, node = self.parameters, self.node
+        self._said = said
+        self._limiters = [limits.limiter(axis) for axis, limits in self.limits().items()]
+        unstamped = "" if said.use_stamped_vel else "~/cmd_vel_unstamped"
+        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=said.cmd_vel_timeout, unstamped=unstamped)
+        prefix = frame_prefix(node, said.tf_frame_prefix, enabled=said.tf_frame_prefix_enable)
+        self._odometry = DriveOdometry(
+            node,
+            "~/odom",
+            "/tf",
+            frame=prefix + said.odom_frame_id,
+            child=prefix + said.base_frame_id,
+            of_pose=variances("pose_covariance_diagonal", said.pose_covariance_diagonal),
+            of_velocity=variances("twist_covariance_diagonal", said.twist_covariance_diagonal),
+            tells_transforms=said.enable_odom_tf,
+            window=said.velocity_rolling_window_size,
+            rate=said.publish_rate,
+        )
+        limited = said.publish_limited_velocity
+        self._limited = node.publisher("geometry_msgs/msg/TwistStamped", "~/cmd_vel_out") if limited else None
+
+    def on_activate(self) -> None:
+        """Start at rest, and take commands."""
+        for limiter in self._limiters:
+            limiter.restart()
+        for reference in self.references:
+            reference.value = nan
+        self._odometry.odometer.stand()
+        self._angles: list[float] | None = None
+        self._input.open()
+
+    def on_deactivate(self) -> None:
+        """Stop the wheels."""
+        self._input.close()
+        for command in self.commands:
+            command.value = 0.0
+
+    def _speeds(self, values: list[float], period_s: float) -> list[float] | None:
+        """The speeds of wheels in rad/s from what is measured, or None where no time has passed since."""
+        if not self._said.position_feedback:
+            return values
+        before, self._angles = self._angles or values, values
+        if period_s <= 0.0:
+            return None
+        return [(now - then) / period_s for now, then in zip(values, before, strict=True)]
+
+    def _publish(self, time_ns: int, forward: float, sideways: float, turning: float) -> None:
+        """Publish the odometry, and the velocity within the limits, in m/s and rad/s, where that is asked for."""
+        self._odometry.tell(time_ns)
+        if self._limited is not None and self._limited.is_wanted:
+            twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
+            header = Header(Time(*divmod(time_ns, _NANOSECONDS)), "")
+            self._limited.publish(get_message("geometry_msgs/msg/TwistStamped")(header, twist))
