@@ -26,7 +26,8 @@ def test_every_model_can_be_fetched_and_checked(entry):
 
 def test_a_name_that_is_not_there_is_told_with_one_that_is_near():
     with pytest.raises(LinkwrightError) as caught:
-        model_entry("vsok-en")
+        model_entry("vosk-cn")
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "MODEL101"
     assert "vosk-en" in str(diagnostic.hint)
+    assert "vosk-zh" in str(diagnostic.hint)

@@ -45,10 +45,7 @@ def port(text: str) -> int:
     Raises:
         argparse.ArgumentTypeError: when it is none.
     """
-    value = positive_int(text)
-    if value > _LAST_PORT:
-        raise argparse.ArgumentTypeError(f"value must be from 1 to {_LAST_PORT}")
-    return value
+    return _up_to(_LAST_PORT, text)
 
 
 def time_to_live(text: str) -> int:
@@ -57,9 +54,13 @@ def time_to_live(text: str) -> int:
     Raises:
         argparse.ArgumentTypeError: when it is none.
     """
+    return _up_to(_LONGEST_TTL, text)
+
+
+def _up_to(most: int, text: str) -> int:
     value = positive_int(text)
-    if value > _LONGEST_TTL:
-        raise argparse.ArgumentTypeError(f"value must be from 1 to {_LONGEST_TTL}")
+    if value > most:
+        raise argparse.ArgumentTypeError(f"value must be from 1 to {most}")
     return value
 
 

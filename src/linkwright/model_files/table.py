@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
@@ -74,6 +74,6 @@ def model_entry(name: str) -> ModelEntry:
     """
     entry = model_table().get(name)
     if entry is None:
-        hint = did_you_mean(name, model_table()) or phrase("`linkwright models list` prints those that there are")
+        hint = did_you_mean(name, model_table()) or phrase("there are: {names}", names=joined(model_table()))
         raise LinkwrightError(Diagnostic("MODEL101", phrase("there is no model '{name}'", name=name), hint=hint))
     return entry

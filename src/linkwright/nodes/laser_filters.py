@@ -117,6 +117,8 @@ def read_chain(node: Node) -> list[ScanFilter]:
     """
     numbers = {int(match[1]) for name in node.undeclared_overrides() if (match := _FILTER.match(name))}
     count = next(number for number in range(1, len(numbers) + 2) if number not in numbers) - 1
+    for number in sorted(each for each in numbers if each > count):
+        node.get_logger().warning(f"'filter{number}' is not used: the chain ends before 'filter{count + 1}'")
     chain = []
     for number in range(1, count + 1):
         prefix = f"filter{number}."
