@@ -32,7 +32,7 @@ export interface NavigationState {
   type: "navigation_state";
 }
 
-/** Whether the last goal failed, to be told over the scene. */
+/** Whether the last goal failed, which is shown over the scene. */
 export interface GoalOutcome {
   reason: string;
   failed: boolean;

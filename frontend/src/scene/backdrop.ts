@@ -3,7 +3,7 @@ import type { Theme } from "../state/theme";
 
 /** Squares along each side in which colours are computed; between their corners nobody sees a difference. */
 const SQUARES = 24;
-/** Before everything else. */
+/** The render order of the backdrop: drawn before everything else. */
 const FIRST = -1000;
 
 /** 0xrrggbb; `ground` far below. */
@@ -13,7 +13,7 @@ interface Colors {
   readonly ground: number;
 }
 
-/** Of middling brightness where robots stand, so that black ones are seen, and white ones. */
+/** Of medium brightness where robots stand, so that both black and white ones stand out. */
 const COLORS: Readonly<Record<Theme, Colors>> = {
   light: { zenith: 0xbccbda, horizon: 0xeef2f5, ground: 0xaeb7c0 },
   dark: { zenith: 0x39424d, horizon: 0x77828e, ground: 0x545d67 },

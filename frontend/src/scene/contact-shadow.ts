@@ -13,7 +13,7 @@ const [NEAR, FAR] = [0.05, 0.35];
 const FROM_AFAR = 0.35;
 /** Texels to each side that shade spreads, as often as given. */
 const [SPREAD, TIMES] = [2, 3];
-/** Of transparent things it is the first: lines on the ground are seen on it. */
+/** Drawn first of the transparent objects, so that lines on the ground lie over it. */
 const FIRST = -1;
 
 const place = new Vector3();

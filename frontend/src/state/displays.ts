@@ -91,7 +91,7 @@ export class DisplaysState {
   globalOptions = new PropertyRows([]);
   globalStatus: readonly StatusRow[] = [];
   globalLevel: StatusLevel = "ok";
-  /** Whether the server has told of displays. */
+  /** Whether the server has sent the displays. */
   known = false;
   /** Whether something of a display is still being loaded, such as its meshes; the scene knows. */
   isLoading: (display: DisplayState) => boolean = () => false;

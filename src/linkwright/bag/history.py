@@ -144,7 +144,7 @@ class _Track:
         return len(data) - len(packed)
 
     def _place(self, number: int) -> int | None:
-        """Where a message is, by its number; None where it is no longer."""
+        """The index of a message, by its number; None when it has been dropped."""
         place = bisect_left(self.kept, number, lo=self.first, key=lambda each: each[1])
         return place if place < len(self.kept) and self.kept[place][1] == number else None
 

@@ -1,4 +1,4 @@
-"""What a message says but for its stamps, by which a stream that only repeats itself is known."""
+"""The content of messages without their stamps, to detect a stream that only repeats itself."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _LITTLE = 1
 
 
 class Content(NamedTuple):
-    """The content of a message.
+    """The content of a message without its stamps.
 
     Attributes:
-        what: what of its topic it tells of: of transforms the frames, since many publish on their topic.
-        state: what it says of that, stamps left out.
+        what: what it is about: the frames of transforms, since many nodes publish on their topic; else empty.
+        state: the serialized values without stamps.
     """
 
     what: str
@@ -29,7 +29,7 @@ class Content(NamedTuple):
 def content_of(type_name: str, data: bytes) -> Content | None:
     """The content of a message of a type that begins with a header, or of transforms; None of any other.
 
-    Messages without a stamp tell of events: that two of them are equal does not say that nothing happened.
+    Messages without a stamp report events: two equal ones do not mean that nothing happened.
     """
     if type_name == _TRANSFORMS:
         return _content_of_transforms(data)
@@ -47,7 +47,7 @@ def _begins_with_header(type_name: str) -> bool:
 
 
 def _content_of_transforms(data: bytes) -> Content | None:
-    """The frames and the poses; None where the bytes are of the other order, or end too early."""
+    """The frames and the poses; None where the bytes are big-endian or end too early."""
     if len(data) < 2 * _CAPSULE or data[1] != _LITTLE:
         return None
     state = bytearray(data[_CAPSULE:])

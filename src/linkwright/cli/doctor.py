@@ -64,7 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.wire.unfollowed import untold_settings
 
     frames = _fixed_frames(arguments)
-    settings = untold_settings()  # told of with the rest, and not while joining
+    settings = untold_settings()  # reported with the other findings, not while joining
 
     async def job(session: Session) -> int:
         if arguments.format == "text":

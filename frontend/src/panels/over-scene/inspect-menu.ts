@@ -106,7 +106,7 @@ export class InspectMenu {
     this.showFacts();
   }
 
-  /** What of the invisible the robot does not have; its mass, and each link that is implausible: a click selects it. */
+  /** Shows what the robot lacks, its mass, and each implausible link, which a click selects. */
   private showFacts(): void {
     const missing = this.missing().map((text) => h("div", { class: "missing" }, text));
     this.facts.replaceChildren(...missing, ...this.massFacts());

@@ -3,9 +3,9 @@ import type { Vector } from "../../state/views/vector";
 
 /** Points of a surface. */
 const POINTS = 320;
-/** Of so many one is enough to see all of a robot. */
+/** One sample in so many is enough to frame a robot. */
 const FEWER = 4;
-/** Their places in triangles are those of a sequence that fills them evenly. */
+/** Steps of the R2 sequence, which fills a triangle evenly. */
 const [STEP_A, STEP_B] = [0.7548776662, 0.5698402909];
 
 /** Points that are spread evenly over a surface. */

@@ -65,7 +65,7 @@ export class MeasureTool implements SceneTool {
     return this.start && this.end ? distanceBetween(this.start, this.end) : null;
   }
 
-  /** A drag that ends where nothing is was none of its business. */
+  /** A drag that ends over empty space is not for it. */
   private released(point: Vector | null, isClick: boolean): void {
     if (point) this.clicked(point);
     if (point || isClick) this.context.tell(point ? "" : strings.tools.hints.nothingThere);

@@ -33,7 +33,7 @@ export interface ToolContext {
   /** Its settings; null of the tool that is there before the server told of any. */
   readonly state: ToolState | null;
   setHint(text: string): void;
-  /** Tells over the scene why it did not do what was asked; an empty text takes that back. */
+  /** Shows over the scene why it did not do what was asked; an empty text clears that. */
   tell(text: string): void;
   /** A CSS cursor. */
   setCursor(cursor: string): void;

@@ -53,7 +53,7 @@ class NavigationState(ServerMessage):
 
 
 class GoalOutcome(ServerMessage):
-    """Whether the last goal failed, to be told over the scene.
+    """Whether the last goal failed, which is shown over the scene.
 
     Attributes:
         reason: the last error of the node that gave it up, or why it was not sent; empty where none is known.
