@@ -33,6 +33,7 @@ import { JointTablePanel } from "./panels/joints/joint-table-panel";
 import { JointsPanel } from "./panels/joints/joints-panel";
 import { WorldCommands } from "./panels/modelling/world-commands";
 import { WorldPanel } from "./panels/modelling/world-panel";
+import { keepSearches } from "./panels/kept-searches";
 import { livePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
@@ -71,7 +72,7 @@ import { TitleBar } from "./shell/title-bar";
 import { Session } from "./state/session";
 import { ThemeState } from "./state/theme";
 import { browserStorage } from "./storage";
-import { language } from "./strings";
+import { language, languageChosen } from "./strings";
 import { matches, SHORTCUTS } from "./widgets/shortcuts";
 
 const CLOSING_MS = 2000;
@@ -90,6 +91,7 @@ function start(app: HTMLElement): void {
     if (!document.hidden) connection.hurry();
   });
   const session = new Session(connection);
+  languageChosen.on(() => session.kept.leave());
 
   const sheet = new KeySheet(session.tools);
   let modeller: Modeller | null = null;
@@ -105,7 +107,7 @@ function start(app: HTMLElement): void {
   const dockBox = h("main", { class: "dock" });
   app.append(dockBox);
   const [source, diagram] = [new SourcePanel(session), new DiagramPanel(session)];
-  const dock = new Dock(dockBox, [
+  const panels = [
     scene,
     new DisplaysPanel(session),
     new ViewsPanel(session),
@@ -124,7 +126,9 @@ function start(app: HTMLElement): void {
     new EditingPanel(session),
     new VoicePanel(session.voice, session.words),
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
-  ], new Layouts(browserStorage()), browserStorage());
+  ];
+  keepSearches(panels, session.kept);
+  const dock = new Dock(dockBox, panels, new Layouts(browserStorage()), browserStorage());
   keepCurrent(dock, session);
   new FilePanels(connection, dock);
 

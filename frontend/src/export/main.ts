@@ -18,7 +18,7 @@ import { noWebgl } from "../shell/no-webgl";
 import { Session } from "../state/session";
 import { ThemeState } from "../state/theme";
 import { browserStorage } from "../storage";
-import { language, strings } from "../strings";
+import { language, languageChosen, strings } from "../strings";
 import { RecordedConnection } from "./recorded-connection";
 import { RecordedFiles } from "./recorded-files";
 import { readRecording } from "./recording";
@@ -35,7 +35,10 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   const { display } = recording;
   const connection = new RecordedConnection(recording);
   const session = new Session(connection);
+  languageChosen.on(() => session.kept.leave());
   connection.open();
+  const { joints } = session;
+  session.kept.part("positions", () => joints.positions, (positions) => joints.move(positions));
 
   const container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
   const column = new CardColumn();

@@ -212,7 +212,6 @@ export class Stage {
       drawing.dispose();
       this.drawings.delete(id);
     }
-    this.session.selection.drop((item) => displays.some((display) => display.id === item.display));
     for (const display of displays) {
       const known = this.drawings.get(display.id);
       const Drawing = DRAWINGS.get(display.drawing);
@@ -231,6 +230,7 @@ export class Stage {
       }
     }
     this.globalOptionsChanged();
+    this.selectionChanged();
   }
 
   private propertiesChanged(display: DisplayState): void {

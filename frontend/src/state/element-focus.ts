@@ -1,6 +1,7 @@
 import type { RobotScene } from "../protocol";
 import { Signal } from "../signal";
 import type { ElementName } from "./description-model";
+import type { Kept } from "./kept";
 import type { SelectionState } from "./selection";
 
 /**
@@ -21,6 +22,11 @@ export class ElementFocus {
       if (this.joint && this.linkOf(this.joint) !== selection.selected?.link.name) this.joint = null;
       this.changed.emit();
     });
+  }
+
+  /** Has the joint that is selected outlive the page. */
+  keep(kept: Kept): void {
+    kept.part("joint", () => this.joint, (joint) => (this.joint = joint));
   }
 
   get current(): ElementName | null {

@@ -1,6 +1,7 @@
 import type { Connection } from "../connection/connection";
 import type { JointControl } from "../protocol";
 import { Signal } from "../signal";
+import type { Kept } from "./kept";
 
 /** Joints in one message: the server takes messages of 64 KiB. */
 const MOST_AT_ONCE = 200;
@@ -28,6 +29,11 @@ export class JointsState {
   ) {
     connection.on("joints", ({ controls }) => this.setControls(controls));
     connection.on("joint_positions", ({ positions }) => this.setPositions(positions));
+  }
+
+  /** Has it outlive the page that links are dragged. */
+  keep(kept: Kept): void {
+    kept.part("hands on", () => this.handsOn, (on) => (this.handsOn = on));
   }
 
   /** Moves joints, rad or m: at once, and what follows within an animation frame as one. */

@@ -1,5 +1,6 @@
 import type { JointDetails, LinkDetails } from "../protocol";
 import type { DescriptionModel } from "./description-model";
+import type { Kept } from "./kept";
 
 /** A link in the tree, and the joint it hangs from. */
 export interface TreeRow {
@@ -14,6 +15,11 @@ export interface TreeRow {
 /** Which links are folded. Links are known by name, so that a reload leaves the tree as it was. */
 export class LinkTreeState {
   private folded = new Set<string>();
+
+  /** Has the folds outlive the page. */
+  keep(kept: Kept): void {
+    kept.part("folded links", () => [...this.folded], (links) => (this.folded = new Set(links)));
+  }
 
   isFolded(link: string): boolean {
     return this.folded.has(link);

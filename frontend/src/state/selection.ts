@@ -1,5 +1,6 @@
 import type { LinkScene, RobotScene } from "../protocol";
 import { Signal } from "../signal";
+import type { Kept } from "./kept";
 
 /** A thing of a display: a link, a marker, a point; `key` is what the display's drawing calls it. */
 export interface SelectedItem {
@@ -23,6 +24,11 @@ export class SelectionState {
   private link: SelectedLink | null = null;
 
   constructor(private readonly robots: ReadonlyMap<string, RobotScene>) {}
+
+  /** Has the selection outlive the page. */
+  keep(kept: Kept): void {
+    kept.part("selection", () => this.current, (items) => (this.current = items));
+  }
 
   get items(): readonly SelectedItem[] {
     return this.current;

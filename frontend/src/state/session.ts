@@ -14,6 +14,7 @@ import { ElementFocus } from "./element-focus";
 import { FrameStore } from "./frames";
 import { InspectState } from "./inspect";
 import { JointsState } from "./joints";
+import { Kept } from "./kept";
 import { MeshProgress } from "./mesh-progress";
 import { Modelling } from "./modelling/modelling";
 import { MonitorState } from "./monitor/monitor";
@@ -64,6 +65,7 @@ export class Session {
   readonly inspect = new InspectState(browserStorage());
   readonly poses = new PoseStore(browserStorage());
   readonly angles = new AngleUnits(browserStorage());
+  readonly kept = new Kept(browserStorage("sessionStorage"));
   readonly monitor: MonitorState;
   readonly voice: VoiceState;
   readonly words: WordsState;
@@ -94,6 +96,14 @@ export class Session {
     };
     this.displays.treeChanged.on(followFixedFrame);
     this.displays.valueChanged.on(followFixedFrame);
+    this.keep();
+  }
+
+  /** What is this page's alone outlives it. */
+  private keep(): void {
+    const { kept } = this;
+    kept.part("program", () => this.program, (program) => (this.program = program));
+    for (const each of [this.view, this.selection, this.focus, this.tools, this.joints]) each.keep(kept);
   }
 
   /** The user edits a property: shown at once, and told to the server. */
@@ -128,6 +138,7 @@ export class Session {
     connection.on("tree", (message) => {
       this.displays.setTree(message);
       for (const id of this.robots.keys()) if (!this.displays.find(id)) this.robots.delete(id);
+      this.selection.drop(({ display }) => this.displays.find(display) !== undefined);
     });
     connection.on("display_properties", ({ display, properties }) => this.displays.setRows(display, properties));
     connection.on("property_changed", ({ id, value, options }) => this.displays.setValue(id, value, options));

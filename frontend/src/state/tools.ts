@@ -1,6 +1,7 @@
 import type { Connection } from "../connection/connection";
 import type { PropertyValue, Tool, ToolClass } from "../protocol";
 import { Signal } from "../signal";
+import type { Kept } from "./kept";
 import { PropertyNode, PropertyRows } from "./properties";
 
 /** One tool of the toolbar. */
@@ -35,10 +36,17 @@ export class ToolsState {
   classes: readonly ToolClass[] = [];
   private inHand: ToolState | null = null;
   private text = "";
+  /** The tool of the page that this one takes the place of. */
+  private before: string | null = null;
 
   constructor(private readonly connection: Connection) {
     connection.on("tools", ({ tools, classes }) => this.take(tools, classes));
     connection.on("tool_property_changed", ({ id, value }) => this.setValue(id, value));
+  }
+
+  /** Has the choice of the tool in hand outlive the page. */
+  keep(kept: Kept): void {
+    kept.part("tool", () => this.inHand?.id ?? null, (id) => (this.before = id));
   }
 
   get current(): ToolState | null {
@@ -87,7 +95,7 @@ export class ToolsState {
   }
 
   private take(tools: readonly Tool[], classes: readonly ToolClass[]): void {
-    const before = this.inHand?.id;
+    const before = this.inHand?.id ?? this.before;
     this.tools = tools.map((tool) => new ToolState(tool));
     this.classes = classes;
     this.inHand = this.tools.find((tool) => tool.id === before && tool.supported) ?? this.default;

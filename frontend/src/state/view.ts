@@ -2,6 +2,7 @@ import type { Connection } from "../connection/connection";
 import type { Property, PropertyValue, SavedView, View, ViewClass } from "../protocol";
 import { Signal } from "../signal";
 import type { FrameStore } from "./frames";
+import type { Kept } from "./kept";
 import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
 import { holds, spanInTarget } from "./views/fit";
@@ -90,6 +91,12 @@ export class ViewState {
   /** Nobody has said where the camera is, and there is something else than when it was last put before it. */
   awaitsFit(what: string): boolean {
     return this.lookedAt !== null && what !== this.lookedAt.what;
+  }
+
+  /** Has the camera outlive the page. */
+  keep(kept: Kept): void {
+    const read = () => ({ view: this.view, revision: this.revision, lookedAt: this.lookedAt });
+    kept.part("view", read, (before: ReturnType<typeof read>) => Object.assign(this, before));
   }
 
   /** The program was started again; with something else to look at, the camera begins anew. */

@@ -1,3 +1,4 @@
+import { Signal } from "../signal";
 import { browserStorage } from "../storage";
 import { en, type Strings } from "./en";
 import { zh } from "./zh";
@@ -17,8 +18,12 @@ export const language: Language = preferred();
 /** The page's words in the user's language. */
 export const strings: Strings = language === "zh" ? zh : en;
 
+/** The page is about to be shown anew in another language. */
+export const languageChosen = new Signal();
+
 /** Remembers the choice and shows the page anew. */
 export function chooseLanguage(next: Language): void {
   browserStorage().setItem(LANGUAGE_KEY, next);
+  languageChosen.emit();
   location.reload();
 }

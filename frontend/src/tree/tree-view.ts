@@ -1,5 +1,6 @@
 import { coalesced, h } from "../dom";
 import { Signal } from "../signal";
+import type { Kept } from "../state/kept";
 import { ColumnSplitter } from "./column-splitter";
 import type { TreeItem } from "./tree-item";
 import { TreeRow } from "./tree-row";
@@ -52,6 +53,15 @@ export class TreeView {
     this.others.clear();
     this.scrollTo = this.selectedKey;
     this.refresh();
+  }
+
+  /** Has it outlive the page which rows are open and selected. */
+  keep(kept: Kept, name: string): void {
+    const read = () => ({ expansion: [...this.expansion], selected: this.selectedKey });
+    kept.part(`tree ${name}`, read, ({ expansion, selected }: ReturnType<typeof read>) => {
+      for (const [key, expanded] of expansion) this.expansion.set(key, expanded);
+      this.scrollTo = this.selectedKey = selected;
+    });
   }
 
   /** Whether a row is in view whose value changes with what the page draws. */

@@ -29,6 +29,7 @@ export class LinksPanel implements Panel {
 
   constructor(private readonly session: Session) {
     const words = strings.description;
+    this.tree.keep(session.kept);
     this.search.type = "search";
     this.search.placeholder = words.search;
     this.search.setAttribute("aria-label", words.search);

@@ -31,6 +31,7 @@ export class DisplaysPanel implements Panel {
 
   constructor(private readonly session: Session) {
     this.tree = new TreeView(strings.panels.displays, () => this.items(), () => session.frames.names);
+    this.tree.keep(session.kept, this.id);
     this.commands = new DisplayCommands(session, () => this.selected, () => this.selectedAll);
     this.nothing.hidden = this.help.hidden = true;
     this.element = h("div", { class: "panel displays-panel" }, this.toolbar(), this.filterBar(), this.nothing, this.tree.element, this.help);

@@ -81,11 +81,14 @@ export class SweepBar {
 function handsOnSwitch(joints: JointsState): HTMLElement {
   const toggle = (): void => {
     joints.handsOn = !joints.handsOn;
+    show();
+  };
+  const element = button(strings.description.handsOn, toggle, "tool bare", icon("hand"));
+  const show = (): void => {
     element.classList.toggle("on", joints.handsOn);
     element.setAttribute("aria-pressed", String(joints.handsOn));
   };
-  const element = button(strings.description.handsOn, toggle, "tool bare", icon("hand"));
-  element.setAttribute("aria-pressed", "false");
+  show();
   return element;
 }
 

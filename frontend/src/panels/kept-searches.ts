@@ -1,0 +1,16 @@
+import type { Kept } from "../state/kept";
+import type { Panel } from "./panel";
+
+/** Has what is searched for in panels outlive the page. */
+export function keepSearches(panels: readonly Panel[], kept: Kept): void {
+  for (const { id, element } of panels) {
+    const fields = [...element.querySelectorAll<HTMLInputElement>("input[type=search]")];
+    if (fields.length === 0) continue;
+    kept.part(`searches ${id}`, () => fields.map(({ value }) => value), (texts) => {
+      for (const [i, field] of fields.entries()) {
+        field.value = texts[i] ?? "";
+        field.dispatchEvent(new Event("input"));
+      }
+    });
+  }
+}
