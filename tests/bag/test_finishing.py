@@ -14,7 +14,7 @@ from tests.waiting import SECONDS, wait_until
 
 FORMS = {
     "mcap": ("bag", {}),
-    "compressed": ("bag", {"compressed": True}),
+    "compressed": ("bag", {"compression": "storage"}),
     "sqlite3": ("bag", {"storage": "sqlite3"}),
     "file": ("bag.mcap", {"single_file": True}),
 }

@@ -35,7 +35,7 @@ def transform(child: str) -> bytes:
 def recorded(folder: Path, storage: str = "mcap", *, compressed: bool = False, chunk: int = 3) -> Path:
     """Twenty seconds: ``/a`` each second, ``/b`` each fourth, ``/tf`` twice a second, ``/tf_static`` at 0 and 9."""
     path = folder / "bag"
-    with BagWriter(path, storage, compressed=compressed) as writer:
+    with BagWriter(path, storage, compression="storage" if compressed else "none") as writer:
         for name, kind, qos in (
             ("/a", STRING, DEFAULT_QOS),
             ("/b", STRING, DEFAULT_QOS),

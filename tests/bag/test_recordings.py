@@ -89,7 +89,7 @@ def test_another_reader_understands_types_and_content(tmp_path: Path, storage: s
 def test_a_compressed_recording_is_smaller_and_reads_the_same(tmp_path: Path) -> None:
     (tmp_path / "plain").mkdir()
     (tmp_path / "small").mkdir()
-    plain, small = write(tmp_path / "plain", count=200), write(tmp_path / "small", count=200, compressed=True)
+    plain, small = write(tmp_path / "plain", count=400), write(tmp_path / "small", count=400, compression="storage")
     with BagReader(plain) as one, BagReader(small) as other:
         assert list(one.messages()) == list(other.messages())
         assert other.files[0].stat().st_size < one.files[0].stat().st_size / 2
@@ -236,7 +236,7 @@ def test_summary(tmp_path: Path) -> None:
         lines = summary_text(bag).splitlines()
         assert summary_text(bag, topic_names_only=True) == "/chatter\n/joint_states\n"
     assert lines[0] == ""
-    assert lines[1] == "Files:             bag.mcap"
+    assert lines[1] == "Files:             bag_0.mcap"
     assert lines[3] == "Storage id:        mcap"
     assert lines[4] == "Duration:          2.000000000s"
     assert lines[5].endswith("(1700000000.000000000)")
@@ -276,7 +276,7 @@ def test_a_file_that_was_cut_off_gives_the_chunks_that_are_whole(tmp_path: Path,
             writer.write("/chatter", START + number, serialize(String(data=f"number {number}")))
             if number % 100 == 99:
                 writer.flush()
-    file = path / "bag.mcap"
+    file = path / "bag_0.mcap"
     whole = file.read_bytes()
     file.write_bytes(whole[:-cut])
     with BagReader(path) as bag:
@@ -291,7 +291,7 @@ def test_info_and_play_say_that_a_recording_has_no_end(tmp_path: Path, capsys: p
     assert capsys.readouterr().err == ""
     with BagReader(path) as bag:
         assert not bag.findings
-    file = path / "bag.mcap"
+    file = path / "bag_0.mcap"
     file.write_bytes(file.read_bytes()[:-100])
     assert main(["bag", "info", str(path)]) == 0
     assert "warning[BAG109]" in capsys.readouterr().err

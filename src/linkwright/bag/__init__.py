@@ -13,11 +13,13 @@ if TYPE_CHECKING:
     from linkwright.bag.publishing import PublishedRecording
     from linkwright.bag.reading import BagReader, BagTopic
     from linkwright.bag.recorder import Recorder
+    from linkwright.bag.recorder_services import RecorderServices
     from linkwright.bag.selection import TopicSelection
     from linkwright.bag.summary import summary_text
-    from linkwright.bag.writing import STORAGES, BagWriter
+    from linkwright.bag.writing import COMPRESSIONS, STORAGES, BagWriter
 
 __all__ = [
+    "COMPRESSIONS",
     "FASTEST",
     "SLOWEST",
     "STORAGES",
@@ -32,6 +34,7 @@ __all__ = [
     "PlayerServices",
     "PublishedRecording",
     "Recorder",
+    "RecorderServices",
     "Recording",
     "TopicSelection",
     "is_recording",
@@ -48,9 +51,10 @@ __getattr__ = deferred(
         "publishing": ("PublishedRecording",),
         "reading": ("BagReader", "BagTopic"),
         "recorder": ("Recorder",),
+        "recorder_services": ("RecorderServices",),
         "selection": ("TopicSelection",),
         "summary": ("summary_text",),
-        "writing": ("STORAGES", "BagWriter"),
+        "writing": ("COMPRESSIONS", "STORAGES", "BagWriter"),
     },
 )
 """All that reads, writes or plays: many only ask whether a file is a recording."""

@@ -9,6 +9,9 @@ from pathlib import Path
 SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
 """The suffixes of the files of a recording, with the names of their storages."""
 
+METADATA = "metadata.yaml"
+"""The file that tells of the others in the folder of a recording."""
+
 ROS1 = ".bag"
 """The suffix of recordings of ROS 1, which are refused with a hint on converting them."""
 
@@ -17,6 +20,11 @@ PACKED = ".zstd"
 
 _NUMBERED = re.compile(r"(.+)_(0|[1-9][0-9]*)(\.mcap|\.db3)((?:\.zstd)?)")
 """The names that rosbag2 gives to the files of a recording; those that end with a time of day have a zero there."""
+
+
+def numbered(folder: Path, number: int, suffix: str) -> Path:
+    """The path of a file of a recording, as rosbag2 names it: the folder's name and the number, counted from 0."""
+    return folder / f"{Path(folder.absolute()).name}_{number}{suffix}"
 
 
 def storage_of(path: Path) -> str | None:
@@ -28,7 +36,13 @@ def is_recording(path: Path) -> bool:
     """Whether a path is that of a recording, by its names: of its file, or of the folder with its metadata or files."""
     if not path.is_dir():
         return storage_of(path) is not None or path.suffix == ROS1
-    return (path / "metadata.yaml").exists() or any(storage_of(each) is not None for each in path.iterdir())
+    return (path / METADATA).exists() or any(storage_of(each) is not None for each in path.iterdir())
+
+
+def in_order(files: Sequence[Path]) -> list[Path]:
+    """The files of a recording by their numbers."""
+    found = [(int(match[2]) if (match := _NUMBERED.fullmatch(each.name)) else 0, each) for each in files]
+    return [each for _, each in sorted(found)]
 
 
 def are_of_one_recording(files: Sequence[Path]) -> bool:

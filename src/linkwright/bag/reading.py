@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.bag.moments import Moments, Recorded
-from linkwright.bag.names import PACKED, are_of_one_recording, storage_of
+from linkwright.bag.names import METADATA, PACKED, are_of_one_recording, storage_of
 from linkwright.bag.qos import from_bag
 from linkwright.bag.scratch import scratch_folder
 from linkwright.bag.unfinished import is_unfinished, made_readable
@@ -198,6 +198,11 @@ class BagReader:
         return _files_in(self.path)
 
     @property
+    def compression(self) -> str:
+        """What is compressed besides chunks: ``file``, ``message``, or nothing."""
+        return "file" if self._targets[0].suffix == PACKED else str(self._reader.compression_mode or "")
+
+    @property
     def start_ns(self) -> int:
         """When the first message was received, nanoseconds since the epoch; 0 where there is none."""
         return self._reader.start_time if self._reader.message_count else 0
@@ -288,7 +293,7 @@ def _storage_targets(path: Path, called: str) -> list[Path]:
     """The paths for the library: the folder, or its files where the metadata are missing."""
     if not path.exists():
         raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=called)))
-    if path.is_file() or (path / "metadata.yaml").exists():
+    if path.is_file() or ((path / METADATA).exists() and not _lacks_ends(path)):
         return [path]
     if not path.is_dir():
         message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=called)
@@ -308,6 +313,12 @@ def _storage_targets(path: Path, called: str) -> list[Path]:
         "linkwright view FILE FILE ..."
     )
     raise LinkwrightError(Diagnostic("BAG102", message, hint=hint))
+
+
+def _lacks_ends(folder: Path) -> bool:
+    """Whether a recording of several files, which the library reads by its metadata, has one without its end."""
+    files = sorted(folder.glob("*.mcap"))
+    return len(files) > 1 and are_of_one_recording(files) and any(is_unfinished(each) for each in files)
 
 
 def _storage_of(target: Path) -> str:

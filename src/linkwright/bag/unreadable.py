@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import yaml
 
-from linkwright.bag.names import PACKED, ROS1
+from linkwright.bag.names import METADATA, PACKED, ROS1
 from linkwright.diagnostics import Phrase, foreign, phrase
 
 _MCAP, _SQLITE, _ZSTD = b"\x89MCAP0\r\n", b"SQLite format 3\0", b"\x28\xb5\x2f\xfd"
@@ -83,7 +83,7 @@ def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:
 def _missing_files(folder: Path) -> list[str]:
     """The names of files that a recording's metadata name and that are not there."""
     try:
-        metadata = yaml.safe_load((folder / "metadata.yaml").read_text(encoding="utf-8"))
+        metadata = yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))
         paths = metadata["rosbag2_bagfile_information"]["relative_file_paths"]
         names = [PurePath(each).name for each in paths]
     except (OSError, ValueError, yaml.YAMLError, KeyError, TypeError):

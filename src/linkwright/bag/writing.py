@@ -5,30 +5,37 @@ from __future__ import annotations
 import contextlib
 import sqlite3
 import threading
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from linkwright import unfinished
+from linkwright.bag.names import SUFFIXES, numbered
 from linkwright.bag.qos import to_bag
+from linkwright.bag.snapshots import LatestMessages
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, missing_extra, phrase
 from linkwright.messages import type_hash
 from linkwright.messages.schema_text import schema_of
-from linkwright.scratch_folders import ScratchFolder
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
+    from linkwright.bag.parts import Part
     from linkwright.graph import QoSProfile
 
 STORAGES = ("mcap", "sqlite3")
 """The file formats; the first is the default, as in ROS 2 from Iron on."""
 
+COMPRESSIONS = ("none", "file", "message", "storage")
+"""What is compressed with zstd: nothing, whole files, single messages, or the chunks of an MCAP file."""
+
+_SMALLEST_SPLITS = {"mcap": 1024, "sqlite3": 86016}
+"""The least bytes of a file that rosbag2's storages let be asked for."""
+
 _REFUSALS = (OSError, sqlite3.Error)
 """The errors of a full disk."""
 
-_VERSION: Literal[8] = 8
-"""The version of the metadata; Humble reads 8 and below but for unknown fields, Jazzy writes 9."""
+_NANOSECONDS_PER_SECOND = 1_000_000_000
 
 _LONGEST_WRITE = 30.0
 """Seconds that `BagWriter.finish` waits for another thread to write what it is writing: disks may be slow."""
@@ -37,64 +44,67 @@ _LONGEST_WRITE = 30.0
 class BagWriter:
     """A recording that is being written; close it, or use it in a ``with`` statement.
 
-    It gets its end however a signal ends the process, but for SIGKILL (`unfinished`).
+    It gets its end however a signal ends the process, but for SIGKILL (`unfinished`). Files are named and divided as
+    rosbag2's ``SequentialWriter`` does.
 
     Args:
         path: the folder to make; of a single file, the file.
         storage: one of `STORAGES`.
-        compressed: whether chunks of messages are compressed (zstd); MCAP only.
+        compression: one of `COMPRESSIONS`.
         single_file: whether there is an MCAP file alone, which needs no metadata beside it; rosbag2 makes a folder.
+        max_size: bytes after which another file is begun; 0 for one file.
+        max_seconds: seconds after which another file is begun; 0 for one file.
+        snapshot_size: where positive, nothing is written but by `take_snapshot`, and the last messages are kept in so
+            many bytes.
+        custom_data: what the metadata have besides.
 
     Raises:
-        LinkwrightError: BAG105, the folder exists already or cannot be made; BAG107, `rosbags` is not installed.
+        LinkwrightError: BAG105, the folder exists already or cannot be made; BAG107, `rosbags` is not installed;
+            BAG116, files are to be smaller than they can be.
+
+    Attributes:
+        path: as given.
+        on_split: called with the names of the file that was closed and the one that was begun.
     """
 
     def __init__(
-        self, path: str | Path, storage: str = STORAGES[0], *, compressed: bool = False, single_file: bool = False
+        self,
+        path: str | Path,
+        storage: str = STORAGES[0],
+        *,
+        compression: str = "none",
+        single_file: bool = False,
+        max_size: int = 0,
+        max_seconds: float = 0.0,
+        snapshot_size: int = 0,
+        custom_data: Mapping[str, str] | None = None,
     ) -> None:
         try:
-            from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
-            from rosbags.rosbag2.errors import WriterError
+            import rosbags.rosbag2  # noqa: F401  # whether it is there
         except ModuleNotFoundError as error:
             raise missing_extra("BAG107", error) from None
 
         self.path = Path(path)
+        self.on_split: Callable[[str, str], object] = lambda _closed, _begun: None
         self._is_file = single_file
-        plugin = StoragePlugin.MCAP if single_file else StoragePlugin[storage.upper()]
-        try:
-            self._writer = Writer(self.path, version=_VERSION, storage_plugin=plugin)
-            if compressed:
-                self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
-            if single_file:
-                self.path.parent.mkdir(parents=True, exist_ok=True)
-                into: Any = _File(self.path)
-                self._writer.storage = Writer.STORAGE_PLUGINS[plugin](into, self._writer.compression_mode)
-            else:
-                self._writer.open()
-        except (OSError, WriterError) as error:
-            reason = "it exists already" if self.path.exists() else str(error)
-            raise LinkwrightError(
-                Diagnostic(
-                    "BAG105",
-                    phrase(
-                        "recording '{path}' cannot be made: {reason}",
-                        path=display_path(self.path),
-                        reason=foreign(reason),
-                    ),
-                    hint=phrase("name another file") if single_file else phrase("name another folder"),
-                )
-            ) from error
-        self._connections: dict[str, Any] = {}
+        self._suffix = next(suffix for suffix, name in SUFFIXES.items() if name == storage)
+        self._compression = compression
+        self._max_size, self._max_ns = max_size, round(max_seconds * _NANOSECONDS_PER_SECOND)
+        self._custom_data = dict(custom_data or {})
+        self._latest = LatestMessages(snapshot_size) if snapshot_size else None
+        self._topics: dict[str, tuple[str, str, str, list[Any]]] = {}
+        self._done: list[dict[str, Any]] = []
         self._lock = threading.RLock()
         self._is_ending = False
-        if hasattr(self._writer.storage, "conn"):
-            _let_any_thread_close(self._writer.storage)
+        if 0 < max_size < _SMALLEST_SPLITS[storage]:
+            raise _too_small(max_size, _SMALLEST_SPLITS[storage])
+        self._part: Part | None = self._first_part()
         unfinished.begun(self)
 
     @property
     def topics(self) -> Collection[str]:
         """The topics added so far."""
-        return self._connections.keys()
+        return self._topics.keys()
 
     @property
     def size(self) -> int:
@@ -109,19 +119,18 @@ class BagWriter:
         Raises:
             LinkwrightError: MSG101, the type is not known; BAG108, the disk refuses.
         """
-        schema, digest, offered = schema_of(type_name), type_hash(type_name), [to_bag(qos) for qos in offered_qos]
+        facts = (type_name, schema_of(type_name), type_hash(type_name), [to_bag(qos) for qos in offered_qos])
         with self._lock:
-            if self._writer.storage is None:
+            if self._part is None:
                 return
             try:
-                self._connections[name] = self._writer.add_connection(
-                    name, type_name, msgdef=schema, rihs01=digest, offered_qos_profiles=offered
-                )
+                self._part.add_topic(name, *facts)
             except _REFUSALS as error:
                 raise self._ended(error) from error
+            self._topics[name] = facts
 
     def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
-        """Add a message.
+        """Add a message; with `snapshot_size`, keep it for a snapshot.
 
         Args:
             topic: a topic that was added.
@@ -134,10 +143,44 @@ class BagWriter:
         if self._is_ending:  # who finishes it waits for the lock, and who writes all the time might always get it
             return
         with self._lock:
-            if self._writer.storage is None:
+            if self._part is None:
+                return
+            if self._latest is not None:
+                self._latest.add(topic, stamp_ns, data)
                 return
             try:
-                self._writer.write(self._connections[topic], stamp_ns, data)
+                self._write(topic, stamp_ns, data)
+            except _REFUSALS as error:
+                raise self._ended(error) from error
+
+    def take_snapshot(self) -> bool:
+        """Write the messages that are kept; whether they are kept at all.
+
+        Raises:
+            LinkwrightError: BAG108, the disk refuses.
+        """
+        with self._lock:
+            if self._latest is None:
+                return False
+            for message in self._latest.taken():
+                if self._part is None:
+                    break
+                try:
+                    self._write(*message)
+                except _REFUSALS as error:
+                    raise self._ended(error) from error
+            self.flush()
+            return True
+
+    def split(self) -> None:
+        """Go on in another file; a single file, and a recording that is closed, go on as they are.
+
+        Raises:
+            LinkwrightError: BAG108, the disk refuses.
+        """
+        with self._lock:
+            try:
+                self._split()
             except _REFUSALS as error:
                 raise self._ended(error) from error
 
@@ -148,16 +191,10 @@ class BagWriter:
             LinkwrightError: BAG108, the disk refuses.
         """
         with self._lock:
-            storage: Any = self._writer.storage
-            if storage is None:
+            if self._part is None:
                 return
             try:
-                if hasattr(storage, "close_chunk"):
-                    if storage.chunk.msgs:
-                        storage.close_chunk()
-                    storage.bio.flush()
-                else:
-                    storage.conn.commit()
+                self._part.flush()
             except _REFUSALS as error:
                 raise self._ended(error) from error
 
@@ -167,16 +204,18 @@ class BagWriter:
         Raises:
             LinkwrightError: BAG108, the disk refuses.
         """
+        from linkwright.bag.parts import write_metadata
+
         with self._lock:
-            if self._writer.storage is None:
+            if self._part is None:
                 return
             try:
-                if self._is_file:
-                    self._close_file()
-                else:
-                    self._writer.close()
+                self._done.append(self._part.close())
+                if not self._is_file:
+                    write_metadata(self.path, self._done)
             except _REFUSALS as error:
                 raise self._ended(error) from error
+            self._part = None
             unfinished.finished(self)
 
     def finish(self) -> None:
@@ -190,19 +229,58 @@ class BagWriter:
         finally:
             self._lock.release()
 
-    def _close_file(self) -> None:
-        """Close a single file, which has the metadata in it; the library writes them into a folder, too."""
-        with ScratchFolder("bag") as folder:
-            self._writer.metapath = Path(folder) / self._writer.metapath.name
-            self._writer.close()
+    def _first_part(self) -> Part:
+        folder = self.path.parent if self._is_file else self.path
+        try:
+            if self.path.exists():
+                raise FileExistsError
+            folder.mkdir(mode=0o755, parents=True, exist_ok=self._is_file)
+            return self._new_part(self.path if self._is_file else numbered(self.path, 0, self._suffix))
+        except OSError as error:
+            reason = "it exists already" if self.path.exists() else str(error)
+            raise LinkwrightError(
+                Diagnostic(
+                    "BAG105",
+                    phrase(
+                        "recording '{path}' cannot be made: {reason}",
+                        path=display_path(self.path),
+                        reason=foreign(reason),
+                    ),
+                    hint=phrase("name another file") if self._is_file else phrase("name another folder"),
+                )
+            ) from error
+
+    def _new_part(self, path: Path) -> Part:
+        from linkwright.bag.parts import Part
+
+        part = Part(path, self._compression, self._custom_data)
+        for name, facts in self._topics.items():
+            part.add_topic(name, *facts)
+        return part
+
+    def _write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
+        part = self._part
+        assert part is not None
+        is_old = self._max_ns and part.start_ns is not None and stamp_ns - part.start_ns > self._max_ns
+        if is_old or (self._max_size and part.size >= self._max_size):
+            self._split()
+        self._part.write(topic, stamp_ns, data)  # type: ignore[union-attr]  # there is one still
+
+    def _split(self) -> None:
+        if self._part is None or self._is_file:
+            return
+        closed = self._part
+        self._done.append(closed.close())
+        self._part = self._new_part(numbered(self.path, len(self._done), self._suffix))
+        self.on_split(str(closed.path), str(self._part.path))
 
     def _ended(self, error: Exception) -> LinkwrightError:
         """The error when the disk refuses something; nothing more is written then."""
         unfinished.finished(self)
-        storage, self._writer.storage = self._writer.storage, None
+        part, self._part = self._part, None
         with contextlib.suppress(*_REFUSALS):  # what waits in its buffer is refused again
-            if storage is not None:
-                storage.abort()
+            if part is not None:
+                part.abort()
         reason = error.strerror if isinstance(error, OSError) else str(error)
         message = phrase(
             "recording '{path}' ends here: {reason}", path=display_path(self.path), reason=foreign(reason or error)
@@ -217,19 +295,6 @@ class BagWriter:
         self.close()
 
 
-def _let_any_thread_close(storage: Any) -> None:
-    """Connect to a database again: the library's connection may be used in one thread only."""
-    storage.conn.close()
-    storage.conn = sqlite3.connect(f"file:{storage.path}", uri=True, check_same_thread=False)
-    storage.cursor = storage.conn.cursor()
-
-
-class _File:
-    """A file in the place of the folder that the library makes its file in."""
-
-    def __init__(self, path: Path) -> None:
-        self.name = path.stem
-        self._path = path
-
-    def __truediv__(self, name: str) -> Path:
-        return self._path
+def _too_small(size: int, smallest: int) -> LinkwrightError:
+    message = phrase("files of {size} bytes are too small to split a recording into", size=size)
+    return LinkwrightError(Diagnostic("BAG116", message, hint=phrase("ask for {smallest} or more", smallest=smallest)))

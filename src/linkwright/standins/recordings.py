@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import enum
 import re
 import weakref
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from linkwright.bag import STORAGES, BagReader, BagWriter
@@ -17,7 +17,7 @@ from linkwright.graph.time.values import ClockType, Duration, Time
 
 @dataclass
 class StorageOptions:
-    """Where a recording is, and in which format. Limits of its files are accepted and ignored."""
+    """Where a recording is, in which format, and how it is divided into files."""
 
     uri: str
     storage_id: str = ""
@@ -107,6 +107,35 @@ class BagMetadata:
     duration: Duration
     message_count: int
     topics_with_message_count: list[TopicInformation]
+
+
+class CompressionMode(enum.Enum):
+    """What is compressed."""
+
+    NONE = 0
+    FILE = 1
+    MESSAGE = 2
+
+
+@dataclass
+class CompressionOptions:
+    """How a recording is compressed; zstd is the only format, and there is nothing to be tuned."""
+
+    compression_format: str = ""
+    compression_mode: CompressionMode = CompressionMode.NONE
+    compression_queue_size: int = 1
+    compression_threads: int = 0
+    thread_priority: int | None = None
+
+
+def compression_mode_from_string(name: str) -> CompressionMode:
+    """The mode that a name means, in any case; none for an unknown one."""
+    return CompressionMode.__members__.get(name.upper(), CompressionMode.NONE)
+
+
+def compression_mode_to_string(mode: CompressionMode) -> str:
+    """The name of a mode."""
+    return mode.name
 
 
 class SequentialReader:
@@ -220,8 +249,6 @@ class SequentialReader:
 class SequentialWriter:
     """Writes messages. The recording is complete once this is closed or garbage collected."""
 
-    _compressed = False
-
     def __init__(self) -> None:
         self._bag: BagWriter | None = None
 
@@ -231,11 +258,8 @@ class SequentialWriter:
         Raises:
             RuntimeError: the folder exists already, or there is no such storage.
         """
-        storage = storage_options.storage_id or STORAGES[0]
-        if storage not in STORAGES:
-            raise RuntimeError(f"No storage could be initialized from the inputs: no storage '{storage}'")
         try:
-            self._bag = BagWriter(Path(storage_options.uri), storage, compressed=self._compressed and storage == "mcap")
+            self._bag = writer_for(storage_options, self._compression(storage_options))
         except LinkwrightError as error:
             raise RuntimeError(str(error)) from error
         weakref.finalize(self, self._bag.close)
@@ -274,6 +298,31 @@ class SequentialWriter:
             raise RuntimeError(f"Topic '{topic_name}' has not been created yet! Call 'create_topic' first.")
         bag.write(topic_name, timestamp, message)
 
+    def take_snapshot(self) -> bool:
+        """Write the last messages, which are kept with ``snapshot_mode``; whether they are.
+
+        Raises:
+            RuntimeError: the disk refuses.
+        """
+        try:
+            return self._opened().take_snapshot()
+        except LinkwrightError as error:
+            raise RuntimeError(str(error)) from error
+
+    def split_bagfile(self) -> None:
+        """Go on in another file.
+
+        Raises:
+            RuntimeError: the disk refuses.
+        """
+        try:
+            self._opened().split()
+        except LinkwrightError as error:
+            raise RuntimeError(str(error)) from error
+
+    def _compression(self, storage_options: StorageOptions) -> str:
+        return "none"
+
     def _opened(self) -> BagWriter:
         if self._bag is None:
             raise RuntimeError("Bag is not open. Call open() before writing.")
@@ -281,9 +330,16 @@ class SequentialWriter:
 
 
 class SequentialCompressionWriter(SequentialWriter):
-    """A `SequentialWriter` of compressed recordings, where the format has compression."""
+    """A `SequentialWriter` of compressed recordings; without options, where the format has compression."""
 
-    _compressed = True
+    def __init__(self, compression_options: CompressionOptions | None = None) -> None:
+        super().__init__()
+        self._options = compression_options
+
+    def _compression(self, storage_options: StorageOptions) -> str:
+        if self._options is None:
+            return "storage" if storage_options.storage_id != "sqlite3" else "none"
+        return self._options.compression_mode.name
 
 
 class Info:
@@ -308,6 +364,44 @@ def get_registered_readers() -> set[str]:
     return set(STORAGES)
 
 
+def get_default_storage_id() -> str:
+    """The format of the files that are written where none is named."""
+    return STORAGES[0]
+
+
+def get_registered_compressors() -> set[str]:
+    """The formats of compression."""
+    return {"zstd"}
+
+
+def get_registered_serializers() -> set[str]:
+    """The converters of messages: none, since CDR is the only form."""
+    return set()
+
+
 def get_registered_writers() -> set[str]:
     """The formats of files that can be written."""
     return set(STORAGES)
+
+
+def writer_for(options: StorageOptions, compression: str) -> BagWriter:
+    """A recording by its options.
+
+    Raises:
+        RuntimeError: there is no such storage, or there is no room for snapshots.
+        LinkwrightError: those of `BagWriter`.
+    """
+    storage = options.storage_id or STORAGES[0]
+    if storage not in STORAGES:
+        raise RuntimeError(f"No storage could be initialized from the inputs: no storage '{storage}'")
+    if options.snapshot_mode and options.max_cache_size <= 0:
+        raise RuntimeError("Max cache size must be greater than 0 when snapshot mode is enabled")
+    return BagWriter(
+        options.uri,
+        storage,
+        compression=compression.lower() or "none",
+        max_size=options.max_bagfile_size,
+        max_seconds=options.max_bagfile_duration,
+        snapshot_size=options.max_cache_size if options.snapshot_mode else 0,
+        custom_data=options.custom_data,
+    )

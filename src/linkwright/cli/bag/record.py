@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING
 from linkwright.cli.bag.options import add_overrides_argument, read_overrides
 
 if TYPE_CHECKING:
-    from linkwright.bag import TopicSelection
+    from linkwright.bag import BagWriter, TopicSelection
     from linkwright.cli.session import Session
 
 _USAGE = 2
+_CACHE_SIZE = 100 * 1024 * 1024
+"""Bytes; the default of ros2."""
 
 
 def configure_record(parser: argparse.ArgumentParser) -> None:
@@ -65,12 +67,38 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--compression-mode",
-        choices=("none", "storage"),
+        choices=("none", "file", "message", "storage"),
         default="none",
-        help="whether chunks of an MCAP file are compressed with zstd",
+        help="what is compressed with zstd: nothing, whole files, each message, or the chunks of an MCAP file",
     )
     parser.add_argument(
         "--compression-format", choices=("zstd",), help="accepted for ros2's sake; zstd is the only one there is"
+    )
+    parser.add_argument(
+        "-b", "--max-bag-size", metavar="BYTES", type=_count, default=0, help="begin another file after so many bytes"
+    )
+    parser.add_argument(
+        "-d",
+        "--max-bag-duration",
+        metavar="SECONDS",
+        type=_count,
+        default=0,
+        help="begin another file after so many seconds",
+    )
+    parser.add_argument(
+        "--max-cache-size",
+        metavar="BYTES",
+        type=_count,
+        default=_CACHE_SIZE,
+        help="how much --snapshot-mode keeps, default 100 MiB; without that there is nothing to be tuned",
+    )
+    parser.add_argument(
+        "--snapshot-mode",
+        action="store_true",
+        help="keep the last messages, and write them when the service ~/snapshot is called",
+    )
+    parser.add_argument(
+        "--custom-data", metavar="KEY=VALUE", type=_pair, nargs="*", default=[], help="what the metadata say besides"
     )
     parser.add_argument("--start-paused", action="store_true", help="begin paused; the space key goes on")
     parser.add_argument("--use-sim-time", action="store_true", help="write down the times that /clock tells")
@@ -81,11 +109,12 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
     add_overrides_argument(parser)
     for names, metavar in (
         (("-f", "--serialization-format"), "FORMAT"),
-        (("--max-cache-size",), "BYTES"),
         (("--storage-preset-profile",), "NAME"),
         (("--storage-config-file",), "FILE"),
         (("--compression-queue-size",), "N"),
         (("--compression-threads",), "N"),
+        (("--compression-threads-priority",), "N"),
+        (("--log-level",), "LEVEL"),
     ):
         parser.add_argument(*names, metavar=metavar, help="accepted for ros2's sake; there is nothing to be tuned")
 
@@ -99,8 +128,11 @@ def run_record(arguments: argparse.Namespace) -> int:
     if selection.is_empty:
         print("linkwright bag record: name topics, or -a for all, or --regex", file=sys.stderr)
         return _USAGE
-    if arguments.storage != "mcap" and arguments.compression_mode != "none":
-        print("linkwright bag record: only MCAP files can be compressed here", file=sys.stderr)
+    if arguments.storage != "mcap" and arguments.compression_mode == "storage":
+        print("linkwright bag record: only MCAP files have chunks to be compressed", file=sys.stderr)
+        return _USAGE
+    if arguments.snapshot_mode and not arguments.max_cache_size:
+        print("linkwright bag record: --snapshot-mode needs a --max-cache-size above 0", file=sys.stderr)
         return _USAGE
     if arguments.polling_interval <= 0:
         print("linkwright bag record: the polling interval must be positive", file=sys.stderr)
@@ -108,11 +140,10 @@ def run_record(arguments: argparse.Namespace) -> int:
     overrides = read_overrides(arguments)
 
     async def job(session: Session) -> int:
-        from linkwright.bag import BagWriter, Recorder
+        from linkwright.bag import Recorder, RecorderServices
         from linkwright.cli.bag.keys import SPACE, listening
 
-        folder = arguments.output or f"rosbag2_{datetime.now().astimezone():%Y_%m_%d-%H_%M_%S}"
-        with BagWriter(folder, arguments.storage, compressed=arguments.compression_mode == "storage") as writer:
+        with _writer(arguments) as writer:
             recorder = Recorder(
                 session.node,
                 selection,
@@ -125,6 +156,7 @@ def run_record(arguments: argparse.Namespace) -> int:
                 paused=arguments.start_paused,
                 guarded=session.guarded,
             )
+            RecorderServices(session.node, recorder, writer, snapshots=arguments.snapshot_mode)
             keys = {} if arguments.disable_keyboard_controls else {SPACE: recorder.toggle_paused}
             try:
                 with listening(keys) as heard:
@@ -159,6 +191,33 @@ def _selection(arguments: argparse.Namespace) -> TopicSelection:
         services=_absolute(*arguments.services),
         without_services=_absolute(*arguments.exclude_services),
     )
+
+
+def _writer(arguments: argparse.Namespace) -> BagWriter:
+    from linkwright.bag import BagWriter
+
+    return BagWriter(
+        arguments.output or f"rosbag2_{datetime.now().astimezone():%Y_%m_%d-%H_%M_%S}",
+        arguments.storage,
+        compression=arguments.compression_mode,
+        max_size=arguments.max_bag_size,
+        max_seconds=arguments.max_bag_duration,
+        snapshot_size=arguments.max_cache_size if arguments.snapshot_mode else 0,
+        custom_data=dict(arguments.custom_data),
+    )
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number of at least 0")
+    return int(text)
+
+
+def _pair(text: str) -> tuple[str, str]:
+    key, separator, value = text.partition("=")
+    if not separator or not key:
+        raise argparse.ArgumentTypeError(f"'{text}' is not KEY=VALUE")
+    return key, value
 
 
 def _absolute(*names: str) -> list[str]:

@@ -6,7 +6,7 @@ import argparse
 import sys
 from functools import partial
 
-from linkwright.cli.bag import play, record
+from linkwright.cli.bag import play, record, rewrite
 from linkwright.cli.bag.options import add_storage_argument
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.diagnostics import print_diagnostics
@@ -30,9 +30,16 @@ def run_info(arguments: argparse.Namespace) -> int:
 
 
 VERBS = {
+    "convert": SubVerb(
+        rewrite.configure_convert, rewrite.run_convert, help="write recordings anew with other settings"
+    ),
     "info": SubVerb(configure_info, run_info, help="print files, times and topics of a recording"),
+    "list": SubVerb(rewrite.configure_list, rewrite.run_list, help="print which formats and compressions there are"),
     "play": SubVerb(play.configure_play, play.run_play, help="publish the messages of a recording again"),
     "record": SubVerb(record.configure_record, record.run_record, help="record topics until Ctrl-C"),
+    "reindex": SubVerb(
+        rewrite.configure_reindex, rewrite.run_reindex, help="make a recording's metadata anew from its files"
+    ),
 }
 
 configure = partial(configure_nested, verbs=VERBS)

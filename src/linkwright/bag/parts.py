@@ -1,0 +1,154 @@
+"""The files that a recording consists of, and the ``metadata.yaml`` that lists them."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import yaml
+from rosbags.interfaces import Qos
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+
+from linkwright import whole_files
+from linkwright.bag.names import METADATA, SUFFIXES
+from linkwright.scratch_folders import ScratchFolder
+
+VERSION: Literal[8] = 8
+"""The version of the metadata; Humble reads 8 and below but for unknown fields, Jazzy writes 9."""
+
+_INFORMATION = "rosbag2_bagfile_information"
+
+_Metadata = dict[str, Any]
+
+
+class Part:
+    """A file of a recording that is being written.
+
+    Args:
+        path: the file to make, with its suffix.
+        compression: one of `linkwright.bag.writing.COMPRESSIONS`.
+        custom_data: what the metadata have besides.
+
+    Attributes:
+        start_ns: when its first message was received, nanoseconds since the epoch; None before there is one.
+        path: the file; compressed as a whole, it has another suffix behind its own once it is closed.
+    """
+
+    def __init__(self, path: Path, compression: str, custom_data: Mapping[str, str]) -> None:
+        plugin = StoragePlugin[SUFFIXES[path.suffix].upper()]
+        self._writer = Writer(path, version=VERSION, storage_plugin=plugin)
+        self._writer.set_compression(CompressionMode[compression.upper()], CompressionFormat.ZSTD)
+        self._writer.custom_data = dict(custom_data)
+        into: Any = _File(path)
+        self._writer.storage = Writer.STORAGE_PLUGINS[plugin](into, self._writer.compression_mode)
+        if hasattr(self._writer.storage, "conn"):
+            _let_any_thread_close(self._writer.storage)
+        self._connections: dict[str, Any] = {}
+        self.start_ns: int | None = None
+        self.path = path
+
+    @property
+    def storage(self) -> Any:
+        """What writes the file; None once it is closed."""
+        return self._writer.storage
+
+    @property
+    def size(self) -> int:
+        """Bytes that were written, with those that wait to be."""
+        storage = self.storage
+        if hasattr(storage, "conn"):
+            (pages,) = storage.conn.execute("PRAGMA page_count").fetchone()
+            (page,) = storage.conn.execute("PRAGMA page_size").fetchone()
+            return int(pages) * int(page)
+        return int(storage.bio.tell() + storage.chunk.bio.tell())
+
+    def add_topic(self, name: str, type_name: str, schema: str, digest: str, offered_qos: Collection[Qos]) -> None:
+        """Add a topic."""
+        self._connections[name] = self._writer.add_connection(
+            name, type_name, msgdef=schema, rihs01=digest, offered_qos_profiles=list(offered_qos)
+        )
+
+    def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
+        """Add a message."""
+        self._writer.write(self._connections[topic], stamp_ns, data)
+        self.start_ns = stamp_ns if self.start_ns is None else min(self.start_ns, stamp_ns)
+
+    def flush(self) -> None:
+        """Give what was written to the operating system."""
+        storage = self.storage
+        if hasattr(storage, "close_chunk"):
+            if storage.chunk.msgs:
+                storage.close_chunk()
+            storage.bio.flush()
+        else:
+            storage.conn.commit()
+
+    def close(self) -> _Metadata:
+        """Write the index; returns what the metadata say of this file alone."""
+        with ScratchFolder("bag") as folder:  # where the library writes these
+            self._writer.metapath = Path(folder) / METADATA
+            self._writer.close()
+            document = yaml.safe_load(self._writer.metapath.read_text(encoding="utf-8"))
+        information: _Metadata = document[_INFORMATION]
+        self.path = self.path.with_name(information["relative_file_paths"][0])
+        return information
+
+    def abort(self) -> None:
+        """Give the file up as it is."""
+        self._writer.abort()
+
+
+def write_metadata(folder: Path, parts: Sequence[_Metadata]) -> None:
+    """Write the ``metadata.yaml`` of a recording.
+
+    Args:
+        folder: of the recording.
+        parts: what the metadata say of each file alone, one or more.
+    """
+    text = yaml.safe_dump({_INFORMATION: _joined(parts)}, sort_keys=False, allow_unicode=True)
+    whole_files.write_whole_file(folder / METADATA, text)
+
+
+def _joined(parts: Sequence[_Metadata]) -> _Metadata:
+    """What the metadata say of files together."""
+    files = [each for part in parts for each in part["files"]]
+    spans = [
+        (each["starting_time"]["nanoseconds_since_epoch"], each["duration"]["nanoseconds"])
+        for each in files
+        if each["message_count"]
+    ]
+    topics: dict[tuple[str, str], _Metadata] = {}
+    for each in (topic for part in parts for topic in part["topics_with_message_count"]):
+        key = each["topic_metadata"]["name"], each["topic_metadata"]["type"]
+        known = topics.get(key)
+        topics[key] = {**each, "message_count": each["message_count"] + (known["message_count"] if known else 0)}
+    start = min((start for start, _ in spans), default=parts[0]["starting_time"]["nanoseconds_since_epoch"])
+    return {
+        **parts[-1],
+        "relative_file_paths": [each["path"] for each in files],
+        "files": files,
+        "starting_time": {"nanoseconds_since_epoch": start},
+        "duration": {"nanoseconds": max((begin + length for begin, length in spans), default=start) - start},
+        "message_count": sum(each["message_count"] for each in files),
+        "topics_with_message_count": list(topics.values()),
+    }
+
+
+def _let_any_thread_close(storage: Any) -> None:
+    """Connect to a database again: the library's connection may be used in one thread only."""
+    storage.conn.close()
+    storage.conn = sqlite3.connect(f"file:{storage.path}", uri=True, check_same_thread=False)
+    storage.cursor = storage.conn.cursor()
+
+
+class _File:
+    """A file in the place of the folder that the library makes its file in."""
+
+    def __init__(self, path: Path) -> None:
+        self.name = path.stem
+        self._path = path
+
+    def __truediv__(self, name: str) -> Path:
+        return self._path

@@ -1,0 +1,55 @@
+"""The services that control a recorder, those of rosbag2: ``/rosbag2_recorder/snapshot`` and so on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.bag.recorder import Recorder
+from linkwright.bag.writing import BagWriter
+from linkwright.graph import Node
+from linkwright.messages import get_message
+
+
+class RecorderServices:
+    """Offers a recorder's services below the name of its node, and tells of files on ``events/write_split``.
+
+    Names and types are those of ``rosbag2_transport::Recorder``.
+
+    Args:
+        node: the node.
+        recorder: what is controlled.
+        writer: where it writes.
+        snapshots: whether there is a service that takes them.
+    """
+
+    def __init__(self, node: Node, recorder: Recorder, writer: BagWriter, *, snapshots: bool) -> None:
+        self._recorder = recorder
+        self._writer = writer
+        event = get_message("rosbag2_interfaces/msg/WriteSplitEvent")
+        events = node.create_publisher(event, "events/write_split", 1)
+        writer.on_split = lambda closed, begun: events.publish(event(closed_file=closed, opened_file=begun))
+        kinds = [("split_bagfile", "SplitBagfile"), ("pause", "Pause"), ("resume", "Resume"), ("is_paused", "IsPaused")]
+        for name, kind in [*kinds, *([("snapshot", "Snapshot")] if snapshots else [])]:
+            node.create_service(f"rosbag2_interfaces/srv/{kind}", f"~/{name}", getattr(self, f"_{name}"))
+
+    def _snapshot(self, _: Any, response: Any) -> Any:
+        response.success = self._writer.take_snapshot()
+        return response
+
+    def _split_bagfile(self, _: Any, response: Any) -> Any:
+        self._writer.split()
+        return response
+
+    def _pause(self, _: Any, response: Any) -> Any:
+        if not self._recorder.paused:
+            self._recorder.toggle_paused()
+        return response
+
+    def _resume(self, _: Any, response: Any) -> Any:
+        if self._recorder.paused:
+            self._recorder.toggle_paused()
+        return response
+
+    def _is_paused(self, _: Any, response: Any) -> Any:
+        response.paused = self._recorder.paused
+        return response

@@ -1,0 +1,80 @@
+"""Making the ``metadata.yaml`` of a recording anew, from its files: what ``ros2 bag reindex`` does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from linkwright.bag.names import are_of_one_recording, in_order, storage_of
+from linkwright.bag.qos import to_bag
+from linkwright.bag.reading import BagReader
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.messages import type_hash
+
+
+def reindex(folder: Path) -> None:
+    """Write the ``metadata.yaml`` of a recording, whatever stands in it before.
+
+    Files that were not finished are listed with the messages that are whole in them.
+
+    Args:
+        folder: with the files of one recording, whose names end with _0, _1 and so on.
+
+    Raises:
+        LinkwrightError: BAG117, the folder holds no such files; BAG105, the disk refuses; those of `BagReader`.
+    """
+    from linkwright.bag.parts import write_metadata
+
+    files = [each for each in folder.iterdir() if storage_of(each) is not None] if folder.is_dir() else []
+    if len(files) != 1 and not are_of_one_recording(files):
+        message = phrase("there are no files of a recording in '{path}'", path=display_path(folder))
+        hint = phrase("their names end with a number and .mcap or .db3: drive_0.mcap, drive_1.mcap")
+        raise LinkwrightError(Diagnostic("BAG117", message, hint=hint))
+    found = []
+    for file in in_order(files):
+        with BagReader(file) as bag:
+            found.append(_metadata_of(bag, file))
+    try:
+        write_metadata(folder, found)
+    except OSError as error:
+        reason = foreign(error.strerror or str(error))
+        message = phrase("recording '{path}' cannot be made: {reason}", path=display_path(folder), reason=reason)
+        raise LinkwrightError(Diagnostic("BAG105", message)) from error
+
+
+def _metadata_of(bag: BagReader, file: Path) -> dict[str, Any]:
+    """What the metadata say of a file alone."""
+    from rosbags.rosbag2.metadata import dump_qos_v8
+
+    from linkwright.bag.parts import VERSION
+
+    span = {
+        "starting_time": {"nanoseconds_since_epoch": bag.start_ns},
+        "duration": {"nanoseconds": bag.end_ns - bag.start_ns},
+        "message_count": sum(topic.count for topic in bag.topics),
+    }
+    topics = [
+        {
+            "topic_metadata": {
+                "name": topic.name,
+                "type": topic.type_name,
+                "serialization_format": topic.serialization_format,
+                "offered_qos_profiles": dump_qos_v8([to_bag(qos) for qos in topic.offered_qos]),
+                "type_description_hash": type_hash(topic.type_name),
+            },
+            "message_count": topic.count,
+        }
+        for topic in bag.topics
+    ]
+    return {
+        "version": VERSION,
+        "storage_identifier": bag.storage,
+        "relative_file_paths": [file.name],
+        **span,
+        "topics_with_message_count": topics,
+        "compression_format": "zstd" if bag.compression else "",
+        "compression_mode": bag.compression,
+        "files": [{"path": file.name, **span}],
+        "custom_data": None,
+        "ros_distro": "rosbags",
+    }

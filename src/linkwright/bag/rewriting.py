@@ -1,0 +1,147 @@
+"""Writing recordings anew, with other files, topics or compression: what ``ros2 bag convert`` does.
+
+The keys of its YAML file are those of rosbag2's ``StorageOptions`` and ``RecordOptions``; those that only tune the
+writing of rosbag2 change nothing here.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from linkwright.bag.reading import BagReader
+from linkwright.bag.selection import TopicSelection
+from linkwright.bag.writing import COMPRESSIONS, STORAGES, BagWriter
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase, quoted_names
+from linkwright.graph import QoSProfile
+
+_LISTS = ("topics", "topic_types", "services", "exclude_topics", "exclude_topic_types", "exclude_services")
+
+
+def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Path]:
+    """Write one or more recordings with the messages of others, in the order of their times.
+
+    Args:
+        sources: the recordings that are read.
+        options_file: a YAML file with the key ``output_bags``: a list with the options of each recording to be made.
+
+    Returns:
+        What was made.
+
+    Raises:
+        LinkwrightError: BAG115, the options cannot be read; those of `BagReader` and `BagWriter`.
+    """
+    outputs = [_Output(entry, str(options_file)) for entry in _entries(options_file)]
+    with ExitStack() as stack:
+        bags = [stack.enter_context(BagReader(source)) for source in sources]
+        writers = [stack.enter_context(each.opened(bags)) for each in outputs]
+        streams = [bag.messages() for bag in bags]
+        for topic, stamp_ns, data in heapq.merge(*streams, key=lambda message: message[1]):
+            for output, writer in zip(outputs, writers, strict=True):
+                if topic in writer.topics and output.begin_ns <= stamp_ns <= output.end_ns:
+                    writer.write(topic, stamp_ns, data)
+    return [writer.path for writer in writers]
+
+
+class _Output:
+    """A recording to be made, by its entry in the file of options.
+
+    Attributes:
+        begin_ns, end_ns: messages from outside of these times are left out.
+    """
+
+    def __init__(self, entry: Mapping[str, Any], file: str) -> None:
+        self._entry = entry
+        self._file = file
+        for name in _LISTS:
+            value = entry.get(name, [])
+            if not (isinstance(value, list) and all(isinstance(each, str) for each in value)):
+                raise self._wrong(phrase("'{name}' must be a list of names", name=name))
+        self._storage = self._one_of("storage_id", STORAGES)
+        compression = str(entry.get("compression_mode") or "none").lower()
+        self._compression = self._known("compression_mode", compression, COMPRESSIONS)
+        self._max_size = self._number("max_bagfile_size", 0)
+        self._max_seconds = self._number("max_bagfile_duration", 0)
+        begin, end = self._number("start_time_ns", -1), self._number("end_time_ns", -1)
+        self.begin_ns = max(begin, 0)
+        self.end_ns = end if end >= 0 else 2**63 - 1
+        everything = bool(entry.get("all"))
+        self._selection = TopicSelection(
+            everything=everything or bool(entry.get("all_topics")),
+            names=entry.get("topics", []),
+            types=entry.get("topic_types", []),
+            pattern=str(entry.get("regex", "")),
+            without_names=entry.get("exclude_topics", []),
+            without_types=entry.get("exclude_topic_types", []),
+            without_pattern=str(entry.get("exclude_regex", entry.get("exclude", ""))),
+            hidden=bool(entry.get("include_hidden_topics")),
+            every_service=everything or bool(entry.get("all_services")),
+            services=entry.get("services", []),
+            without_services=entry.get("exclude_services", []),
+        )
+
+    def opened(self, bags: Sequence[BagReader]) -> BagWriter:
+        """The recording with its topics; one that has several types in the others is left out, as in rosbag2."""
+        writer = BagWriter(
+            str(self._entry["uri"]),
+            self._storage,
+            compression=self._compression,
+            max_size=self._max_size,
+            max_seconds=self._max_seconds,
+            custom_data={str(key): str(value) for key, value in (self._entry.get("custom_data") or {}).items()},
+        )
+        types: dict[str, set[str]] = {}
+        profiles: dict[str, list[QoSProfile]] = {}
+        for topic in (topic for bag in bags for topic in bag.topics):
+            types.setdefault(topic.name, set()).add(topic.type_name)
+            profiles.setdefault(topic.name, []).extend(topic.offered_qos)
+        for name, found in types.items():
+            (type_name, *others) = found
+            if not others and self._selection.takes(name, type_name):
+                writer.add_topic(name, type_name, profiles[name])
+        return writer
+
+    def _number(self, name: str, otherwise: int) -> int:
+        value = self._entry.get(name, otherwise)
+        if type(value) is not int:
+            raise self._wrong(phrase("'{name}' must be an integer", name=name))
+        return value
+
+    def _one_of(self, name: str, known: Sequence[str]) -> str:
+        return self._known(name, str(self._entry.get(name) or known[0]), known)
+
+    def _known(self, name: str, value: str, known: Sequence[str]) -> str:
+        if value not in known:
+            names = quoted_names(known, " or ")
+            raise self._wrong(phrase("'{name}' must be {names}, not '{value}'", name=name, names=names, value=value))
+        return value
+
+    def _wrong(self, reason: Phrase) -> LinkwrightError:
+        return _unusable(self._file, reason)
+
+
+def _entries(path: str | Path) -> list[Mapping[str, Any]]:
+    import yaml
+
+    from linkwright.input_files import read_text
+
+    try:
+        document = yaml.safe_load(read_text(path))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise _unusable(str(path), foreign(reason or str(error))) from error
+    entries = document.get("output_bags") if isinstance(document, dict) else None
+    if not isinstance(entries, list) or not entries:
+        raise _unusable(str(path), phrase("it needs the key 'output_bags' with a list of recordings to be made"))
+    for entry in entries:
+        if not isinstance(entry, dict) or not isinstance(entry.get("uri"), str):
+            raise _unusable(str(path), phrase("each of 'output_bags' needs the key 'uri' with a folder to be made"))
+    return entries
+
+
+def _unusable(path: str, reason: Phrase) -> LinkwrightError:
+    message = phrase("'{path}' cannot be used as options of recordings: {reason}", path=path, reason=reason)
+    return LinkwrightError(Diagnostic("BAG115", message))

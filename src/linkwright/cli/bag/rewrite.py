@@ -1,0 +1,121 @@
+"""``linkwright bag convert``, ``reindex`` and ``list``: recordings written anew, and what reads and writes them."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+from linkwright.cli.bag.options import add_storage_argument
+
+_USAGE = 2
+
+
+class _Plugin(NamedTuple):
+    name: str
+    type_name: str
+    base: str
+    description: str
+
+
+_PLUGINS = {
+    "storage": (
+        _Plugin(
+            "mcap",
+            "rosbag2_storage_plugins::MCAPStorage",
+            "rosbag2_storage::storage_interfaces::ReadWriteInterface",
+            "recordings as MCAP files",
+        ),
+        _Plugin(
+            "sqlite3",
+            "rosbag2_storage_plugins::SqliteStorage",
+            "rosbag2_storage::storage_interfaces::ReadWriteInterface",
+            "recordings as SQLite databases",
+        ),
+    ),
+    "converter": (),
+    "compressor": (
+        _Plugin(
+            "zstd",
+            "rosbag2_compression_zstd::ZstdCompressor",
+            "rosbag2_compression::BaseCompressorInterface",
+            "compression by Zstandard",
+        ),
+    ),
+    "decompressor": (
+        _Plugin(
+            "zstd",
+            "rosbag2_compression_zstd::ZstdDecompressor",
+            "rosbag2_compression::BaseDecompressorInterface",
+            "decompression by Zstandard",
+        ),
+    ),
+}
+"""What stands for the plugins of rosbag2, by the kinds that ``ros2 bag list`` knows; CDR needs no converter."""
+
+
+def configure_convert(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument(
+        "-i",
+        "--input",
+        metavar=("BAG", "STORAGE"),
+        nargs="+",
+        action="append",
+        required=True,
+        help="a recording to read, and its format, which is found out without; may be given several times",
+    )
+    parser.add_argument(
+        "-o",
+        "--output-options",
+        metavar="FILE",
+        required=True,
+        help="a YAML file with the key output_bags: the options of each recording to be made",
+    )
+
+
+def run_convert(arguments: argparse.Namespace) -> int:
+    """Write recordings anew."""
+    from linkwright.bag.rewriting import rewrite
+
+    for given in arguments.input:
+        if len(given) > 2:
+            print(f"linkwright bag convert: --input expects 1 or 2 arguments, {len(given)} provided", file=sys.stderr)
+            return _USAGE
+    rewrite([given[0] for given in arguments.input], arguments.output_options)
+    return 0
+
+
+def configure_reindex(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("bag", metavar="BAG", type=Path, help="the folder of a recording")
+    add_storage_argument(parser)
+
+
+def run_reindex(arguments: argparse.Namespace) -> int:
+    """Write the metadata of a recording anew."""
+    from linkwright.bag.reindexing import reindex
+
+    if not arguments.bag.is_dir():
+        print("linkwright bag reindex: must specify a bag directory", file=sys.stderr)
+        return _USAGE
+    reindex(arguments.bag)
+    return 0
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("kind", metavar="KIND", choices=_PLUGINS, help="storage, converter, compressor or decompressor")
+    parser.add_argument("-v", "--verbose", action="store_true", help="tell what each is, too")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print the names of what stands for the plugins of a kind."""
+    if arguments.verbose:
+        print(f"available {arguments.kind} plugins are:")
+    for plugin in _PLUGINS[arguments.kind]:
+        print(f"{'name: ' if arguments.verbose else ''}{plugin.name}")
+        if arguments.verbose:
+            print(f"\t{plugin.description}\n\ttype: {plugin.type_name}\n\tbase_class: {plugin.base}")
+    return 0

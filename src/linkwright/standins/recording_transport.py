@@ -1,0 +1,287 @@
+"""Recording, playing and rewriting from a program (``rosbag2_py``'s ``Recorder``, ``Player``, ``bag_rewrite`` ...)."""
+
+from __future__ import annotations
+
+import datetime as dt
+import enum
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+from linkwright.bag import BagReader, PlayerServices, RecorderServices, TopicSelection
+from linkwright.bag import Player as _Playing
+from linkwright.bag import PlayOptions as _HowToPlay
+from linkwright.bag import Recorder as _Recording
+from linkwright.bag.reindexing import reindex
+from linkwright.bag.rewriting import rewrite
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.graph.time.values import Duration
+from linkwright.standins.rclpy_api.context import Context
+from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
+from linkwright.standins.rclpy_api.node import Node
+from linkwright.standins.recordings import StorageOptions, writer_for
+
+_LOOK_SECONDS = 0.1
+
+
+class ServiceRequestsSource(enum.Enum):
+    """Whose introspection events requests are taken from, when requests are played."""
+
+    SERVICE_INTROSPECTION = 0
+    CLIENT_INTROSPECTION = 1
+
+
+@dataclass
+class PlayOptions:
+    """How a recording is played; what only tunes rosbag2 is accepted and changes nothing."""
+
+    read_ahead_queue_size: int = 1000
+    node_prefix: str = ""
+    rate: float = 1.0
+    topics_to_filter: list[str] = field(default_factory=list)
+    services_to_filter: list[str] = field(default_factory=list)
+    regex_to_filter: str = ""
+    exclude_regex_to_filter: str = ""
+    exclude_topics_to_filter: list[str] = field(default_factory=list)
+    exclude_service_events_to_filter: list[str] = field(default_factory=list)
+    topic_qos_profile_overrides: dict[str, QoSProfile] = field(default_factory=dict)
+    loop: bool = False
+    topic_remapping_options: list[str] = field(default_factory=list)
+    clock_publish_frequency: float = 0.0
+    clock_publish_on_topic_publish: bool = False
+    clock_topics: list[str] = field(default_factory=list)
+    delay: float = 0.0
+    playback_duration: float = -1.0
+    playback_until_timestamp: int = -1
+    start_offset: float = 0.0
+    start_paused: bool = False
+    disable_keyboard_controls: bool = False
+    wait_acked_timeout: int = -1
+    disable_loan_message: bool = False
+    publish_service_requests: bool = False
+    service_requests_source: ServiceRequestsSource = ServiceRequestsSource.SERVICE_INTROSPECTION
+
+
+@dataclass
+class RecordOptions:
+    """What is recorded, and how; what only tunes rosbag2 is accepted and changes nothing."""
+
+    all_topics: bool = False
+    all_services: bool = False
+    is_discovery_disabled: bool = False
+    topics: list[str] = field(default_factory=list)
+    topic_types: list[str] = field(default_factory=list)
+    exclude_topic_types: list[str] = field(default_factory=list)
+    services: list[str] = field(default_factory=list)
+    rmw_serialization_format: str = ""
+    topic_polling_interval: dt.timedelta = dt.timedelta(milliseconds=100)
+    regex: str = ""
+    exclude_regex: str = ""
+    exclude_topics: list[str] = field(default_factory=list)
+    exclude_service_events: list[str] = field(default_factory=list)
+    node_prefix: str = ""
+    compression_mode: str = ""
+    compression_format: str = ""
+    compression_queue_size: int = 1
+    compression_threads: int = 0
+    compression_threads_priority: int = 0
+    topic_qos_profile_overrides: dict[str, QoSProfile] = field(default_factory=dict)
+    include_hidden_topics: bool = False
+    include_unpublished_topics: bool = False
+    ignore_leaf_topics: bool = False
+    start_paused: bool = False
+    use_sim_time: bool = False
+    disable_keyboard_controls: bool = False
+
+    @property
+    def selection(self) -> TopicSelection:
+        """Which topics are recorded. Services are given by the topics of their events, as ``ros2bag`` does."""
+        return TopicSelection(
+            everything=self.all_topics,
+            names=_absolute(self.topics),
+            types=self.topic_types,
+            pattern=self.regex,
+            without_names=_absolute(self.exclude_topics),
+            without_types=self.exclude_topic_types,
+            without_pattern=self.exclude_regex,
+            hidden=self.include_hidden_topics,
+            every_service=self.all_services,
+            services=_services(self.services),
+            without_services=_services(self.exclude_service_events),
+        )
+
+
+class _Transport:
+    """A node of its own in a context of its own, which runs until it is done or cancelled."""
+
+    _cancelled: ClassVar[threading.Event]
+
+    def __init_subclass__(cls) -> None:
+        cls._cancelled = threading.Event()
+
+    def __init__(self, log_level: str = "info") -> None:
+        self._arguments = ["--ros-args", "--log-level", log_level]
+
+    @classmethod
+    def cancel(cls) -> None:
+        """End what runs, from any thread."""
+        cls._cancelled.set()
+
+    @contextmanager
+    def _running(self, name: str, *arguments: str) -> Iterator[tuple[Node, Callable[[Callable[[], bool]], None]]]:
+        """A node, and what runs its callbacks until something holds or it is cancelled.
+
+        Raises:
+            RuntimeError: a recording cannot be opened or made.
+        """
+        self._cancelled.clear()
+        context = Context()
+        context.init([*self._arguments, *arguments])
+        try:
+            node = Node(name, context=context)
+            executor = SingleThreadedExecutor(context=context)
+            executor.add_node(node)
+
+            def spin_until(is_done: Callable[[], bool]) -> None:
+                while not (is_done() or self._cancelled.is_set()) and context.ok():
+                    executor.spin_once(timeout_sec=_LOOK_SECONDS)
+
+            yield node, spin_until
+        except LinkwrightError as error:
+            raise RuntimeError(str(error)) from error
+        finally:
+            context.try_shutdown()
+
+
+class Recorder(_Transport):
+    """Records topics until it is cancelled."""
+
+    def record(
+        self, storage_options: StorageOptions, record_options: RecordOptions, node_name: str = "rosbag2_recorder"
+    ) -> None:
+        """Record; returns after `cancel`, and after Ctrl-C.
+
+        Raises:
+            RuntimeError: the folder exists already, or there is no such storage.
+        """
+        parameters = ("-p", "use_sim_time:=true") if record_options.use_sim_time else ()
+        with self._running(node_name, *parameters) as (node, spin_until):
+            writer = writer_for(storage_options, record_options.compression_mode)
+            recorder = _Recording(
+                node,
+                record_options.selection,
+                writer,
+                overrides=record_options.topic_qos_profile_overrides,
+                discover=not record_options.is_discovery_disabled,
+                polling_seconds=record_options.topic_polling_interval.total_seconds(),
+                without_publishers=record_options.include_unpublished_topics,
+                without_subscriptions=not record_options.ignore_leaf_topics,
+                paused=record_options.start_paused,
+            )
+            RecorderServices(node, recorder, writer, snapshots=storage_options.snapshot_mode)
+            try:
+                spin_until(lambda: False)
+            finally:
+                recorder.close()
+
+
+class Player(_Transport):
+    """Plays recordings."""
+
+    def play(self, storage_options: StorageOptions, play_options: PlayOptions) -> None:
+        """Play to the end, or until it is cancelled.
+
+        Raises:
+            RuntimeError: there is no such recording or topic, or the recording is damaged.
+        """
+        self._play(storage_options, play_options, None)
+
+    def burst(self, storage_options: StorageOptions, play_options: PlayOptions, num_messages: int) -> None:
+        """Publish the first messages as fast as possible and wait, paused, until it is cancelled.
+
+        Raises:
+            RuntimeError: as with `play`.
+        """
+        self._play(storage_options, play_options, num_messages)
+
+    def _play(self, storage_options: StorageOptions, options: PlayOptions, burst: int | None) -> None:
+        rules = [word for rule in options.topic_remapping_options for word in _remapping(rule)]
+        with self._running("rosbag2_player", *rules) as (node, spin_until), BagReader(storage_options.uri) as bag:
+            player = _Playing(node, bag, _how_to_play(options, paused=options.start_paused or burst is not None))
+            PlayerServices(node, player)
+            try:
+                player.start()
+                if burst is not None:
+                    player.burst(burst)
+                spin_until(lambda: player.finished)
+            finally:
+                player.close()
+            for publisher in player.publishers if options.wait_acked_timeout >= 0 else ():
+                publisher.wait_for_all_acked(Duration(nanoseconds=options.wait_acked_timeout * 1_000_000))
+
+
+class Reindexer:
+    """Makes the metadata of recordings anew."""
+
+    def reindex(self, storage_options: StorageOptions) -> None:
+        """Write the ``metadata.yaml`` of a recording.
+
+        Raises:
+            RuntimeError: there are no files of a recording, or they are damaged.
+        """
+        try:
+            reindex(Path(storage_options.uri))
+        except LinkwrightError as error:
+            raise RuntimeError(str(error)) from error
+
+
+def bag_rewrite(input_options: Sequence[StorageOptions], output_config_file: str) -> None:
+    """Write recordings anew, by a YAML file with the key ``output_bags``.
+
+    Raises:
+        RuntimeError: a recording cannot be read or made, or the file has another form.
+    """
+    if not input_options:
+        raise RuntimeError("Must provide at least one input and one output bag to rewrite.")
+    try:
+        rewrite([each.uri for each in input_options], output_config_file)
+    except LinkwrightError as error:
+        raise RuntimeError(str(error)) from error
+
+
+def _how_to_play(options: PlayOptions, *, paused: bool) -> _HowToPlay:
+    return _HowToPlay(
+        rate=options.rate,
+        topics=_absolute(options.topics_to_filter),
+        without=[*_absolute(options.exclude_topics_to_filter), *options.exclude_service_events_to_filter],
+        pattern=options.regex_to_filter,
+        without_pattern=options.exclude_regex_to_filter,
+        loop=options.loop,
+        clock_hz=options.clock_publish_frequency,
+        clock_topics=_absolute(options.clock_topics),
+        clock_before_all=options.clock_publish_on_topic_publish and not options.clock_topics,
+        delay=options.delay,
+        start_offset=options.start_offset,
+        duration=None if options.playback_duration < 0 else options.playback_duration,
+        until_ns=None if options.playback_until_timestamp < 0 else options.playback_until_timestamp,
+        paused=paused,
+        qos_overrides=options.topic_qos_profile_overrides,
+    )
+
+
+def _remapping(rule: str) -> list[str]:
+    """The words of a command line for a rule; rosbag2 takes them with and without ``--ros-args --remap``."""
+    return [] if rule.startswith("-") else ["--remap", rule]
+
+
+def _absolute(names: Sequence[str]) -> list[str]:
+    return [f"/{name.lstrip('/')}" for name in names]
+
+
+def _services(topics: Sequence[str]) -> list[str]:
+    return [name.removesuffix(EVENT_TOPIC_SUFFIX) for name in _absolute(topics)]

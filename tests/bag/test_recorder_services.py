@@ -1,0 +1,96 @@
+"""The services of a recorder, called by another node on a clock that the test moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.bag import BagReader, BagWriter, Recorder, RecorderServices, TopicSelection
+from linkwright.graph import DEFAULT_QOS, Graph, JumpClock
+from linkwright.messages import String, deserialize, get_message
+
+START = 1_700_000_000_000_000_000
+
+
+class Scene:
+    """A recorder, who calls its services, and who talks."""
+
+    def __init__(self, graph: Graph, path: Path, snapshot_size: int = 0) -> None:
+        self.graph = graph
+        self.events: list[tuple[str, str]] = []
+        self._path = path
+        self._node = graph.create_node("other")
+        self._talking = self._node.create_publisher(String, "chatter", DEFAULT_QOS)
+        event = get_message("rosbag2_interfaces/msg/WriteSplitEvent")
+        self._node.create_subscription(event, "/events/write_split", self._split, DEFAULT_QOS)
+        node = graph.create_node("rosbag2_recorder")
+        writer = BagWriter(path, snapshot_size=snapshot_size)
+        self.recorder = Recorder(node, TopicSelection(names=["/chatter"]), writer)
+        RecorderServices(node, self.recorder, writer, snapshots=bool(snapshot_size))
+
+    async def say(self, word: str) -> None:
+        self._talking.publish(String(data=word))
+        await self.graph.settle()
+
+    async def call(self, name: str) -> Any:
+        kind = "".join(word.title() for word in name.split("_"))
+        client = self._node.create_client(f"rosbag2_interfaces/srv/{kind}", f"/rosbag2_recorder/{name}")
+        answer = client.call_async(client.srv_type.Request())
+        await self.graph.settle()
+        return answer.result()
+
+    def recorded(self) -> list[str]:
+        self.recorder.close()
+        with BagReader(self._path) as bag:
+            return [deserialize(data, String).data for _, _, data in bag.messages()]
+
+    def _split(self, event: Any) -> None:
+        self.events.append((Path(event.closed_file).name, Path(event.opened_file).name))
+
+
+@pytest.fixture
+async def scene(tmp_path: Path):
+    graph = Graph(clock=JumpClock(START))
+    yield lambda **options: Scene(graph, tmp_path / "bag", **options)
+    await graph.close()
+
+
+async def test_it_pauses_and_goes_on(scene) -> None:
+    scene = scene()
+    await scene.say("one")
+    await scene.call("pause")
+    await scene.call("pause")
+    assert (await scene.call("is_paused")).paused
+    await scene.say("two")
+    await scene.call("resume")
+    assert not (await scene.call("is_paused")).paused
+    await scene.say("three")
+    assert scene.recorded() == ["one", "three"]
+
+
+async def test_another_file_is_begun_and_told_of(scene, tmp_path: Path) -> None:
+    scene = scene()
+    await scene.say("one")
+    await scene.call("split_bagfile")
+    await scene.say("two")
+    assert scene.events == [("bag_0.mcap", "bag_1.mcap")]
+    assert scene.recorded() == ["one", "two"]
+    assert sorted(each.name for each in tmp_path.glob("bag/*")) == ["bag_0.mcap", "bag_1.mcap", "metadata.yaml"]
+
+
+async def test_a_snapshot_is_all_that_is_written_in_snapshot_mode(scene) -> None:
+    scene = scene(snapshot_size=1000)
+    await scene.say("one")
+    assert (await scene.call("snapshot")).success
+    await scene.say("two")
+    assert scene.recorded() == ["one"]
+
+
+async def test_snapshots_are_offered_in_snapshot_mode_only(scene) -> None:
+    scene = scene()
+    names = [name for name, _ in scene.graph.get_service_names_and_types()]
+    assert "/rosbag2_recorder/split_bagfile" in names
+    assert "/rosbag2_recorder/snapshot" not in names
+    assert scene.recorded() == []

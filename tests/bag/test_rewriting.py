@@ -1,0 +1,174 @@
+"""Recordings of several files, snapshots, and recordings written anew."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from linkwright.bag import BagReader, BagWriter
+from linkwright.bag.reindexing import reindex
+from linkwright.bag.rewriting import rewrite
+from linkwright.bag.writing import COMPRESSIONS, STORAGES
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import String, serialize
+
+SECOND = 1_000_000_000
+START = 1_700_000_000 * SECOND
+FORMS = [(storage, form) for storage in STORAGES for form in COMPRESSIONS if (storage, form) != ("sqlite3", "storage")]
+
+
+def write(path: Path, storage: str = "mcap", *, topic: str = "/words", count: int = 40, **options: Any) -> Path:
+    """A recording with a message of 10 kB every tenth of a second."""
+    with BagWriter(path, storage, **options) as writer:
+        writer.add_topic(topic, "std_msgs/msg/String")
+        for number in range(count):
+            writer.write(topic, START + number * SECOND // 10, text(number))
+    return path
+
+
+def text(number: int) -> bytes:
+    return serialize(String(data=f"{number:05}" * 2000))
+
+
+def metadata(folder: Path) -> dict[str, Any]:
+    document = yaml.safe_load((folder / "metadata.yaml").read_text(encoding="utf-8"))
+    return document["rosbag2_bagfile_information"]  # type: ignore[no-any-return]  # YAML has no types
+
+
+def content(path: Path) -> list[tuple[str, int, bytes]]:
+    with BagReader(path) as bag:
+        assert not bag.findings
+        return [(topic, stamp, bytes(data)) for topic, stamp, data in bag.messages()]
+
+
+def whole(topic: str = "/words", count: int = 40) -> list[tuple[str, int, bytes]]:
+    return [(topic, START + number * SECOND // 10, text(number)) for number in range(count)]
+
+
+@pytest.mark.parametrize(("storage", "compression"), FORMS)
+def test_files_of_a_second_each_hold_the_recording_and_the_metadata_list_them(tmp_path, storage, compression) -> None:
+    folder = write(tmp_path / "drive", storage, compression=compression, max_seconds=1)
+    suffix = (".mcap" if storage == "mcap" else ".db3") + (".zstd" if compression == "file" else "")
+    names = [f"drive_{number}{suffix}" for number in range(4)]
+    assert sorted(each.name for each in folder.iterdir()) == [*names, "metadata.yaml"]
+    told = metadata(folder)
+    assert told["relative_file_paths"] == names
+    assert [(each["path"], each["message_count"]) for each in told["files"]] == list(
+        zip(names, (11, 11, 11, 7), strict=True)
+    )
+    assert told["message_count"] == told["topics_with_message_count"][0]["message_count"] == 40
+    assert told["duration"]["nanoseconds"] == 39 * SECOND // 10
+    assert content(folder) == whole()
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+def test_files_are_split_by_their_size(tmp_path, storage) -> None:
+    folder = write(tmp_path / "drive", storage, max_size=150_000)
+    sizes = [each.stat().st_size for each in folder.iterdir() if each.suffix in (".mcap", ".db3")]
+    assert len(sizes) >= 3
+    assert max(sizes) < 200_000
+    assert content(folder) == whole()
+
+
+def test_a_single_file_has_the_number_that_rosbag2_gives_it(tmp_path) -> None:
+    assert (write(tmp_path / "drive") / "drive_0.mcap").exists()
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+def test_files_smaller_than_rosbag2_allows_are_refused(tmp_path, storage) -> None:
+    with pytest.raises(LinkwrightError, match="too small to split"):
+        BagWriter(tmp_path / "drive", storage, max_size=10)
+    assert not (tmp_path / "drive").exists()
+
+
+def test_a_snapshot_writes_the_last_messages_that_there_is_room_for(tmp_path) -> None:
+    with BagWriter(tmp_path / "drive", snapshot_size=3 * len(text(0))) as writer:
+        writer.add_topic("/words", "std_msgs/msg/String")
+        for number in range(8):
+            writer.write("/words", START + number * SECOND // 10, text(number))
+        assert writer.take_snapshot()
+        writer.write("/words", START + SECOND, text(9))
+    assert content(tmp_path / "drive") == whole(count=8)[5:]
+
+
+def test_there_are_no_snapshots_of_an_ordinary_recording(tmp_path) -> None:
+    with BagWriter(tmp_path / "drive") as writer:
+        assert not writer.take_snapshot()
+
+
+@pytest.mark.parametrize(("storage", "compression"), FORMS)
+def test_metadata_made_anew_are_those_that_were_lost(tmp_path, storage, compression) -> None:
+    folder = write(tmp_path / "drive", storage, compression=compression, max_seconds=1)
+    before = metadata(folder)
+    (folder / "metadata.yaml").unlink()
+    reindex(folder)
+    known = ("relative_file_paths", "files", "message_count", "starting_time", "topics_with_message_count", "duration")
+    assert {key: metadata(folder)[key] for key in known} == {key: before[key] for key in known}
+    assert content(folder) == whole()
+
+
+def test_a_killed_recording_of_several_files_is_read_with_metadata_made_anew(tmp_path) -> None:
+    folder = write(tmp_path / "drive", max_seconds=1)
+    last = folder / "drive_3.mcap"
+    last.write_bytes(last.read_bytes()[:-200])
+    (folder / "metadata.yaml").unlink()
+    reindex(folder)
+    with BagReader(folder) as bag:
+        assert [stamp for _, stamp, _ in bag.messages()] == [stamp for _, stamp, _ in whole()]
+
+
+def test_a_folder_without_files_of_a_recording_cannot_be_reindexed(tmp_path) -> None:
+    with pytest.raises(LinkwrightError, match="no files of a recording"):
+        reindex(tmp_path)
+
+
+def options(tmp_path: Path, *outputs: dict[str, Any]) -> Path:
+    path = tmp_path / "options.yaml"
+    path.write_text(yaml.safe_dump({"output_bags": list(outputs)}), encoding="utf-8")
+    return path
+
+
+def test_recordings_are_merged_by_time_and_divided_by_topics(tmp_path) -> None:
+    one, other = write(tmp_path / "one"), write(tmp_path / "other", "sqlite3", topic="/others", count=10)
+    made = rewrite(
+        [one, other],
+        options(
+            tmp_path,
+            {"uri": str(tmp_path / "all"), "storage_id": "sqlite3", "all": True, "max_bagfile_duration": 2},
+            {"uri": str(tmp_path / "some"), "topics": ["/others"], "compression_mode": "FILE"},
+            {"uri": str(tmp_path / "part"), "regex": "wor", "start_time_ns": START + 2 * SECOND},
+        ),
+    )
+    assert [each.name for each in made] == ["all", "some", "part"]
+    assert content(made[0]) == sorted(
+        [*whole(), *whole("/others", 10)], key=lambda each: (each[1], each[0] != "/words")
+    )
+    assert metadata(made[0])["relative_file_paths"] == ["all_0.db3", "all_1.db3"]
+    assert content(made[1]) == whole("/others", 10)
+    assert (made[1] / "some_0.mcap.zstd").exists()
+    assert content(made[2]) == whole()[20:]
+
+
+@pytest.mark.parametrize(
+    ("document", "said"),
+    [
+        ("{}", "needs the key 'output_bags'"),
+        ("output_bags: [{all: true}]", "needs the key 'uri'"),
+        ("output_bags: [{uri: x, topics: /a}]", "'topics' must be a list of names"),
+        ("output_bags: [{uri: x, storage_id: zip}]", "'storage_id' must be 'mcap' or 'sqlite3', not 'zip'"),
+        ("output_bags: [{uri: x, max_bagfile_size: big}]", "'max_bagfile_size' must be an integer"),
+        ("output_bags: [", "cannot be used as options"),
+    ],
+)
+def test_options_of_another_form_are_refused_before_anything_is_made(tmp_path, document, said) -> None:
+    source = write(tmp_path / "one", count=1)
+    path = tmp_path / "options.yaml"
+    path.write_text(document, encoding="utf-8")
+    with pytest.raises(LinkwrightError, match=said):
+        rewrite([source], path)
+    shutil.rmtree(source)
+    assert [each.name for each in tmp_path.iterdir()] == ["options.yaml"]
