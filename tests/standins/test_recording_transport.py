@@ -37,7 +37,7 @@ def write(path: Path, *, writer=None, **options) -> Path:
         )
     )
     for number in range(4):
-        writer.write("/words", serialize_message(String(data=f"word {number}")), 1000 + number)
+        writer.write("/words", serialize_message(String(data=f"word {number}")), 1000 + number * 10_000_000)
     writer.close()
     return path
 
