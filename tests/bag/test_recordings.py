@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
@@ -49,6 +50,19 @@ def write(folder: Path, storage: str = "mcap", count: int = 3, name: str = "bag"
 def code_of(error: pytest.ExceptionInfo[LinkwrightError]) -> str:
     (diagnostic,) = error.value.diagnostics
     return diagnostic.code
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+@pytest.mark.parametrize("key", ["offered_qos_profiles", "type_description_hash"])
+def test_metadata_that_tell_otherwise_than_the_files_hide_no_messages(tmp_path: Path, storage: str, key: str) -> None:
+    path = write(tmp_path, storage) / "metadata.yaml"
+    document = yaml.safe_load(path.read_text(encoding="utf-8"))
+    for each in document["rosbag2_bagfile_information"]["topics_with_message_count"]:
+        each["topic_metadata"][key] = "RIHS01_0" if "hash" in key else ""
+    path.write_text(yaml.safe_dump(document), encoding="utf-8")
+    with BagReader(path.parent) as bag:
+        assert len(list(bag.messages())) == 4
+        assert bag.state_at(["/joint_states"], START + 10**9)
 
 
 @pytest.mark.parametrize("storage", STORAGES)

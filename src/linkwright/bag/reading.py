@@ -133,6 +133,8 @@ class BagReader:
             reader = Reader(self._finished(target))
             reader.open()
             self._open.callback(reader.close)
+            if hasattr(reader.storage, "storages"):
+                _ignore_profiles_of_files(reader.storage)
             if target.is_file():
                 from linkwright.bag.packed import unpack_messages
 
@@ -212,12 +214,22 @@ class BagReader:
         """When the last message was received, nanoseconds since the epoch; 0 where there is none."""
         return self._reader.end_time - 1 if self._reader.message_count else 0
 
-    def messages(self, topics: Collection[str] = (), start_ns: int | None = None) -> Iterator[Recorded]:
+    @property
+    def definitions(self) -> list[tuple[str, str, str, str]]:
+        """What it has of the types of its topics: name, ``ros2msg`` or ``ros2idl``, definition, hash."""
+        found = {each.msgtype: each for each in self._reader.connections if each.topic not in self._others}
+        encodings = {"NONE": "unknown", "MSG": "ros2msg", "IDL": "ros2idl"}
+        return [(name, encodings[each.msgdef[0].name], each.msgdef[1], each.digest) for name, each in found.items()]
+
+    def messages(
+        self, topics: Collection[str] = (), start_ns: int | None = None, stop_ns: int | None = None
+    ) -> Iterator[Recorded]:
         """The messages in the order of their times: topic, nanoseconds since the epoch, CDR bytes.
 
         Args:
             topics: only these; all when empty.
             start_ns: nothing from before this time.
+            stop_ns: nothing from this time on.
 
         Raises:
             LinkwrightError: BAG102, the rest cannot be read; BAG103, a topic is not in the recording.
@@ -238,7 +250,7 @@ class BagReader:
             for each in self._reader.connections
             if each.topic not in self._others and (not topics or each.topic in topics)
         ]
-        return self._read(self._reader.messages(connections, start=start_ns))
+        return self._read(self._reader.messages(connections, start_ns, stop_ns))
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
         """The state at a time: the last message of each topic, and transforms; see `Moments`.
@@ -287,6 +299,18 @@ class BagReader:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _ignore_profiles_of_files(storage: Any) -> None:
+    """Let the library find the topics of ``metadata.yaml`` in the files, of which it wants the same profiles.
+
+    Recordings from before rosbag2 kept profiles in files, and some that were converted, would be read without messages.
+    """
+    told = {(each.topic, each.msgtype): each for each in storage.connections}
+    for file in storage.storages:
+        for number, each in enumerate(file.connections):
+            known = told.get((each.topic, each.msgtype), each)
+            file.connections[number] = each._replace(ext=known.ext, digest=known.digest)
 
 
 def _storage_targets(path: Path, called: str) -> list[Path]:
