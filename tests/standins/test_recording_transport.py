@@ -76,6 +76,17 @@ def test_a_recorder_records_until_it_is_cancelled(node, tmp_path) -> None:
     assert set(words(tmp_path / "drive")) == {"x" * 2000}
 
 
+def test_a_recorder_that_is_cancelled_before_it_runs_ends_at_once(tmp_path) -> None:
+    recorder = rosbag2_py.Recorder("warn")
+    recorder.cancel()
+    options = rosbag2_py.RecordOptions()
+    options.all = True  # Humble's name
+    recorder.record(StorageOptions(uri=str(tmp_path / "drive")), options)
+    assert (tmp_path / "drive" / "metadata.yaml").exists()
+    with pytest.raises(RuntimeError, match="xxx"):
+        rosbag2_py.Recorder("xxx")
+
+
 def test_a_player_plays_until_it_is_cancelled(node, tmp_path) -> None:
     heard: list[str] = []
     node.create_subscription(String, "/other_words", lambda message: heard.append(message.data), 10)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import subprocess
 import sys
 
@@ -84,6 +85,39 @@ def test_topics_are_filtered_and_times_sought(tmp_path):
     assert not reader.has_next()
 
 
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_a_filter_that_changes_neither_repeats_nor_skips_a_message(tmp_path, storage):
+    writer = SequentialWriter()
+    writer.open(StorageOptions(str(tmp_path / "bag"), storage), CDR)
+    for name in "abc":
+        writer.create_topic(TopicMetadata(name=f"/{name}", type="std_msgs/msg/Int32"))
+    for name, stamp_ns in ("a", 1), ("b", 2), ("a", 2), ("c", 2), ("b", 3), ("a", 9):
+        writer.write(f"/{name}", serialize_message(Int32()), stamp_ns)
+    writer.close()
+    reader = opened(tmp_path / "bag")
+    reader.set_filter(StorageFilter(topics=["/a"]))
+    reader.read_next()
+    assert reader.read_next()[::2] == ("/a", 2)
+    reader.reset_filter()
+    assert rest(reader) == [("/c", 2), ("/b", 3), ("/a", 9)]
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_messages_are_read_backwards(tmp_path, storage):
+    write(tmp_path / "bag", storage)
+    reader = opened(tmp_path / "bag")
+    forwards = rest(reader)
+    reader.set_read_order(rosbag2_py.ReadOrder(reverse=True))
+    reader.seek(2_000_000_000_000)
+    assert rest(reader) == forwards[::-1]
+    reader.seek(1015)
+    assert reader.read_next()[::2] == ("/words", 1015)
+    reader.set_filter(StorageFilter(topics=["/numbers"]))
+    assert rest(reader) == [("/numbers", 1010), ("/numbers", 1000)]
+    with pytest.raises(RuntimeError, match="File"):
+        reader.set_read_order(rosbag2_py.ReadOrder(rosbag2_py.ReadOrderSortBy.File))
+
+
 @pytest.mark.parametrize(
     ("storage_filter", "admitted"),
     [
@@ -93,6 +127,9 @@ def test_topics_are_filtered_and_times_sought(tmp_path):
         (StorageFilter(topics=["/c"], topics_regex="/a"), ["/a/b", "/c"]),
         (StorageFilter(topics_regex_to_exclude="/a"), ["/c"]),
         (StorageFilter(exclude_topics=["/c"]), ["/a/b"]),
+        (StorageFilter(services_events=["/c"]), ["/c"]),
+        (StorageFilter(exclude_service_events=["/c"]), ["/a/b"]),
+        (StorageFilter(regex_to_exclude="/a"), ["/c"]),
     ],
 )
 def test_filters(storage_filter, admitted):
@@ -108,6 +145,43 @@ def test_what_is_known_without_reading(tmp_path):
     words = next(each for each in metadata.topics_with_message_count if each.topic_metadata.name == "/words")
     assert words.message_count == 4
     assert [profile.depth for profile in words.topic_metadata.offered_qos_profiles] == [3]
+
+
+def test_metadata_are_written_and_read(tmp_path):
+    write(tmp_path / "bag")
+    reader, metadata_io = opened(tmp_path / "bag"), rosbag2_py.MetadataIo()
+    metadata = metadata_io.read_metadata(str(tmp_path / "bag"))
+    for each in metadata.topics_with_message_count:
+        (known,) = (topic for topic in reader.get_all_topics_and_types() if topic.name == each.topic_metadata.name)
+        assert each.topic_metadata == dataclasses.replace(known, id=0)
+    assert [(each.path, each.message_count) for each in metadata.files] == [("bag_0.mcap", 8)]
+    assert reader.get_metadata().files == metadata.files
+    assert metadata_io.deserialize_metadata(metadata_io.serialize_metadata(metadata)).files == metadata.files
+    metadata.custom_data = {"site": "north"}
+    (tmp_path / "other").mkdir()
+    metadata_io.write_metadata(str(tmp_path / "other"), metadata)
+    assert metadata_io.read_metadata(str(tmp_path / "other")).custom_data == {"site": "north"}
+    assert "Messages:          8" in str(metadata)
+    assert not metadata_io.metadata_file_exists(str(tmp_path))
+    with pytest.raises(RuntimeError, match=r"metadata\.yaml"):
+        metadata_io.read_metadata(str(tmp_path))
+    with pytest.raises(RuntimeError, match="bad conversion"):
+        metadata_io.deserialize_metadata("[]")
+
+
+def test_definitions_of_types_are_told(tmp_path):
+    write(tmp_path / "bag")
+    definitions = {each.topic_type: each for each in opened(tmp_path / "bag").get_all_message_definitions()}
+    local = rosbag2_py.LocalMessageDefinitionSource()
+    assert definitions["std_msgs/msg/Int32"] == local.get_full_text("std_msgs/msg/Int32")
+    assert "int32 data" in definitions["std_msgs/msg/Int32"].encoded_message_definition
+    assert local.get_full_text("some_pkg") == rosbag2_py.MessageDefinition("some_pkg", "unknown", "", "")
+
+
+def test_options_that_do_not_exist_cannot_be_set():
+    for options in (rosbag2_py.RecordOptions(), rosbag2_py.PlayOptions(), StorageOptions("bag")):
+        with pytest.raises(AttributeError):
+            options.all_topic = True
 
 
 def test_topics_as_humble_and_as_later_ones_give_them():

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from linkwright.bag.recorder import Recorder
     from linkwright.bag.recorder_services import RecorderServices
     from linkwright.bag.selection import TopicSelection
-    from linkwright.bag.summary import summary_text
+    from linkwright.bag.summary import layout, summary_text
     from linkwright.bag.writing import COMPRESSIONS, STORAGES, BagWriter
 
 __all__ = [
@@ -38,6 +38,7 @@ __all__ = [
     "Recording",
     "TopicSelection",
     "is_recording",
+    "layout",
     "summary_text",
 ]
 
@@ -53,7 +54,7 @@ __getattr__ = deferred(
         "recorder": ("Recorder",),
         "recorder_services": ("RecorderServices",),
         "selection": ("TopicSelection",),
-        "summary": ("summary_text",),
+        "summary": ("layout", "summary_text"),
         "writing": ("COMPRESSIONS", "STORAGES", "BagWriter"),
     },
 )

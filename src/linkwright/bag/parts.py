@@ -18,7 +18,8 @@ from linkwright.scratch_folders import ScratchFolder
 VERSION: Literal[8] = 8
 """The version of the metadata; Humble reads 8 and below but for unknown fields, Jazzy writes 9."""
 
-_INFORMATION = "rosbag2_bagfile_information"
+INFORMATION = "rosbag2_bagfile_information"
+"""The key of ``metadata.yaml`` below which everything is."""
 
 _Metadata = dict[str, Any]
 
@@ -91,7 +92,7 @@ class Part:
             self._writer.metapath = Path(folder) / METADATA
             self._writer.close()
             document = yaml.safe_load(self._writer.metapath.read_text(encoding="utf-8"))
-        information: _Metadata = document[_INFORMATION]
+        information: _Metadata = document[INFORMATION]
         self.path = self.path.with_name(information["relative_file_paths"][0])
         return information
 
@@ -107,7 +108,12 @@ def write_metadata(folder: Path, parts: Sequence[_Metadata]) -> None:
         folder: of the recording.
         parts: what the metadata say of each file alone, one or more.
     """
-    text = yaml.safe_dump({_INFORMATION: _joined(parts)}, sort_keys=False, allow_unicode=True)
+    write_information(folder, _joined(parts))
+
+
+def write_information(folder: Path, information: _Metadata) -> None:
+    """Write a ``metadata.yaml`` that says this."""
+    text = yaml.safe_dump({INFORMATION: information}, sort_keys=False, allow_unicode=True)
     whole_files.write_whole_file(folder / METADATA, text)
 
 

@@ -81,6 +81,20 @@ def from_bag(qos: Qos) -> QoSProfile:
     )
 
 
+def to_text(profiles: Sequence[QoSProfile]) -> str:
+    """The text that ``metadata.yaml`` has for profiles, up to its version 8."""
+    from rosbags.rosbag2.metadata import dump_qos_v8
+
+    return dump_qos_v8([to_bag(each) for each in profiles])
+
+
+def from_text(text: Any) -> list[QoSProfile]:
+    """The profiles that ``metadata.yaml`` has, as text or, since its version 9, as a list."""
+    from rosbags.rosbag2.metadata import parse_qos
+
+    return [from_bag(each) for each in parse_qos(text)]
+
+
 def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
     """The profile to subscribe with, so that every publisher of a topic is compatible.
 

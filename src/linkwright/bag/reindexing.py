@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.bag.names import are_of_one_recording, in_order, storage_of
-from linkwright.bag.qos import to_bag
+from linkwright.bag.qos import to_text
 from linkwright.bag.reading import BagReader
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.messages import type_hash
@@ -44,8 +44,6 @@ def reindex(folder: Path) -> None:
 
 def _metadata_of(bag: BagReader, file: Path) -> dict[str, Any]:
     """What the metadata say of a file alone."""
-    from rosbags.rosbag2.metadata import dump_qos_v8
-
     from linkwright.bag.parts import VERSION
 
     span = {
@@ -59,7 +57,7 @@ def _metadata_of(bag: BagReader, file: Path) -> dict[str, Any]:
                 "name": topic.name,
                 "type": topic.type_name,
                 "serialization_format": topic.serialization_format,
-                "offered_qos_profiles": dump_qos_v8([to_bag(qos) for qos in topic.offered_qos]),
+                "offered_qos_profiles": to_text(topic.offered_qos),
                 "type_description_hash": type_hash(topic.type_name),
             },
             "message_count": topic.count,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import datetime
 
-from linkwright.bag.reading import BagReader
+from linkwright.bag.reading import BagReader, BagTopic
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 
@@ -18,21 +19,35 @@ def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
     """
     if topic_names_only:
         return "".join(f"{topic.name}\n" for topic in bag.topics)
-    start, end = bag.start_ns, bag.end_ns
-    topics = [
+    size = sum(file.stat().st_size for file in bag.files)
+    return layout([file.name for file in bag.files], size, bag.storage, (bag.start_ns, bag.end_ns), bag.topics)
+
+
+def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, int], topics: Sequence[BagTopic]) -> str:
+    """The summary of a recording of which this is known.
+
+    Args:
+        files: their names.
+        size: bytes of all.
+        storage: one of `linkwright.bag.STORAGES`.
+        span_ns: the times of the first and the last message, nanoseconds since the epoch.
+        topics: what is told of each.
+    """
+    start, end = span_ns
+    told = [
         f"Topic: {topic.name} | Type: {topic.type_name} | Count: {topic.count} | "
         f"Serialization Format: {topic.serialization_format}"
-        for topic in bag.topics
+        for topic in topics
     ]
     rows = [
-        ("Files:", "\n".join(file.name for file in bag.files)),
-        ("Bag size:", _size(sum(file.stat().st_size for file in bag.files))),
-        ("Storage id:", bag.storage),
+        ("Files:", "\n".join(files)),
+        ("Bag size:", _size(size)),
+        ("Storage id:", storage),
         ("Duration:", f"{_seconds(end - start)}s"),
         ("Start:", _moment(start)),
         ("End:", _moment(end)),
-        ("Messages:", str(sum(topic.count for topic in bag.topics))),
-        ("Topic information:", "\n".join(topics)),
+        ("Messages:", str(sum(topic.count for topic in topics))),
+        ("Topic information:", "\n".join(told)),
     ]
     blank = " " * 19
     return "\n" + "".join(f"{name:19}{text.replace(chr(10), chr(10) + blank)}".rstrip() + "\n" for name, text in rows)

@@ -19,12 +19,14 @@ from linkwright.bag.reindexing import reindex
 from linkwright.bag.rewriting import rewrite
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
+from linkwright.graph.log.levels import level_named
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.time.values import Duration
 from linkwright.standins.rclpy_api.context import Context
 from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
 from linkwright.standins.rclpy_api.node import Node
-from linkwright.standins.recordings import StorageOptions, writer_for
+from linkwright.standins.recording_storage import StorageOptions
+from linkwright.standins.recordings import writer_for
 
 _LOOK_SECONDS = 0.1
 
@@ -36,7 +38,7 @@ class ServiceRequestsSource(enum.Enum):
     CLIENT_INTROSPECTION = 1
 
 
-@dataclass
+@dataclass(slots=True)
 class PlayOptions:
     """How a recording is played; what only tunes rosbag2 is accepted and changes nothing."""
 
@@ -67,7 +69,7 @@ class PlayOptions:
     service_requests_source: ServiceRequestsSource = ServiceRequestsSource.SERVICE_INTROSPECTION
 
 
-@dataclass
+@dataclass(slots=True)
 class RecordOptions:
     """What is recorded, and how; what only tunes rosbag2 is accepted and changes nothing."""
 
@@ -97,18 +99,22 @@ class RecordOptions:
     start_paused: bool = False
     use_sim_time: bool = False
     disable_keyboard_controls: bool = False
+    all: bool = False
+    """Humble's name of `all_topics`."""
+    exclude: str = ""
+    """Humble's name of `exclude_regex`."""
 
     @property
     def selection(self) -> TopicSelection:
         """Which topics are recorded. Services are given by the topics of their events, as ``ros2bag`` does."""
         return TopicSelection(
-            everything=self.all_topics,
+            everything=self.all_topics or self.all,
             names=_absolute(self.topics),
             types=self.topic_types,
             pattern=self.regex,
             without_names=_absolute(self.exclude_topics),
             without_types=self.exclude_topic_types,
-            without_pattern=self.exclude_regex,
+            without_pattern=self.exclude_regex or self.exclude,
             hidden=self.include_hidden_topics,
             every_service=self.all_services,
             services=_services(self.services),
@@ -125,7 +131,15 @@ class _Transport:
         cls._cancelled = threading.Event()
 
     def __init__(self, log_level: str = "info") -> None:
+        """Prepare.
+
+        Raises:
+            RuntimeError: there is no such level.
+        """
+        if level_named(log_level) is None:
+            raise RuntimeError(f"Couldn't parse log level '{log_level}'")
         self._arguments = ["--ros-args", "--log-level", log_level]
+        self._cancelled.clear()
 
     @classmethod
     def cancel(cls) -> None:
@@ -139,7 +153,6 @@ class _Transport:
         Raises:
             RuntimeError: a recording cannot be opened or made.
         """
-        self._cancelled.clear()
         context = Context()
         context.init([*self._arguments, *arguments])
         try:
@@ -156,6 +169,7 @@ class _Transport:
             raise RuntimeError(str(error)) from error
         finally:
             context.try_shutdown()
+            self._cancelled.clear()  # not at the beginning: it may be cancelled before its thread comes here
 
 
 class Recorder(_Transport):

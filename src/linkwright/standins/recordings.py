@@ -3,110 +3,34 @@
 from __future__ import annotations
 
 import enum
-import re
 import weakref
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from itertools import chain
 
 from linkwright.bag import STORAGES, BagReader, BagWriter
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.time.values import ClockType, Duration, Time
+from linkwright.messages import type_hash
+from linkwright.messages.schema_text import schema_of
+from linkwright.standins.recording_storage import (
+    BagMetadata,
+    ConverterOptions,
+    FileInformation,
+    MessageDefinition,
+    MetadataIo,
+    ReadOrder,
+    ReadOrderSortBy,
+    StorageFilter,
+    StorageOptions,
+    TopicInformation,
+    TopicMetadata,
+)
 
+_Message = tuple[str, int, bytes]
 
-@dataclass
-class StorageOptions:
-    """Where a recording is, in which format, and how it is divided into files."""
-
-    uri: str
-    storage_id: str = ""
-    max_bagfile_size: int = 0
-    max_bagfile_duration: int = 0
-    max_cache_size: int = 0
-    storage_preset_profile: str = ""
-    storage_config_uri: str = ""
-    snapshot_mode: bool = False
-    start_time_ns: int = -1
-    end_time_ns: int = -1
-    custom_data: dict[str, str] = field(default_factory=dict)
-
-
-@dataclass
-class ConverterOptions:
-    """The formats of messages; CDR is the only one."""
-
-    input_serialization_format: str = ""
-    output_serialization_format: str = ""
-
-
-@dataclass
-class StorageFilter:
-    """Which topics are read: those named and those that match a regular expression; all where neither is given."""
-
-    topics: list[str] = field(default_factory=list)
-    topics_regex: str = ""
-    topics_regex_to_exclude: str = ""
-    regex: str = ""
-    exclude_topics: list[str] = field(default_factory=list)
-
-    def admits(self, topic: str) -> bool:
-        """Whether a topic is read."""
-        pattern = self.regex or self.topics_regex
-        wanted = not (self.topics or pattern) or topic in self.topics or bool(pattern and re.search(pattern, topic))
-        left_out = self.topics_regex_to_exclude and re.search(self.topics_regex_to_exclude, topic)
-        return wanted and not left_out and topic not in self.exclude_topics
-
-
-@dataclass
-class TopicMetadata:
-    """A topic of a recording.
-
-    Humble has no ``id``, and one text instead of a list of profiles, so all but the name are better given by keyword.
-    """
-
-    id: int = 0
-    name: str = ""
-    type: str = ""
-    serialization_format: str = "cdr"
-    offered_qos_profiles: Sequence[QoSProfile] | str = ()
-    type_description_hash: str = ""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        names = ["id", "name", "type", "serialization_format", "offered_qos_profiles", "type_description_hash"]
-        if args and isinstance(args[0], str):
-            names.remove("id")
-        given = dict(zip(names, args, strict=False)) | kwargs
-        unknown = given.keys() - {"id", *names}
-        if unknown or len(args) > len(names):
-            raise TypeError(f"TopicMetadata() got unexpected arguments: {', '.join(sorted(unknown)) or args}")
-        for name, value in given.items():
-            setattr(self, name, value)
-
-    def equals(self, other: TopicMetadata) -> bool:
-        """Whether another is the same."""
-        return self == other
-
-
-@dataclass(frozen=True)
-class TopicInformation:
-    """A topic with the number of its messages."""
-
-    topic_metadata: TopicMetadata
-    message_count: int
-
-
-@dataclass(frozen=True)
-class BagMetadata:
-    """What is known of a recording without reading its messages."""
-
-    storage_identifier: str
-    relative_file_paths: list[str]
-    bag_size: int
-    starting_time: Time
-    duration: Duration
-    message_count: int
-    topics_with_message_count: list[TopicInformation]
+_STEP_NS = 1_000_000_000
+"""How much is read at once where messages are read backwards."""
 
 
 class CompressionMode(enum.Enum):
@@ -144,8 +68,11 @@ class SequentialReader:
     def __init__(self) -> None:
         self._bag: BagReader | None = None
         self._filter = StorageFilter()
-        self._stream: Iterator[tuple[str, int, bytes]] = iter(())
-        self._next: tuple[str, int, bytes] | None = None
+        self._reverse = False
+        self._start_ns: int | None = None
+        self._last: _Message | None = None
+        self._stream: Iterator[_Message] = iter(())
+        self._next: _Message | None = None
 
     def open(self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None) -> None:
         """Open a recording: a folder, or a single file.
@@ -158,7 +85,7 @@ class SequentialReader:
         except LinkwrightError as error:
             raise RuntimeError(str(error)) from error
         weakref.finalize(self, self._bag.close)
-        self._begin()
+        self.seek(None)
 
     def open_uri(self, uri: str) -> None:
         """Open a recording by its place alone."""
@@ -180,7 +107,7 @@ class SequentialReader:
         """
         if self._next is None:
             raise RuntimeError("Bag is at end. No next message.")
-        topic, stamp_ns, data = self._next
+        topic, stamp_ns, data = self._last = self._next
         self._advance()
         return topic, data, stamp_ns
 
@@ -188,9 +115,14 @@ class SequentialReader:
         """The topics of the recording, whatever is filtered."""
         return [each.topic_metadata for each in self.get_metadata().topics_with_message_count]
 
+    def get_all_message_definitions(self) -> list[MessageDefinition]:
+        """The definitions of the types of its topics, as far as it has them."""
+        return [MessageDefinition(*each) for each in self._opened().definitions]
+
     def get_metadata(self) -> BagMetadata:
         """What is known of the recording."""
         bag = self._opened()
+        hashes = {name: digest for name, _, _, digest in bag.definitions}
         topics = [
             TopicInformation(
                 TopicMetadata(
@@ -199,44 +131,79 @@ class SequentialReader:
                     type=topic.type_name,
                     serialization_format=topic.serialization_format,
                     offered_qos_profiles=list(topic.offered_qos),
+                    type_description_hash=hashes[topic.type_name],
                 ),
                 topic.count,
             )
             for number, topic in enumerate(bag.topics, 1)
         ]
+        start, duration = _time(bag.start_ns), Duration(nanoseconds=bag.end_ns - bag.start_ns)
+        files, count = [file.name for file in bag.files], sum(topic.count for topic in bag.topics)
         return BagMetadata(
-            bag.storage,
-            [file.name for file in bag.files],
-            sum(file.stat().st_size for file in bag.files),
-            Time(nanoseconds=bag.start_ns, clock_type=ClockType.SYSTEM_TIME),
-            Duration(nanoseconds=bag.end_ns - bag.start_ns),
-            sum(topic.count for topic in bag.topics),
-            topics,
+            storage_identifier=bag.storage,
+            relative_file_paths=files,
+            files=[FileInformation(files[0], start, duration, count)] if len(files) == 1 else _files(bag),
+            bag_size=sum(file.stat().st_size for file in bag.files),
+            starting_time=start,
+            duration=duration,
+            message_count=count,
+            topics_with_message_count=topics,
+            compression_format="zstd" if bag.compression else "",
+            compression_mode=bag.compression,
         )
 
     def set_filter(self, storage_filter: StorageFilter) -> None:
         """Read only some topics from here on."""
         self._filter = storage_filter
-        self._begin(None if self._next is None else self._next[1])
+        self._continue()
 
     def reset_filter(self) -> None:
         """Read all topics from here on."""
         self.set_filter(StorageFilter())
 
-    def seek(self, timestamp: int) -> None:
-        """Continue with the first message at or after a time, in nanoseconds since the epoch."""
-        self._begin(timestamp)
+    def set_read_order(self, read_order: ReadOrder) -> bool:
+        """Read forwards or backwards from here on; whether that is possible.
+
+        Raises:
+            RuntimeError: the order is not that of the times at which messages were received.
+        """
+        if read_order.sort_by is not ReadOrderSortBy.ReceivedTimestamp:
+            raise RuntimeError(f"Not Implemented - {read_order.sort_by.name} read order")
+        self._reverse = read_order.reverse
+        self._continue()
+        return True
+
+    def seek(self, timestamp: int | None) -> None:
+        """Continue with the first message at or after a time, in nanoseconds since the epoch; backwards, before it."""
+        self._start_ns, self._last = timestamp, None
+        self._continue()
 
     def _opened(self) -> BagReader:
         if self._bag is None:
             raise RuntimeError("Bag is not open. Call open() before reading.")
         return self._bag
 
-    def _begin(self, start_ns: int | None = None) -> None:
+    def _continue(self) -> None:
+        """Go on after the last message that was read."""
         bag = self._opened()
         topics = [topic.name for topic in bag.topics if self._filter.admits(topic.name)]
-        self._stream = bag.messages(topics, start_ns) if topics else iter(())
+        if not topics:
+            self._stream = iter(())
+        elif self._last is None:
+            self._stream = self._from(topics, self._start_ns)
+        else:
+            stamp_ns = self._last[1]
+            at_once = list(bag.messages((), stamp_ns, stamp_ns + 1))
+            if self._reverse:
+                at_once.reverse()
+            rest = [each for each in at_once[at_once.index(self._last) + 1 :] if each[0] in topics]
+            self._stream = chain(rest, self._from(topics, stamp_ns + (-1 if self._reverse else 1)))
         self._advance()
+
+    def _from(self, topics: Collection[str], stamp_ns: int | None) -> Iterator[_Message]:
+        if self._reverse:
+            return _backwards(self._opened(), topics, stamp_ns)
+        return self._opened().messages(topics, stamp_ns)
 
     def _advance(self) -> None:
         try:
@@ -244,6 +211,27 @@ class SequentialReader:
         except LinkwrightError as error:
             self._next = None
             raise RuntimeError(str(error)) from error
+
+
+def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> Iterator[_Message]:
+    """The messages of topics from the last one on, where a time is given from the last one at or before it."""
+    stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _STEP_NS
+    while stop_ns > bag.start_ns:
+        found = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
+        yield from reversed(found)
+        stop_ns -= step_ns
+        step_ns = _STEP_NS if found else 2 * step_ns
+
+
+def _files(bag: BagReader) -> list[FileInformation]:
+    """What ``metadata.yaml`` says of each of several files; nothing where it is missing."""
+    metadata = MetadataIo()
+    where = str(bag.path)
+    return metadata.read_metadata(where).files if metadata.metadata_file_exists(where) else []
+
+
+def _time(stamp_ns: int) -> Time:
+    return Time(nanoseconds=stamp_ns, clock_type=ClockType.SYSTEM_TIME)
 
 
 class SequentialWriter:
@@ -282,13 +270,14 @@ class SequentialWriter:
         except LinkwrightError as error:
             raise RuntimeError(str(error)) from error
 
-    def write(self, topic_name: str, message: bytes, timestamp: int) -> None:
+    def write(self, topic_name: str, message: bytes, timestamp: int, send_timestamp: int | None = None) -> None:
         """Add a message.
 
         Args:
             topic_name: a topic that was made.
             message: CDR bytes with their header, as ``serialize_message`` gives them.
             timestamp: when it was received, nanoseconds since the epoch.
+            send_timestamp: when it was published; not kept.
 
         Raises:
             RuntimeError: there is no such topic.
@@ -359,14 +348,20 @@ class Info:
             reader.close()
 
 
+class LocalMessageDefinitionSource:
+    """The definitions of types that are known here."""
+
+    def get_full_text(self, root_topic_type: str) -> MessageDefinition:
+        """The definition of a type; one without a text where it is not known."""
+        try:
+            return MessageDefinition(root_topic_type, "ros2msg", schema_of(root_topic_type), type_hash(root_topic_type))
+        except LinkwrightError:
+            return MessageDefinition(root_topic_type, "unknown", "", "")
+
+
 def get_registered_readers() -> set[str]:
     """The formats of files that can be read."""
     return set(STORAGES)
-
-
-def get_default_storage_id() -> str:
-    """The format of the files that are written where none is named."""
-    return STORAGES[0]
 
 
 def get_registered_compressors() -> set[str]:

@@ -1,0 +1,299 @@
+"""What recordings are described by in ``rosbag2_py``: options, filters, and ``metadata.yaml``."""
+
+from __future__ import annotations
+
+import enum
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from linkwright.bag import STORAGES, BagTopic, layout
+from linkwright.bag.names import METADATA
+from linkwright.bag.qos import from_text, to_text
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.graph.time.values import ClockType, Duration, Time
+
+
+@dataclass(slots=True)
+class StorageOptions:
+    """Where a recording is, in which format, and how it is divided into files."""
+
+    uri: str
+    storage_id: str = ""
+    max_bagfile_size: int = 0
+    max_bagfile_duration: int = 0
+    max_cache_size: int = 0
+    storage_preset_profile: str = ""
+    storage_config_uri: str = ""
+    snapshot_mode: bool = False
+    start_time_ns: int = -1
+    end_time_ns: int = -1
+    custom_data: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class ConverterOptions:
+    """The formats of messages; CDR is the only one."""
+
+    input_serialization_format: str = ""
+    output_serialization_format: str = ""
+
+
+@dataclass(slots=True)
+class StorageFilter:
+    """Which topics are read: those named and those that match a regular expression; all where neither is given."""
+
+    topics: list[str] = field(default_factory=list)
+    topics_regex: str = ""
+    topics_regex_to_exclude: str = ""
+    regex: str = ""
+    exclude_topics: list[str] = field(default_factory=list)
+    services_events: list[str] = field(default_factory=list)
+    exclude_service_events: list[str] = field(default_factory=list)
+    regex_to_exclude: str = ""
+
+    def admits(self, topic: str) -> bool:
+        """Whether a topic is read."""
+        named, pattern = [*self.topics, *self.services_events], self.regex or self.topics_regex
+        wanted = not (named or pattern) or topic in named or bool(pattern and re.search(pattern, topic))
+        left_out = self.regex_to_exclude or self.topics_regex_to_exclude
+        if topic in self.exclude_topics or topic in self.exclude_service_events:
+            return False
+        return wanted and not (left_out and re.search(left_out, topic))
+
+
+class ReadOrderSortBy(enum.Enum):
+    """What messages are sorted by."""
+
+    ReceivedTimestamp = 0
+    PublishedTimestamp = 1
+    File = 2
+
+
+@dataclass(slots=True)
+class ReadOrder:
+    """The order in which messages are read."""
+
+    sort_by: ReadOrderSortBy = ReadOrderSortBy.ReceivedTimestamp
+    reverse: bool = False
+
+
+@dataclass(slots=True)
+class MessageDefinition:
+    """The definition of a type as a recording has it, with those of the types in it."""
+
+    topic_type: str
+    encoding: str
+    encoded_message_definition: str
+    type_hash: str
+
+
+@dataclass
+class TopicMetadata:
+    """A topic of a recording.
+
+    Humble has no ``id``, and one text instead of a list of profiles, so all but the name are better given by keyword.
+    """
+
+    id: int = 0
+    name: str = ""
+    type: str = ""
+    serialization_format: str = "cdr"
+    offered_qos_profiles: Sequence[QoSProfile] | str = ()
+    type_description_hash: str = ""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        names = ["id", "name", "type", "serialization_format", "offered_qos_profiles", "type_description_hash"]
+        if args and isinstance(args[0], str):
+            names.remove("id")
+        given = dict(zip(names, args, strict=False)) | kwargs
+        unknown = given.keys() - {"id", *names}
+        if unknown or len(args) > len(names):
+            raise TypeError(f"TopicMetadata() got unexpected arguments: {', '.join(sorted(unknown)) or args}")
+        for name, value in given.items():
+            setattr(self, name, value)
+
+    def equals(self, other: TopicMetadata) -> bool:
+        """Whether another is the same."""
+        return self == other
+
+
+@dataclass(slots=True)
+class TopicInformation:
+    """A topic with the number of its messages."""
+
+    topic_metadata: TopicMetadata
+    message_count: int
+
+
+def _at(stamp_ns: int) -> Time:
+    return Time(nanoseconds=stamp_ns, clock_type=ClockType.SYSTEM_TIME)
+
+
+@dataclass(slots=True)
+class FileInformation:
+    """A file of a recording."""
+
+    path: str
+    starting_time: Time
+    duration: Duration
+    message_count: int
+
+
+@dataclass(repr=False, slots=True)
+class BagMetadata:
+    """What is known of a recording without reading its messages."""
+
+    version: int = 9
+    bag_size: int = 0
+    storage_identifier: str = ""
+    relative_file_paths: list[str] = field(default_factory=list)
+    files: list[FileInformation] = field(default_factory=list)
+    duration: Duration = field(default_factory=Duration)
+    starting_time: Time = field(default_factory=lambda: _at(0))
+    message_count: int = 0
+    topics_with_message_count: list[TopicInformation] = field(default_factory=list)
+    compression_format: str = ""
+    compression_mode: str = ""
+    custom_data: dict[str, str] = field(default_factory=dict)
+    ros_distro: str = ""
+
+    def __repr__(self) -> str:
+        """The text of ``ros2 bag info``."""
+        start = self.starting_time.nanoseconds
+        topics = [
+            BagTopic(each.name, each.type, counted.message_count, each.serialization_format, ())
+            for counted in self.topics_with_message_count
+            for each in [counted.topic_metadata]
+        ]
+        end = start + self.duration.nanoseconds
+        return layout(self.relative_file_paths, self.bag_size, self.storage_identifier, (start, end), topics)
+
+
+class MetadataIo:
+    """Reads and writes ``metadata.yaml``, in its version 8, which Humble and later read."""
+
+    def metadata_file_exists(self, uri: str) -> bool:
+        """Whether a folder has the file."""
+        return (Path(uri) / METADATA).exists()
+
+    def read_metadata(self, uri: str) -> BagMetadata:
+        """Read the file in a folder.
+
+        Raises:
+            RuntimeError: there is none, or it has another form.
+        """
+        import yaml
+
+        from linkwright.bag.parts import INFORMATION
+
+        folder = Path(uri)
+        try:
+            found = _metadata(yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))[INFORMATION])
+        except (OSError, ValueError, TypeError, KeyError, yaml.YAMLError) as error:
+            raise RuntimeError(f"Exception on parsing info file: {error}") from error
+        found.bag_size = sum(each.stat().st_size for each in folder.iterdir() if each.is_file())
+        return found
+
+    def write_metadata(self, uri: str, metadata: BagMetadata) -> None:
+        """Write the file into a folder."""
+        from linkwright.bag.parts import write_information
+
+        write_information(Path(uri), _information(metadata))
+
+    def serialize_metadata(self, metadata: BagMetadata) -> str:
+        """The text of the file, without the key above all others."""
+        import yaml
+
+        return yaml.safe_dump(_information(metadata), sort_keys=False, allow_unicode=True)
+
+    def deserialize_metadata(self, serialized_metadata: str) -> BagMetadata:
+        """Read what `serialize_metadata` gives.
+
+        Raises:
+            RuntimeError: it has another form.
+        """
+        import yaml
+
+        try:
+            return _metadata(yaml.safe_load(serialized_metadata))
+        except (ValueError, TypeError, KeyError, yaml.YAMLError) as error:
+            raise RuntimeError(f"bad conversion: {error}") from error
+
+
+def get_default_storage_id() -> str:
+    """The format of the files that are written where none is named."""
+    return STORAGES[0]
+
+
+def to_rclcpp_qos_vector(serialized: str, version: int) -> list[QoSProfile]:  # noqa: ARG001 - rosbag2's signature
+    """The profiles in a text of ``metadata.yaml``, of any version."""
+    return from_text(serialized)
+
+
+def convert_rclcpp_qos_to_rclpy_qos(qos_input: QoSProfile) -> QoSProfile:
+    """The profile itself, which is that of rclpy here."""
+    return qos_input
+
+
+def _metadata(found: Mapping[str, Any]) -> BagMetadata:
+    """The metadata in a ``metadata.yaml``; older versions lack keys."""
+    topics = []
+    for each in found["topics_with_message_count"]:
+        known = dict(each["topic_metadata"])
+        known["offered_qos_profiles"] = from_text(known.get("offered_qos_profiles", ""))
+        topics.append(TopicInformation(TopicMetadata(**known), each["message_count"]))
+    files = [FileInformation(each["path"], *_span(each), each["message_count"]) for each in found.get("files") or ()]
+    starting_time, duration = _span(found)
+    return BagMetadata(
+        version=found["version"],
+        storage_identifier=found["storage_identifier"],
+        relative_file_paths=list(found["relative_file_paths"]),
+        files=files,
+        duration=duration,
+        starting_time=starting_time,
+        message_count=found["message_count"],
+        topics_with_message_count=topics,
+        compression_format=found.get("compression_format") or "",
+        compression_mode=found.get("compression_mode") or "",
+        custom_data=dict(found.get("custom_data") or {}),
+        ros_distro=found.get("ros_distro") or "",
+    )
+
+
+def _span(found: Mapping[str, Any]) -> tuple[Time, Duration]:
+    start, duration = found["starting_time"]["nanoseconds_since_epoch"], found["duration"]["nanoseconds"]
+    return _at(start), Duration(nanoseconds=duration)
+
+
+def _information(metadata: BagMetadata) -> dict[str, Any]:
+    from linkwright.bag.parts import VERSION
+
+    def span(what: BagMetadata | FileInformation) -> dict[str, Any]:
+        return {
+            "starting_time": {"nanoseconds_since_epoch": what.starting_time.nanoseconds},
+            "duration": {"nanoseconds": what.duration.nanoseconds},
+            "message_count": what.message_count,
+        }
+
+    topics = []
+    for each in metadata.topics_with_message_count:
+        known = asdict(each.topic_metadata)
+        del known["id"]
+        profiles = each.topic_metadata.offered_qos_profiles
+        known["offered_qos_profiles"] = profiles if isinstance(profiles, str) else to_text(profiles)
+        topics.append({"topic_metadata": known, "message_count": each.message_count})
+    return {
+        "version": VERSION,
+        "storage_identifier": metadata.storage_identifier,
+        "relative_file_paths": list(metadata.relative_file_paths),
+        **span(metadata),
+        "topics_with_message_count": topics,
+        "compression_format": metadata.compression_format,
+        "compression_mode": metadata.compression_mode,
+        "files": [{"path": each.path, **span(each)} for each in metadata.files],
+        "custom_data": dict(metadata.custom_data) or None,
+        "ros_distro": metadata.ros_distro,
+    }
