@@ -71,7 +71,7 @@ def test_a_folder_with_sqlite_files_plays_and_another_takes_its_place(page: Page
         for second in range(5):
             writer.write("/number", (START + second) * SECOND, serialize(number(data=float(second))))
     drop(page, folder)
-    until(page, "lw.timeline?.name === 'numbers.db3' && lw.timeline.length === 4")
+    until(page, "lw.timeline?.name === 'numbers_0.db3' && lw.timeline.length === 4")
     file = recorded(tmp_path)
     drop(page, file)
     plays(page, file.name)
