@@ -7,7 +7,7 @@ differ in one sound are told apart by it; on what the take costs relative to the
 backwards; and on how far the sound is above the noise: in noise all costs come near each other, and more is asked of a
 word. The cost by itself does not count: what is usual differs between voices and microphones.
 
-Each take is compared as it was said, and as rooms would return it.
+Each take is compared as it was said, and as rooms would return it; a match with the latter needs more confidence.
 """
 
 from __future__ import annotations
@@ -86,7 +86,8 @@ class Recogniser:
         confidence = 0.0
         if is_nearest:
             above_noise = 10.0 * log10(loudness(powers[first : last + 1]) / float(noise.sum()))
-            confidence = _confidence(self._figures(match, float(costs[word]), word, take, above_noise))
+            figures = self._figures(match, float(costs[word]), word, take, above_noise)
+            confidence = _confidence(figures, is_far=bool(self._is_far[take]))
         return Guess(self.names[word], confidence, first, last)
 
     def compare(self, take: Take) -> tuple[dict[str, float], float]:
@@ -138,7 +139,9 @@ _USUAL_WORST = 15.0  # of a word that was said once
 _CLEAR = 30.0  # dB above the noise: more makes no difference
 _WEIGHTS = np.array([-5.29, -4.40, -3.06, 0.12])  # fitted to 16 synthetic voices of five languages, clean and in noise
 _OFFSET = -9.5
+_OFFSET_FAR = -11.5  # reverberation blurs what sets words apart: of a take in a room more is asked
 
 
-def _confidence(figures: NDArray[np.float64]) -> float:
-    return 1.0 / (1.0 + exp(-(_OFFSET + float(_WEIGHTS @ figures))))
+def _confidence(figures: NDArray[np.float64], *, is_far: bool) -> float:
+    offset = _OFFSET_FAR if is_far else _OFFSET
+    return 1.0 / (1.0 + exp(-(offset + float(_WEIGHTS @ figures))))
