@@ -313,3 +313,22 @@ def test_expands():
     xacro.process_file(get_package_share_path('user') / 'urdf/arm.urdf.xacro', mappings={'prefix': 'no_'})
 """
     assert sets(workspace, "user/test/test_user.py", text) == []
+
+
+def test_any_xml_file_in_a_folder_of_tests_may_be_a_launch_file(workspace: Path) -> None:
+    include = (
+        "<launch><include file='$(find arm)/launch/load.launch'><arg name='side' value='left'/></include></launch>"
+    )
+    (workspace / "arm/test").mkdir()
+    (workspace / "arm/test/roslaunch_arm.xml").write_text(include)
+    text = "$(find xacro)/xacro $(find arm)/urdf/arm.urdf.xacro prefix:=$(arg side)_"
+    load = f'<launch><arg name="side"/><param name="robot_description" command="{text}"/></launch>'
+    assert values(sets(workspace, "arm/launch/load.launch", load)) == [{"prefix": "left_"}]
+
+
+def test_a_package_that_forgets_to_declare_what_it_uses_gives_values_where_no_other_does(workspace: Path) -> None:
+    (workspace / "user/package.xml").write_text(MANIFEST.format(name="user", needs="xacro"))
+    text = launch_file("default_value='far_'")
+    assert values(sets(workspace, "user/launch/far.launch.py", text)) == [{"name": "robot", "prefix": "far_"}]
+    text = launch_file("default_value='near_'")
+    assert values(sets(workspace, "arm/launch/near.launch.py", text)) == [{"name": "robot", "prefix": "near_"}]

@@ -192,3 +192,54 @@ def test_a_missing_package_is_a_warning_where_it_is_declared(check, needs, sever
     manifest = MANIFEST.format(name="arm", needs=needs)
     found = check({"arm/package.xml": manifest, "arm/urdf/arm.urdf.xacro": robot})
     assert (severity, "PKG101") in codes(found)
+
+
+SIDED = f"""<robot {XACRO} name="r">
+  <xacro:arg name="side" default=""/>
+  <xacro:property name="which" value="$(arg side)"/>
+  <xacro:if value="${{which == 'left'}}"><xacro:property name="mount" value="0.1"/></xacro:if>
+  <xacro:if value="${{which in ['right']}}"><xacro:property name="mount" value="-0.1"/></xacro:if>
+  <link name="base_link"/><link name="arm"/>
+  <joint name="j" type="fixed"><parent link="base_link"/><child link="arm"/><origin xyz="0 ${{mount}} 0"/></joint>
+</robot>"""
+
+
+def test_the_values_that_a_description_compares_an_argument_with_are_tried_where_nobody_gives_one(check):
+    found = check({"arm/urdf/arm.urdf.xacro": SIDED}, ".", "--ignore", "LW102")
+    assert codes(found) == [("info", "LINT303")]
+    assert found[0]["message"] == "'arm.urdf.xacro' needs the argument 'side'"
+    assert found[0]["notes"][0]["message"] == "it can be expanded with side:=left, for instance"
+    assert codes(check({"arm/urdf/arm.urdf.xacro": SIDED}, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC201")]
+
+
+def test_an_error_that_none_of_these_values_mends_stays_one(check):
+    found = check({"arm/urdf/arm.urdf.xacro": SIDED.replace("0 ${mount} 0", "0 ${lost} 0")})
+    assert codes(found) == [("error", "XAC201")]
+
+
+FILED = f"""<robot {XACRO} name="r">
+  <xacro:arg name="limits" default="{{default}}"/>
+  <xacro:property name="found" value="${{{{xacro.load_yaml('$(arg limits)')}}}}"/>
+  <link name="base_link"/><link name="${{{{found['name']}}}}"/>{{more}}
+  <joint name="j" type="fixed"><parent link="base_link"/><child link="${{{{found['name']}}}}"/></joint>
+</robot>"""
+
+
+def test_what_fails_for_an_empty_default_needs_the_argument(check):
+    found = check({"arm/urdf/arm.urdf.xacro": FILED.format(default="", more="")})
+    assert codes(found) == [("info", "LINT303")]
+    assert found[0]["arguments"]["names"] == "'limits'"
+    found = check({"arm/urdf/arm.urdf.xacro": FILED.format(default="", more='<link name="${lost}"/>')})
+    assert codes(found) == [("info", "LINT303"), ("error", "XAC201")]
+    assert ("error", "XAC506") in codes(check({"arm/urdf/arm.urdf.xacro": FILED.format(default="a.yaml", more="")}))
+
+
+def test_what_a_file_lacks_that_is_only_known_at_run_time_is_no_error(check):
+    launch = LAUNCH.format(kinds="'a'").replace("'name': 'a', 'type': kind", "'limits': kind + ask()")
+    files = {
+        "arm/urdf/arm.urdf.xacro": FILED.format(default="$(find arm)/urdf/a.yaml", more=""),
+        "arm/urdf/a.yaml": "other: 1\n",
+        "arm/launch/view.launch.py": launch,
+    }
+    assert codes(check(files)) == [("info", "LINT303")]
+    assert ("error", "XAC205") in codes(check({**files, "arm/launch/view.launch.py": ""}))

@@ -139,3 +139,22 @@ def test_a_fixed_frame_of_another_robot(tmp_path, frame, codes):
     (tmp_path / "r.rviz").write_text(f"Visualization Manager:\n  Global Options:\n    Fixed Frame: {frame}\n")
     found = examine_package(tmp_path, Settings(select=("LW849",))).diagnostics
     assert [each.code for each in found] == codes
+
+
+@pytest.mark.parametrize(("shape", "codes"), [("", []), ("c", ["LW410"])])
+def test_a_hip_between_parts_with_collisions_needs_none(told, shape, codes):
+    body = BOX.format(0.2) + '<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>'
+    leg = moving("hip", BOX.format(0.1)) + (moving("thigh", body, "hip") if not shape else moving("thigh", body))
+    assert told(robot(f'<link name="base">{body}</link>{leg}'), "LW410") == codes
+
+
+def test_a_visual_without_any_extent_marks_a_place(tmp_path):
+    flat = '<visual><geometry><box size="0.1 0 0.1"/></geometry></visual>'
+    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{BOX.format(0)}{flat}</link>'))
+    found = examine(tmp_path / "r.urdf", settings=Settings(select=("LW401",))).diagnostics
+    assert [each.severity.name for each in found if each.code == "LW401"] == ["INFO", "WARNING"]
+
+
+def test_an_attribute_that_keeps_isaac_gym_from_merging_links_is_known(told):
+    joint = '<joint name="j" type="fixed" dont_collapse="true" keep="1"><parent link="a"/><child link="b"/></joint>'
+    assert told(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW108") == ["LW108"]

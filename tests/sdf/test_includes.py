@@ -267,6 +267,21 @@ def test_names_in_a_model_that_could_not_be_had_are_not_called_wrong(tmp_path):
     assert [each.code for each in found.diagnostics] == ["SDF160"]
 
 
+def test_where_a_model_is_known_or_was_renamed_what_is_missing_is_a_warning_and_else_an_information(tmp_path):
+    write(tmp_path, {"box/model.sdf": BOX, "box/model.config": "<model/>", "box/meshes/a.stl": ""})
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
+    said = {}
+    for address in ("model://box/meshes/b.stl", "model://old_box/meshes/a.stl", "model://far/meshes/b.stl"):
+        found = finder.file(address, tmp_path / "box")
+        assert isinstance(found, Missing)
+        said[address.split("/")[2]] = (found.severity.name, str(found.hint))
+    assert said == {
+        "box": ("WARNING", "there are: a.stl"),
+        "old_box": ("WARNING", "the folder that holds 'meshes/a.stl' is called 'box'"),
+        "far": ("INFO", "add the folder that holds 'far' to GZ_SIM_RESOURCE_PATH"),
+    }
+
+
 def test_few_lines_cannot_include_without_end(tmp_path, monkeypatch):
     """Thirty models, each of which includes the next one twice, would be a thousand million."""
     monkeypatch.setattr("linkwright.sdf.includes._MOST", 500)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from linkwright.descriptions import examine as examine_description
-from linkwright.descriptions.argument_sets import ArgumentSet
+from linkwright.descriptions.argument_sets import ArgumentSet, compared_values, empty_defaults
 from linkwright.descriptions.description import TRUE_OF_PARTS
 from linkwright.diagnostics import (
     Diagnostic,
@@ -26,11 +26,16 @@ from linkwright.lint.engine import Checked, as_set, in_order
 from linkwright.lint.registry import find_rule
 from linkwright.lint.settings import Settings
 from linkwright.packages import PackageFinder
+from linkwright.xmltree import Document
 
 UNDECLARED = "XAC211"
 UNUSED = "XAC215"
 _NEEDED = "LINT303"
 _MISSING_FILES = frozenset({"XML101", "XAC506"})
+_MOST_TRIED = 12
+"""Of more values that a description compares its arguments with, the others are not tried."""
+_ANY_VALUE = "value"
+"""What stands for a value that nobody knows, to see which errors hang on it."""
 _FEW = 4
 """So many arguments are named."""
 _NO_VALUES = ArgumentSet({})
@@ -46,15 +51,23 @@ class _Run:
         given: the values.
         checked: what came of it.
         errors: those of the expansion and of the reader.
+        hanging: those of them that may be due to arguments whose values only the caller knows.
     """
 
     given: ArgumentSet
     checked: Checked
     errors: frozenset[Key]
+    hanging: frozenset[Key] = frozenset()
+
+    @property
+    def said(self) -> frozenset[tuple[Key, str]]:
+        """The errors with their messages."""
+        places = ((_place(each), str(each.message)) for each in self.checked.diagnostics)
+        return frozenset(each for each in places if each[0] in self.errors)
 
     def is_fine(self, common: frozenset[Key]) -> bool:
         """Whether it has no errors but those that all runs have, none of which what is open may have made."""
-        return self.errors <= common and not (self.given.open and any(_may_hang_on(code) for code, *_ in self.errors))
+        return self.errors <= common and not self.hanging
 
 
 @dataclass(eq=False)
@@ -85,23 +98,26 @@ class SetCheck:
         if (self.is_named and not default.errors) or not _takes_arguments(default.checked):
             return default.checked
         sets = find_sets()
-        if not any(each.values or each.open for each in sets):
-            return default.checked if sets or self.is_named else self._without_callers(default)
+        if self.is_named and not any(each.values or each.open for each in sets):
+            return default.checked
         known = [self._run(each) for each in sets if each.is_complete and each.values]
-        runs = [default, *known]
-        common = frozenset.intersection(*(run.errors for run in runs))
+        uses_defaults = any(each.is_complete and not each.values for each in sets)
+        is_unknown = bool(default.errors) and not (known or uses_defaults or self.is_named)
+        common = frozenset.intersection(*(run.errors for run in (default, *known)))
         others: list[_Run] = []
         if not known or not all(run.is_fine(common) for run in known):
-            others = [self._run(each) for each in sets if not each.is_complete and each.values]
-            common = frozenset.intersection(*(run.errors for run in (*runs, *others)))
+            more = compared_values(_sources(default.checked))[:_MOST_TRIED] if is_unknown else ()
+            others = [self._run(each) for each in (*sets, *more) if not each.is_complete and each.values]
+            common = frozenset.intersection(common, *(run.errors for run in others))
         tried = [*known, *others]
-        uses_defaults = any(each.is_complete and not each.values for each in sets)
         kept = [run for run in known if not _is_excused(run, tried, common)]
         if default.is_fine(common) or uses_defaults:
             kept.insert(0, default)
         kept = kept or [run for run in others if run.is_fine(common)]
         if not kept and any(each.open for each in sets):
-            return self._remarked(default, common, sets)
+            return self._remarked(default, [default, *tried], common, sets)
+        if is_unknown and kept in ([], [default]):
+            return self._without_values(default, sets)
         if not kept or default in kept:
             return self._together(kept or [default], ())
         return self._together(kept, self._needs(kept[0], default, common, sets))
@@ -116,7 +132,12 @@ class SetCheck:
             for each in checked.diagnostics
             if each.severity is Severity.ERROR and find_rule(each.code) is None
         )
-        return _Run(given, checked, errors)
+        run = _Run(given, checked, errors)
+        if not (errors and given.open):
+            return run
+        opened = dict.fromkeys(filter(None, given.open), _ANY_VALUE)
+        changed = self._changed(run, opened) if opened else frozenset()
+        return replace(run, hanging=changed | {place for place in errors if _may_hang_on(place[0])})
 
     # --- what is told -----------------------------------------------------------------------------------------
 
@@ -141,8 +162,13 @@ class SetCheck:
         """The remark that the defaults alone do not make a robot."""
         names = self._needed(working.given.values, common)
         shown = " ".join(f"{name}:={working.given.values[name]}" for name in names[:_FEW])
-        notes = [Note(phrase("it gets {values} here, for instance", values=shown), working.given.span)]
-        if len(sets) > 1:
+        message = (
+            phrase("it gets {values} here, for instance", values=shown)
+            if working.given in sets
+            else phrase("it can be expanded with {values}, for instance", values=shown)
+        )
+        notes = [Note(message, working.given.span)]
+        if len(sets) > 1 and working.given in sets:
             notes.append(Note(phrase("it is checked with the {count} sets of values that are given", count=len(sets))))
         yield _needs_arguments(default.checked, names, tuple(notes))
 
@@ -162,23 +188,34 @@ class SetCheck:
             found = error.diagnostics
         return all(each.severity is not Severity.ERROR or _place(each) in common for each in found)
 
-    def _remarked(self, default: _Run, common: frozenset[Key], sets: Sequence[ArgumentSet]) -> Checked:
+    def _remarked(
+        self, default: _Run, runs: Sequence[_Run], common: frozenset[Key], sets: Sequence[ArgumentSet]
+    ) -> Checked:
         """The check with the defaults where callers give values that nobody can tell."""
-        names = dict.fromkeys(name for each in sets for name in each.open if name)
+        names = _opened(sets)
         if not names:
-            return self._without_callers(default)
-        span = next(each.span for each in sets if each.open)
-        notes = (Note(phrase("their values are only known when this runs"), span),)
-        return self._only(
-            default, lambda error: _place(error) in common and not _may_hang_on(error.code), list(names), notes
-        )
+            return self._without_values(default, sets)
+        told = common.difference(*(run.hanging for run in runs))
+        return self._only(default, lambda error: _place(error) in told, names, _when(sets))
 
-    def _without_callers(self, default: _Run) -> Checked:
-        """The check with the defaults where nothing calls the description; what nobody declares, somebody gives."""
-        names = dict.fromkeys(name for each in default.checked.diagnostics if (name := _asked(each)))
-        if not names:
+    def _without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
+        """The check where no caller gives a value that is known: what nobody declares or fills in, somebody gives."""
+        asked = [name for each in default.checked.diagnostics if (name := _asked(each))]
+        if asked:
+            return self._only(default, lambda error: _asked(error) is None, list(dict.fromkeys(asked)), _when(sets))
+        names = dict.fromkeys((*_opened(sets), *empty_defaults(_sources(default.checked))))
+        changed = {
+            name: found for name in list(names)[:_MOST_TRIED] if (found := self._changed(default, {name: _ANY_VALUE}))
+        }
+        if not changed:
             return default.checked
-        return self._only(default, lambda error: _asked(error) is None, list(names), ())
+        hanging = frozenset[Key]().union(*changed.values())
+        return self._only(default, lambda error: _place(error) not in hanging, list(changed), _when(sets))
+
+    def _changed(self, run: _Run, values: Mapping[str, str]) -> frozenset[Key]:
+        """The errors of a run that other values of some arguments change or remove."""
+        other = self._run(ArgumentSet({**run.given.values, **values})).said
+        return frozenset(place for place, message in run.said if (place, message) not in other)
 
     def _only(
         self, default: _Run, is_told: Callable[[Diagnostic], bool], names: Sequence[str], notes: tuple[Note, ...]
@@ -191,6 +228,10 @@ class SetCheck:
         )
         found += as_set([_needs_arguments(default.checked, names, notes, hint)], self.settings)
         return replace(default.checked, diagnostics=tuple(in_order(found, str(self.path))))
+
+
+def _sources(checked: Checked) -> Sequence[Document]:
+    return () if checked.subject is None else tuple(checked.subject.sources.values())
 
 
 def _takes_arguments(checked: Checked) -> bool:
@@ -243,6 +284,17 @@ def _asked(diagnostic: Diagnostic) -> str | None:
     if diagnostic.code != UNDECLARED or as_phrase(diagnostic.hint or "").template.startswith("did you mean"):
         return None
     return str(as_phrase(diagnostic.message).arguments.get("name", ""))
+
+
+def _opened(sets: Sequence[ArgumentSet]) -> list[str]:
+    """The arguments that callers give values which are only known when they run."""
+    return list(dict.fromkeys(name for each in sets for name in each.open if name))
+
+
+def _when(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
+    """Where a caller gives values that are only known when it runs."""
+    calls = [each.span for each in sets if each.open]
+    return (Note(phrase("their values are only known when this runs"), calls[0]),) if calls else ()
 
 
 def _may_hang_on(code: str) -> bool:

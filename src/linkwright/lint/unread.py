@@ -12,8 +12,10 @@ from linkwright.xmltree import Element
 
 INNER_EXTENSIONS = frozenset({"contact", "sensor", "verbose", "self_collision_checking", "plugin", "gazebo"})
 """Elements of other tools inside of links and joints."""
-EXTENSION_ATTRIBUTES = frozenset({"D", "K", "mu_coulomb", "mu_viscous", "type", "id", "reference_position", "unit"})
-"""Attributes of other tools, such as those of Franka's ``<dynamics>``."""
+EXTENSION_ATTRIBUTES = frozenset(
+    {"D", "K", "mu_coulomb", "mu_viscous", "type", "id", "reference_position", "unit", "dont_collapse"}
+)
+"""Attributes of other tools, such as those of Franka's ``<dynamics>``, and what keeps Isaac Gym from merging links."""
 
 _OTHER_ELEMENTS = {
     "pose": "origin",

@@ -48,7 +48,8 @@ class Missing(NamedTuple):
     Attributes:
         reason: why.
         hint: what to do.
-        severity: of a finding about it; an information where Gazebo fetches the resource by itself.
+        severity: of a finding about it; an information where the resource is likely to be there for Gazebo, which
+            fetches models by itself or finds them in folders that this machine does not have.
     """
 
     reason: Phrase
@@ -192,14 +193,20 @@ class ResourceFinder:
         for folder in (*self._folders, *near, *(each / "models" for each in near)):
             if (folder / path).exists():
                 return folder / path
-        name = path.partition("/")[0]
-        known = self.models()
-        if name in known:
-            return _no_file(known[name] / path.partition("/")[2])
-        hint = did_you_mean(name, known) or phrase(
-            "add the folder that holds '{name}' to {variable}", name=name, variable=SEARCH_VARIABLES[0]
-        )
-        return Missing(phrase("there is no model '{name}' on the search path", name=name), hint)
+        name, _, rest = path.partition("/")
+        for folder in self._folders:
+            if (folder / name).is_dir():
+                return _no_file(folder / path)
+        reason = phrase("there is no model '{name}' on the search path", name=name)
+        renamed = next((each for each in near if rest and (each / rest).exists()), None)
+        if renamed is not None:
+            here = renamed.absolute().name
+            return Missing(reason, phrase("the folder that holds '{path}' is called '{name}'", path=rest, name=here))
+        hint = did_you_mean(name, self.models())
+        if hint is not None:
+            return Missing(reason, hint)
+        hint = phrase("add the folder that holds '{name}' to {variable}", name=name, variable=SEARCH_VARIABLES[0])
+        return Missing(reason, hint, Severity.INFO)
 
     def _cached(self, address: str) -> Path | Missing:
         """The folder of a Fuel address in gz's cache: ``HOST/OWNER/models/NAME/VERSION``, in lower case."""

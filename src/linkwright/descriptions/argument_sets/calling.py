@@ -64,7 +64,8 @@ class ArgumentSet:
 def argument_sets(path: str | Path, finder: PackageFinder | None = None) -> tuple[ArgumentSet, ...]:
     """The sets of values that launch files, tests and build files give to the arguments of a description.
 
-    They are read in the file's package and in those beside it that depend on it; nothing is run.
+    They are read in the file's package and in those beside it that depend on it, and where these give none, in the
+    others beside it; nothing is run.
 
     Args:
         path: the file.
@@ -91,8 +92,12 @@ class ArgumentSets:
         """See `argument_sets`."""
         path = Path(os.path.abspath(path))  # noqa: PTH100 - links stay what they are
         finder = finder or PackageFinder(start=path.parent)
+        near = list(self._files.around(path, self._folders))
+        sets = list(_Target(path, finder, near).sets())
+        if not sets:  # who forgets to declare what a launch file uses, still uses it
+            sets = list(_Target(path, finder, [*near, *self._files.elsewhere(path, self._folders)]).sets())
         found: dict[object, ArgumentSet] = {}
-        for each in _Target(path, finder, list(self._files.around(path, self._folders))).sets():
+        for each in sets:
             key = (tuple(sorted(each.values.items())), each.open)
             known = found.get(key)
             if known is None or (each.is_certain and not known.is_certain):

@@ -16,8 +16,10 @@ from linkwright.xmltree.reader import read_bytes
 _MOST_FILES = 5_000
 _LARGEST = 1_000_000
 """Larger files, in bytes, hold data and no calls."""
-_MARKUP = (".launch", ".launch.xml", ".test", "_launch.xml")
+_MARKUP = (".launch.xml", "_launch.xml")
 _YAML = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
+_LAUNCH_FOLDERS = ("launch", "test", "tests")
+"""Folders whose XML files may be launch files whatever they are called."""
 _WORDS = ("xacro", "MoveItConfigsBuilder", "IncludeLaunchDescription", "<include", "include:")
 """A file without any of them calls nothing."""
 
@@ -43,10 +45,23 @@ class CallingFiles:
             return
         name, folder = own
         yield from ((name, file) for file in self.of(folder))
-        near = dict(self._beside(folder))
-        near.update({found[0]: each for each in folders if (found := enclosing_package(each))})
-        for other, place in near.items():
+        for other, place in self._near(folder, folders).items():
             if other != name and name in self._manifest(place):
+                yield from ((other, file) for file in self.of(place))
+
+    def elsewhere(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
+        """The files of the packages that do not say that they use that of a file, as `around` has the others.
+
+        Args:
+            path: the file, absolute.
+            folders: packages to look at besides those that lie near.
+        """
+        own = enclosing_package(path.parent)
+        if own is None:
+            return
+        name, folder = own
+        for other, place in self._near(folder, folders).items():
+            if other != name and name not in self._manifest(place):
                 yield from ((other, file) for file in self.of(place))
 
     def of(self, folder: Path) -> tuple[CallingFile, ...]:
@@ -55,6 +70,10 @@ class CallingFiles:
             read = (_read(path, folder) for path in _files(folder))
             self._read[folder] = tuple(each for each in read if each and (each.calls or each.inclusions))
         return self._read[folder]
+
+    def _near(self, folder: Path, folders: tuple[Path, ...]) -> dict[str, Path]:
+        """The packages of the workspace and those of more folders: name -> folder."""
+        return {**self._beside(folder), **{found[0]: each for each in folders if (found := enclosing_package(each))}}
 
     def _beside(self, folder: Path) -> dict[str, Path]:
         """The packages of the workspace, as far as they lie beside a package or below the same ``src``."""
@@ -77,8 +96,9 @@ def _files(folder: Path) -> Iterator[Path]:
             folders.clear()
             continue
         folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
+        markup = (".xml",) if place.name in _LAUNCH_FOLDERS else _MARKUP
         for name in sorted(names):
-            if name == "CMakeLists.txt" or name.endswith((".py", *_MARKUP, *_YAML)):
+            if name == "CMakeLists.txt" or name.endswith((".py", ".launch", ".test", *markup, *_YAML)):
                 count += 1
                 if count > _MOST_FILES:
                     return

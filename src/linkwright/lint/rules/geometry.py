@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from linkwright.diagnostics import Diagnostic, Note, phrase, term
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase, term
 from linkwright.lint.meshes import shape_element
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
@@ -51,7 +51,8 @@ class NonPositiveSize(Rule):
     ## Why
 
     urdfdom before URDF 1.2 reads any number. RViz then shows nothing or a shape turned inside out, and physics engines
-    stop with an assertion.
+    stop with an assertion. A visual all of whose sizes are zero is an information: some give one to what only marks a
+    place.
 
     ## Example
 
@@ -72,9 +73,11 @@ class NonPositiveSize(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, shape in shapes_of(subject):
-            bad = next(((name, size) for name, size in sizes_of(shape.geometry) if size <= 0), None)
+            sizes = sizes_of(shape.geometry)
+            bad = next(((name, size) for name, size in sizes if size <= 0), None)
             if bad is not None:
                 name, size = bad
+                is_mark = isinstance(shape, Visual) and not any(size for _, size in sizes)
                 what = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
@@ -88,6 +91,7 @@ class NonPositiveSize(Rule):
                     shape_element(shape),
                     name,
                     hint=phrase("sizes are in metres and above zero"),
+                    severity=Severity.INFO if is_mark else None,
                 )
 
 

@@ -15,6 +15,7 @@ from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
     from linkwright.geometry.bounds import Bounds
+    from linkwright.urdf.bodies import Bodies, Body
 
 
 _WORLD = frozenset(("world", "map", "odom"))
@@ -27,7 +28,8 @@ class MissingCollision(Rule):
     ## Why
 
     Planners and simulators let everything pass through it. Parts that fixed joints make one count together, so a
-    camera on an arm needs none of its own. The rule speaks only where at least half of the moving parts have one.
+    camera on an arm needs none of its own. The rule speaks only where at least half of the moving parts have one, and
+    not of parts between two that have: the hip of a leg often goes without, because its neighbours are always near.
 
     ## Example
 
@@ -61,6 +63,8 @@ class MissingCollision(Rule):
         if 2 * len(lacking) > len(seen):
             return
         for body in lacking:
+            if body.joint is not None and _is_between(body, bodies, lacking):
+                continue
             link = next(link for link in bodies.members(body) if link.visuals)
             yield self.report(
                 phrase("link '{name}' is seen but has no collision shape, while other links have", name=link.name),
@@ -68,6 +72,13 @@ class MissingCollision(Rule):
                 "name",
                 hint=phrase("add a <collision>, best with a simple shape around it"),
             )
+
+
+def _is_between(body: Body, bodies: Bodies, lacking: list[Body]) -> bool:
+    """Whether what holds a body and something that it holds have collision shapes."""
+    above = bodies.of(body.joint.parent) if body.joint is not None else None
+    below = [each for each in bodies.all if each.joint is not None and each.joint.parent in body.links]
+    return above not in (None, *lacking) and any(each not in lacking for each in below)
 
 
 class MissingVisual(Rule):

@@ -129,7 +129,7 @@ class LaunchedFileMissing(Rule):
     ## Why
 
     The launch fails, or the node starts without what it was to read. Files that are made later are left out: those that
-    git ignores, maps, and those of which a script or a README of the package speaks.
+    git ignores, maps, what a launch file writes itself, and those of which a script or a README of the package speaks.
 
     ## Example
 
@@ -154,9 +154,11 @@ class LaunchedFileMissing(Rule):
         package = subject.package
         if package is None:
             return
+        made = {each for file in package.launch_files.values() for each in file.made}
         for file in package.launch_files.values():
             for shared in file.paths:
-                yield from self._of_path(shared, file, package, subject)
+                if (shared.package, shared.path) not in made:
+                    yield from self._of_path(shared, file, package, subject)
 
     def _of_path(
         self, shared: SharedFile, file: LaunchFile, package: PackageContext, subject: Subject

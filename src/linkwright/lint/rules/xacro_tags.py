@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator
+from itertools import product
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
@@ -29,6 +30,7 @@ _NEEDED: dict[str, tuple[str, ...]] = {
     "unless": ("value",),
     "insert_block": ("name",),
 }
+_CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
 _FOREIGN = frozenset({"gazebo", "plugin", "ros2_control", "sensor", "world", "sdf", "transmission"})
 _ABSOLUTE = re.compile(r"(/|~|file:///|[A-Za-z]:[\\/])")
 
@@ -273,7 +275,8 @@ class UndeclaredPackage(XacroRule):
     ## Why
 
     rosdep and colcon know of dependencies from `package.xml` alone: on a fresh machine the package is not installed,
-    and the expansion fails.
+    and the expansion fails. Where a condition stands around every use, the package may be an extra, and the finding is
+    an information.
 
     ## Example
 
@@ -298,8 +301,10 @@ class UndeclaredPackage(XacroRule):
         if package is None or package.manifest is None:
             return
         said: set[str] = set()
-        for file in facts.own.values():
+        for is_optional, file in product((False, True), facts.own.values()):
             for use in file.uses:
+                if _CONDITIONS.isdisjoint(parent.tag for parent in use.parents) is is_optional:
+                    continue
                 for name, at in use.found.packages:
                     if name in said or package.manifest.declares(name) or use.attribute is None:
                         continue
@@ -311,7 +316,8 @@ class UndeclaredPackage(XacroRule):
                         package_name=package.name,
                     )
                     hint = phrase("add <exec_depend>{name}</exec_depend> to package.xml", name=name)
-                    yield self.report(message, use.element, use.attribute, span=span, hint=hint)
+                    severity = Severity.INFO if is_optional else None
+                    yield self.report(message, use.element, use.attribute, span=span, hint=hint, severity=severity)
 
 
 class RecursiveMacro(XacroRule):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -14,6 +15,8 @@ FUNCTION = "generate_launch_description"
 _TEST_FUNCTION = "generate_test_description"
 _TESTING = frozenset({"launch_testing", "launch_pytest"})
 _ENDINGS = (".launch.py", "_launch.py")
+_WRITING = frozenset("wax")
+"""Modes in which ``open`` makes a file."""
 _JOINING = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitution", "str", "as_posix"})
 
 
@@ -57,6 +60,7 @@ class LaunchFile:
         shares: the packages whose share folder it asks for.
         paths: the whole paths that it makes in share folders.
         imports: the packages that it imports from, with their places.
+        made: the files that it writes itself: package and path.
     """
 
     source: SourceText
@@ -69,6 +73,7 @@ class LaunchFile:
     shares: list[Place] = field(default_factory=list)
     paths: list[SharedFile] = field(default_factory=list)
     imports: list[tuple[str, Span]] = field(default_factory=list)
+    made: frozenset[tuple[str, str]] = frozenset()
 
 
 def is_launch_file(path: str) -> bool:
@@ -97,6 +102,8 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
         place = _place(python, argument)
         if place is not None:
             facts.shares.append(place)
+    written = (python.value(node) for node in _written(python))
+    facts.made = frozenset((each.package, each.rest.strip("/")) for each in written if isinstance(each, SharePath))
     with suppress(RecursionError):  # a sum of a thousand terms; the paths in it are not looked at
         _PathReader(python, facts).visit(python.tree)
     return facts
@@ -127,6 +134,19 @@ def _read_imports(python: PythonFile, facts: LaunchFile) -> None:
             for alias in node.names:
                 found.setdefault(alias.name.partition(".")[0], python.span(node))
     facts.imports = list(found.items())
+
+
+def _written(python: PythonFile) -> Iterator[ast.expr]:
+    """The paths of files that are written."""
+    for call in python.calls("open", owner=""):
+        mode = call.args[1] if len(call.args) > 1 else argument_of(call, "mode")
+        if call.args and _WRITING.intersection(python.text(mode) or ""):
+            yield call.args[0]
+    for call in python.calls("write_text", "write_bytes"):
+        if isinstance(call.func, ast.Attribute):
+            yield call.func.value
+    for call in python.calls("copy", "copy2", "copyfile", "move", owner="shutil"):
+        yield from call.args[1:2]
 
 
 def _place(python: PythonFile, node: ast.expr | None) -> Place | None:

@@ -1,0 +1,64 @@
+"""The values of its arguments that a description itself speaks of: those that its conditions compare them with."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from linkwright.descriptions.argument_sets.calling import ArgumentSet
+from linkwright.xmltree import Document, Element
+
+_ARGUMENT = r"\$\(arg\s+([\w.-]+)\s*\)"
+_OPERAND = rf"""(?:['"]?{_ARGUMENT}['"]?|\barg\(\s*['"]([\w.-]+)['"]\s*\)|\b([A-Za-z_]\w*))"""
+_TEXT = re.compile(r"""'([^'$]+)'|"([^"$]+)\"""")
+_COMPARISON = re.compile(rf"""{_OPERAND}\s*(?:==\s*((?:'[^'$]+')|(?:"[^"$]+"))|in\s*[\[({{]([^\])}}]*))""")
+_CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
+
+
+def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
+    """The values that conditions compare arguments with, each as a set that is not known to occur.
+
+    An argument is also known by the names of the properties that hold it: ``<xacro:property name="side" value="$(arg
+    side)"/>``. Macro parameters are not followed.
+
+    Args:
+        documents: the files of a description, as they are written.
+    """
+    elements = [element for document in documents for element in document.root.walk()]
+    names = dict(_names(elements))
+    found: dict[tuple[str, str], ArgumentSet] = {}
+    for element in elements:
+        if element.tag not in _CONDITIONS:
+            continue
+        for operand, value in _comparisons(element.attributes.get("value", "")):
+            if operand in names:
+                one = ArgumentSet({names[operand]: value}, (), element.attribute_span("value"), is_certain=False)
+                found.setdefault((names[operand], value), one)
+    return tuple(found.values())
+
+
+def empty_defaults(documents: Iterable[Document]) -> tuple[str, ...]:
+    """The arguments whose default is an empty text, which stands for "to be given" as often as for nothing."""
+    elements = (element for document in documents for element in document.root.walk())
+    declared = (element.attributes for element in elements if element.tag == "xacro:arg")
+    return tuple(dict.fromkeys(each["name"] for each in declared if "name" in each and each.get("default") == ""))
+
+
+def _names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
+    """Every name that stands for an argument, and the argument."""
+    for element in elements:
+        name = element.attributes.get("name", "")
+        if element.tag == "xacro:arg":
+            yield name, name
+        elif element.tag == "xacro:property":
+            held = re.fullmatch(rf"\s*{_ARGUMENT}\s*", element.attributes.get("value", ""))
+            if held is not None:
+                yield name, held[1]
+
+
+def _comparisons(condition: str) -> Iterator[tuple[str, str]]:
+    """The operands of ``==`` and ``in``, and a text that each is compared with."""
+    for *operands, one, several in _COMPARISON.findall(condition):
+        operand = next(filter(None, operands))
+        for found in _TEXT.findall(one or several):
+            yield operand, next(filter(None, found))
