@@ -86,6 +86,7 @@ def test_an_address_is_told_that_nothing_is_fetched(tmp_path, address):
         ("cnt", "count", True),
         ("ur_description", "sr_description", False),
         ("ur_description", "tiago_description", False),
+        ("dsr_description", "my_robot_description", False),
         ("kortex_bringup", "husky_bringup", False),
         ("arm_1_link", "arm_2_link", False),
         ("left_wheel", "right_wheel", False),

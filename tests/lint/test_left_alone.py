@@ -158,3 +158,10 @@ def test_a_visual_without_any_extent_marks_a_place(tmp_path):
 def test_an_attribute_that_keeps_isaac_gym_from_merging_links_is_known(told):
     joint = '<joint name="j" type="fixed" dont_collapse="true" keep="1"><parent link="a"/><child link="b"/></joint>'
     assert told(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW108") == ["LW108"]
+
+
+@pytest.mark.parametrize(("kind", "codes"), [("fixed", ["LW230"]), ("$(arg kind)", [])])
+def test_a_type_that_an_argument_chooses_may_follow_another_time(told, kind, codes):
+    joint = f'<joint name="r" type="{kind}"><parent link="a"/><child link="c"/><mimic joint="j_b"/></joint>'
+    text = f'<xacro:arg name="kind" default="fixed"/><link name="a"/>{moving("b", "", "a")}<link name="c"/>{joint}'
+    assert told(robot(text, PREFIX), "LW230", name="r.urdf.xacro") == codes

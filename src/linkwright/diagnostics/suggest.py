@@ -63,7 +63,7 @@ def _is_alike(name: str, other: str) -> bool:
         return len(own) + len(theirs) < len(words) + len(others)
     if len(own) == len(theirs):
         return all(any(_is_slip(word, meant) for meant in theirs) for word in own)
-    return _is_slip("".join(words), "".join(others))
+    return _is_slip("".join(own), "".join(theirs))
 
 
 def _is_slip(word: str, meant: str) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from math import inf
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.lint.fix import remove_element
+from linkwright.lint.fix import is_literal, remove_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import joints, shown, value
@@ -41,7 +41,8 @@ class MimicOnFixed(Rule):
 
     ## Why
 
-    It does not move, whatever it follows. Usually the type was changed and the rest forgotten.
+    It does not move, whatever it follows. Usually the type was changed and the rest forgotten. A type that xacro
+    works out may be another one next time, and is left alone.
 
     ## Example
 
@@ -62,7 +63,7 @@ class MimicOnFixed(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every fixed joint that is to follow another."""
         for joint, mimic in _followers(subject):
-            if joint.type == "fixed":
+            if joint.type == "fixed" and joint.element is not None and is_literal(joint.element, "type"):
                 yield self.report(
                     phrase(
                         "fixed joint '{name}' cannot follow '{joint}'", name=joint.name, joint=mimic.attributes["joint"]

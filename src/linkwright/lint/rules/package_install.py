@@ -38,7 +38,8 @@ class PatternMatchesNothing(PackageRule):
     ## Why
 
     `glob` says nothing when it finds nothing, so the files that were meant are missing after the build: a launch file
-    or an include then fails with "no such file". A misspelt folder is the usual cause.
+    or an include then fails with "no such file". A misspelt folder is the usual cause. Where another pattern finds
+    files in the same folder, the finding is an information.
 
     ## Example
 
@@ -63,6 +64,7 @@ class PatternMatchesNothing(PackageRule):
         setup = package.setup
         if setup is None:
             return
+        served = {item.text.rpartition("/")[0] for item in setup.installed if item.files(package.folder)}
         for item in setup.installed:
             if not item.is_pattern or item.files(package.folder):
                 continue
@@ -78,7 +80,8 @@ class PatternMatchesNothing(PackageRule):
                 )
             else:
                 hint = phrase("there is no folder '{folder}'", folder=folder) if folder else None
-            severity = self.severity if like or (folder and package.has(folder)) else Severity.INFO
+            is_doubtful = like or (folder and package.has(folder) and folder not in served)
+            severity = self.severity if is_doubtful else Severity.INFO
             message = phrase("the pattern '{text}' in setup.py matches no file", text=item.text)
             yield self.report(message, span=item.span, source=setup.source, hint=hint, severity=severity)
 
