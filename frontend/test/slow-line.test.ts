@@ -1,6 +1,6 @@
 import { expect, it, vi } from "vitest";
 import type { DisplayData } from "../src/connection/data";
-import { isAboutPage } from "../src/panels/over-scene/line-notice";
+import { causeOf } from "../src/panels/over-scene/line-notice";
 import { Signal } from "../src/signal";
 import type { DisplayDataStore } from "../src/state/display-data";
 import { SlowLine } from "../src/state/slow-line";
@@ -53,8 +53,8 @@ it("does not tell of images that nobody sees a difference in", () => {
 });
 
 it("is not blamed for a page that was slow a moment ago", () => {
-  expect(isAboutPage(true, true, 0)).toBe(true);
-  expect(isAboutPage(false, true, 0)).toBe(true);
-  expect(isAboutPage(false, true, 2)).toBe(false);
-  expect(isAboutPage(false, false, 1)).toBe(false);
+  expect(causeOf("page", true, 0)).toBe("page");
+  expect(causeOf("line", true, 0)).toBe("page");
+  expect(causeOf("line", true, 2)).toBe("line");
+  expect(causeOf("program", false, 1)).toBe("program");
 });

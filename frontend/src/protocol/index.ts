@@ -108,7 +108,7 @@ import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation }
 import type { AskPoint, CellGrid, CloudPoints, PointFields } from "./points";
 import type { RecordTopics, RecordingState, SaveMinutes, StopRecording } from "./recording";
 import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
-import type { Hello, Received } from "./session";
+import type { Hello, ProgramIsLate, Received } from "./session";
 import type {
   ControlSimulation,
   DeleteModel,
@@ -221,6 +221,7 @@ export type ServerMessage =
   | ParameterResult
   | Playhead
   | PointFields
+  | ProgramIsLate
   | PropertyChanged
   | RecordingState
   | RobotScene

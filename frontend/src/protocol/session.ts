@@ -11,6 +11,12 @@ export interface Hello {
   type: "hello";
 }
 
+/** Whether this program's own delays, and not the line, are most of the time that answers of the page take. */
+export interface ProgramIsLate {
+  late: boolean;
+  type: "program_is_late";
+}
+
 /** Acknowledges the number of messages that the page has received, after the first one and after each large one. */
 export interface Received {
   count: number;

@@ -24,6 +24,7 @@ import type { SceneMenu } from "./scene-menu";
 import { SelectionState } from "./selection";
 import { SimulationState } from "./simulation";
 import { SlowLine } from "./slow-line";
+import { Slowness } from "./slowness";
 import { TimeControlState } from "./time";
 import { TimelineState } from "./timeline";
 import { ToolsState } from "./tools";
@@ -49,6 +50,7 @@ export class Session {
   readonly comparison: ComparisonState;
   readonly data: DisplayDataStore;
   readonly slowLine: SlowLine;
+  readonly slowness: Slowness;
   readonly meshProgress = new MeshProgress();
   readonly pace = new DrawingPace();
   readonly simulation: SimulationState;
@@ -82,6 +84,7 @@ export class Session {
     this.comparison = new ComparisonState(connection);
     this.data = new DisplayDataStore(connection);
     this.slowLine = new SlowLine(this.data);
+    this.slowness = new Slowness(this.slowLine, this.pace, connection);
     this.simulation = new SimulationState(connection);
     this.modelling = new Modelling(connection, browserStorage());
     this.editing = new EditingState(connection, browserStorage());

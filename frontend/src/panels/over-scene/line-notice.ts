@@ -1,14 +1,15 @@
 import { coalesced, h } from "../../dom";
 import type { Session } from "../../state/session";
 import type { Reduced } from "../../state/slow-line";
+import type { SlowCause } from "../../state/slowness";
 import { strings } from "../../strings";
 
 /** How long it is told that the page is slow. */
 const TOLD_MS = 15_000;
 
 /**
- * Over the scene while not all can be shown: what comes thinned and how often, and whether the line or the page is what
- * is slow. That the page is, is told by itself once.
+ * Over the scene while not all can be shown: what comes thinned and how often, what is slow, and what helps. That the
+ * page is, is told by itself once.
  */
 export class LineNotice {
   readonly element = h("div", { class: "line-notice", role: "status" });
@@ -17,6 +18,7 @@ export class LineNotice {
   constructor(private readonly session: Session) {
     const update = coalesced(() => this.update());
     session.slowLine.changed.on(update);
+    session.slowness.changed.on(update);
     session.displays.treeChanged.on(update);
     session.pace.changed.on(() => {
       if (session.pace.isSlow) this.tellSlowPage(update);
@@ -26,16 +28,15 @@ export class LineNotice {
   }
 
   private update(): void {
-    const { slowLine, pace } = this.session;
+    const { slowLine, slowness, pace } = this.session;
     const { reduced } = slowLine;
     const words = strings.sharing;
-    const isPage = isAboutPage(pace.isSlow, this.told === "now", reduced.length);
+    const cause = causeOf(slowness.cause, this.told === "now", reduced.length);
     this.element.hidden = reduced.length === 0 && this.told !== "now";
-    this.element.title = isPage ? words.slowPageHint : words.slowLineHint;
     const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${lineText(each)}`));
     if (this.told === "now" && pace.software !== null) lines.push(h("div", {}, words.software(pace.software)));
     if (this.told === "now" && this.isLitAutomatically) lines.push(h("div", {}, words.plainLight));
-    this.element.replaceChildren(h("strong", {}, isPage ? words.slowPage : words.slowLine), ...lines);
+    this.element.replaceChildren(h("strong", {}, words.slow[cause]), h("div", {}, words.slowHints[cause]), ...lines);
   }
 
   /** Whether a light was left to the page, which takes the camera's where it is slow. */
@@ -58,9 +59,9 @@ export class LineNotice {
   }
 }
 
-/** Whether the page is what is slow; where it no longer is, the notice tells so for a while, unless the line is. */
-export function isAboutPage(isSlow: boolean, isTold: boolean, reduced: number): boolean {
-  return isSlow || (isTold && reduced === 0);
+/** What is slow; where the page no longer is, the notice tells of it for a while, unless something else is. */
+export function causeOf(cause: SlowCause, isTold: boolean, reduced: number): SlowCause {
+  return isTold && reduced === 0 ? "page" : cause;
 }
 
 function lineText({ reduction, rate }: Reduced): string {

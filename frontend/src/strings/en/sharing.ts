@@ -8,10 +8,16 @@ interface ReducedImage {
 
 /** Export, pictures, videos; and what a slow line leaves out. */
 export const sharing = {
-  slowLine: "Slow connection",
-  slowLineHint: "The robot's movements go first; the rest comes in less detail until the connection is faster.",
-  slowPage: "This page draws slowly",
-  slowPageHint: "The browser does not draw as fast as the robot moves: fewer or simpler displays, a smaller window or a graphics card help.",
+  slow: {
+    line: "The connection is slow",
+    page: "This computer draws too slowly",
+    program: "The computer that runs Linkwright is busy",
+  },
+  slowHints: {
+    line: "The robot's movements go first, the rest comes in less detail. A cable or fewer displays help.",
+    page: "Fewer or simpler displays, a smaller window or a graphics card help.",
+    program: "The connection is not the cause. Fewer programs, sensors or displays help.",
+  },
   plainLight: "Where the light is Automatic, it is a soft one at the camera: a studio would be slower.",
   software: (name: string): string => `The browser draws without a graphics card (${name}).`,
   points: (step: number): string => `1 in ${step} points`,

@@ -2,10 +2,12 @@ import type { sharing as english } from "../en/sharing";
 
 /** 导出、截图、录像；以及连接较慢时省略的内容。 */
 export const sharing: typeof english = {
-  slowLine: "连接较慢",
-  slowLineHint: "机器人的运动优先传送；其余内容在连接变快之前以较低的细节显示。",
-  slowPage: "此页面绘制较慢",
-  slowPageHint: "浏览器绘制的速度跟不上机器人的运动：减少或简化显示项、缩小窗口，或者使用显卡，会有帮助。",
+  slow: { line: "连接较慢", page: "这台电脑绘制太慢", program: "运行 Linkwright 的电脑繁忙" },
+  slowHints: {
+    line: "机器人的运动优先传送，其余内容以较低的细节显示。改用网线或减少显示项会有帮助。",
+    page: "减少或简化显示项、缩小窗口，或者使用显卡，会有帮助。",
+    program: "原因不在连接。减少程序、传感器或显示项会有帮助。",
+  },
   plainLight: "“自动”光照现在用相机处的柔光：影棚会更慢。",
   software: (name) => `浏览器没有使用显卡绘制（${name}）。`,
   points: (step) => `每 ${step} 个点取 1 个`,

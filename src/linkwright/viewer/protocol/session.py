@@ -17,6 +17,12 @@ class Hello(ServerMessage):
     run: str
 
 
+class ProgramIsLate(ServerMessage):
+    """Whether this program's own delays, and not the line, are most of the time that answers of the page take."""
+
+    late: bool
+
+
 class Received(PageMessage):
     """Acknowledges the number of messages that the page has received, after the first one and after each large one."""
 

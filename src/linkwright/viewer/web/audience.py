@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -19,8 +20,9 @@ from linkwright.viewer.protocol.message import (
     encode,
     redundancy_key,
 )
-from linkwright.viewer.protocol.session import Received
+from linkwright.viewer.protocol.session import ProgramIsLate, Received
 from linkwright.viewer.protocol.voice import SoundBlock, unpack_sound
+from linkwright.viewer.web.lateness import Lateness
 from linkwright.viewer.web.outbox import BULK, TRANSFORMS, InPieces, Line, Made, Outbox, Payload, ScaledData
 
 if TYPE_CHECKING:
@@ -33,6 +35,9 @@ MAXIMUM_PAGES = 32
 
 _PATIENCE = 20
 """Messages outside of the protocol that a page may send before it is cut off."""
+
+_OURS = 4
+"""So many times the program's lateness is as long as an answer takes where that is half its own doing: it is late with both."""
 
 _QUIET = 0.3
 """Seconds of an idle line after which a page is sent all of what it has only a part of."""
@@ -63,6 +68,8 @@ class Page:
         self.line = Line(asyncio.get_running_loop().time)
         self._socket = socket
         self._reduced: dict[str, tuple[ScaledData, int]] = {}
+        self._lateness: Lateness | None = None
+        self._told_late = False
         self._opening: list[Payload] = []
         self._completing: asyncio.TimerHandle | None = None
         self._completion: InPieces | None = None
@@ -96,6 +103,12 @@ class Page:
 
     def close(self) -> None:
         """Cancel what is scheduled."""
+        if self._lateness is not None:
+            self._lateness.close()
+            self._lateness = None
+        self._stop_completing()
+
+    def _stop_completing(self) -> None:
         if self._completing is not None:
             self._completing.cancel()
             self._completing = None
@@ -124,6 +137,7 @@ class Page:
 
     def _line_changed(self) -> None:
         self.outbox.hold(self.line.is_full)
+        self._judge_lateness()
         if self._completion is not None and self._completion.done:
             self._completed(self._completion)
         room = self.line.room
@@ -137,9 +151,21 @@ class Page:
             if self._completion.key not in self.outbox:
                 self.outbox.put(self._completion.key, self._completion)
         elif not self.line.is_idle:
-            self.close()
+            self._stop_completing()
         elif self._reduced and self._completing is None:
             self._completing = asyncio.get_running_loop().call_later(_QUIET, self._complete)
+
+    def _judge_lateness(self) -> None:
+        """Tell the page whether this program is what is slow, while it is sent less than all."""
+        if self._lateness is None and self._reduced:
+            self._lateness = Lateness(asyncio.get_running_loop())
+        elif self._lateness is not None and not self._reduced:
+            self._lateness.close()
+            self._lateness = None
+        late = self._lateness is not None and self._lateness.mean * _OURS >= (self.line.took or math.inf)
+        if late != self._told_late:
+            self._told_late = late
+            self.send(ProgramIsLate(late))
 
     def _complete(self) -> None:
         """Send the whole of a content that seldom changes, in pieces, however slow the line is."""

@@ -198,6 +198,9 @@ _LEAST_ROOM = 6 * 1024
 _BLOCKED = 0.02
 """Seconds of waiting for the socket that say something about the line, and not about this machine."""
 
+_MEAN_OF = 8
+"""Messages whose answers are looked back at."""
+
 _MOST_ON_THE_WAY = 64
 """Messages remembered for the first answer of a page that may never answer."""
 
@@ -220,10 +223,12 @@ class Line:
 
     Attributes:
         rate: bytes a second; None as long as nothing is known.
+        took: seconds from a large message to its answer, a mean of the last ones; None as long as nothing is known.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.rate: float | None = None
+        self.took: float | None = None
         self._clock = clock
         self._number = 0
         self._answers = False
@@ -279,6 +284,7 @@ class Line:
             arrived = self._on_the_way.popleft()
             took = now - arrived.sent
             self._shortest = min(self._shortest, took)
+            self.took = took if self.took is None else self.took + (took - self.took) / _MEAN_OF
             if 2 * arrived.size >= min(self.room, _FIRST_ROOM):
                 self._learn(arrived.size / max(took - self._shortest, took / 10, 1e-4))
 

@@ -1,0 +1,72 @@
+import type { Connection } from "../connection/connection";
+import { Signal } from "../signal";
+import type { DrawingPace } from "./drawing-pace";
+import type { SlowLine } from "./slow-line";
+
+/** What is slow where a page is sent less than all: its drawing, the program that it is of, or the line between both. */
+export type SlowCause = "page" | "program" | "line";
+
+/** The time between two looks at how late the page is, ms. */
+const EVERY_MS = 50;
+/** Looks that count. */
+const LOOKS = 40;
+/** A page is late that has done nothing else for so much of the time, and no longer is one with less than the other. */
+const LATE = 0.3;
+const TIMELY = 0.15;
+
+/** Finds what is slow, as long as a page is sent less than all. */
+export class Slowness {
+  readonly changed = new Signal();
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private readonly lates: number[] = [];
+  private pageIsLate = false;
+  private programIsLate = false;
+
+  constructor(
+    private readonly slowLine: Pick<SlowLine, "changed" | "reduced">,
+    private readonly pace: Pick<DrawingPace, "isSlow">,
+    connection: Connection,
+    private readonly now: () => number = () => performance.now(),
+  ) {
+    slowLine.changed.on(() => this.follow());
+    connection.on("program_is_late", ({ late }) => {
+      this.programIsLate = late;
+      this.changed.emit();
+    });
+    connection.on("hello", () => (this.programIsLate = false));
+  }
+
+  get cause(): SlowCause {
+    if (this.pace.isSlow || this.pageIsLate) return "page";
+    return this.programIsLate ? "program" : "line";
+  }
+
+  private follow(): void {
+    const wanted = this.slowLine.reduced.length > 0;
+    if (wanted === (this.timer !== undefined)) return;
+    clearTimeout(this.timer);
+    this.timer = undefined;
+    if (wanted) this.lookLater();
+  }
+
+  /** What comes waits for the page as long as its timers do. */
+  private lookLater(): void {
+    const due = this.now() + EVERY_MS;
+    this.timer = setTimeout(() => {
+      // Browsers let timers of pages that nobody sees wait.
+      if (!globalThis.document.hidden) this.take(Math.max(0, this.now() - due));
+      this.lookLater();
+    }, EVERY_MS);
+  }
+
+  private take(late: number): void {
+    this.lates.push(late);
+    if (this.lates.length > LOOKS) this.lates.shift();
+    const sum = this.lates.reduce((all, each) => all + each, 0);
+    const share = sum / (sum + this.lates.length * EVERY_MS);
+    const isLate = this.pageIsLate ? share > TIMELY : share >= LATE;
+    if (isLate === this.pageIsLate) return;
+    this.pageIsLate = isLate;
+    this.changed.emit();
+  }
+}
