@@ -69,7 +69,10 @@ def test_a_slow_line_thins_what_is_heavy_and_says_so(live, open_page):
         )
         points, picture = told["drawn"]
         return (
-            all(each in told["text"] for each in ("The connection is slow", "Cloud 1 in", "of 1280 × 720, quality", "WebP"))
+            all(
+                each in told["text"]
+                for each in ("The connection is slow", "Cloud 1 in", "of 1280 × 720, quality", "WebP")
+            )
             and points["step"] > 1
             and 0 < points["points"] < 50_000
             and picture["width"] == 1280

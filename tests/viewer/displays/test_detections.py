@@ -9,6 +9,7 @@ from linkwright.graph import SetParametersResult
 from linkwright.messages import Time, get_message
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.displays.class_colors import class_color, read_class_colors
+from linkwright.vision.colour_words import PAINTS
 from tests.viewer.contents import contents
 from tests.viewer.scene import world
 from tests.waiting import eventually
@@ -121,6 +122,13 @@ def test_a_class_has_the_same_colour_everywhere():
     assert class_color("ball", {}) == class_color("ball", {})
     assert class_color("Person", {}) == (0, 0, 255)
     assert len({class_color(name, {}) for name in ("ball", "crate", "cone", "can")}) > 2
+
+
+def test_a_class_named_for_a_colour_has_it_unless_the_file_says_another():
+    assert class_color("red", {}) == class_color("Red_cube", {}) == PAINTS["red"]
+    assert class_color("ball-gray", {}) == PAINTS["grey"]
+    assert class_color("infrared lamp", {}) != PAINTS["red"]
+    assert class_color("red", {"red": (1, 2, 3)}) == (1, 2, 3)
 
 
 # --- over images -------------------------------------------------------------------------------------------------

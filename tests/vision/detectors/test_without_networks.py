@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.colour_words import PAINTS
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.drawing import colour_of, drawn
@@ -178,6 +179,7 @@ def test_what_was_found_is_drawn_and_the_picture_is_left_as_it_is():
         np.array([[[50, 60], [150, 60], [150, 160], [50, 160]]], np.float32),
     )
     assert tuple(drawn(picture, marker)[160, 100]) == colour_of("ball")
+    assert colour_of("red") == colour_of("red cube") == PAINTS["red"]
 
 
 WITHOUT = ("colours", "aruco", "apriltag", "qr", "line")

@@ -2,7 +2,11 @@ import { CanvasTexture, LinearFilter, NoColorSpace, Sprite, SpriteMaterial } fro
 
 const FONT_PX = 48;
 const LINE_PX = 58;
-const PADDING_PX = 4;
+const PADDING_PX = 6;
+/** Around letters, so that they are read on any ground: of the colour that stands off from theirs. */
+const RIM_PX = 6;
+const RIMS = { dark: "rgba(12, 14, 18, 0.8)", light: "rgba(255, 255, 255, 0.85)" };
+const LIGHT = 0.4;
 /** Longer texts would make textures that no GPU takes. */
 const WIDEST_PX = 4096;
 
@@ -19,17 +23,23 @@ export function textSprite(text: string, height: number, color: readonly number[
   canvas.height = Math.min(WIDEST_PX, lines.length * LINE_PX + 2 * PADDING_PX);
   if (context) {
     context.font = font;
-    context.fillStyle = "#fff";
+    context.fillStyle = `rgb(${[r, g, b].map((each) => Math.round(255 * each)).join(" ")})`;
+    context.strokeStyle = 0.3 * r + 0.59 * g + 0.11 * b > LIGHT ? RIMS.dark : RIMS.light;
+    context.lineWidth = RIM_PX;
+    context.lineJoin = "round";
     context.textBaseline = "middle";
     context.textAlign = "center";
-    lines.forEach((line, row) => context.fillText(line, canvas.width / 2, PADDING_PX + (row + 0.5) * LINE_PX));
+    for (const [row, line] of lines.entries()) {
+      const at = [canvas.width / 2, PADDING_PX + (row + 0.5) * LINE_PX] as const;
+      context.strokeText(line, ...at);
+      context.fillText(line, ...at);
+    }
   }
   const map = new CanvasTexture(canvas);
   map.colorSpace = NoColorSpace;
   map.minFilter = LinearFilter;
   map.generateMipmaps = false;
   const material = new SpriteMaterial({ map, transparent: true, opacity: a, depthWrite: false });
-  material.color.setRGB(r, g, b);
   const sprite = new Sprite(material);
   const scale = height / FONT_PX;
   sprite.scale.set(canvas.width * scale, canvas.height * scale, 1);

@@ -10,6 +10,7 @@ from typing import TypeAlias
 import yaml
 
 from linkwright.diagnostics import foreign, phrase
+from linkwright.vision.colour_words import paint_of
 
 Color: TypeAlias = tuple[int, int, int]
 
@@ -41,11 +42,12 @@ _PALETTE: tuple[Color, ...] = (
 
 
 def class_color(name: str, table: Mapping[str, Color]) -> Color:
-    """The colour of a class, by the table, else by vision_msgs_rviz_plugins, else one of a palette by the name."""
+    """The colour of a class, by the table, vision_msgs_rviz_plugins, a colour in its name, or one of a palette."""
     if not name:
         return UNNAMED
     lower = name.lower()
-    return table.get(lower) or KNOWN.get(lower) or _PALETTE[zlib.crc32(name.encode()) % len(_PALETTE)]
+    known = table.get(lower) or KNOWN.get(lower) or paint_of(name)
+    return known or _PALETTE[zlib.crc32(name.encode()) % len(_PALETTE)]
 
 
 def read_class_colors(path: str) -> dict[str, Color]:

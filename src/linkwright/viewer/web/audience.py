@@ -37,7 +37,7 @@ _PATIENCE = 20
 """Messages outside of the protocol that a page may send before it is cut off."""
 
 _OURS = 4
-"""So many times the program's lateness is as long as an answer takes where that is half its own doing: it is late with both."""
+"""The program is late with each message and with its answer: so many times that is twice its share of the time."""
 
 _QUIET = 0.3
 """Seconds of an idle line after which a page is sent all of what it has only a part of."""

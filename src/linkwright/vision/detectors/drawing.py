@@ -7,6 +7,7 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.vision.colour_words import paint_of
 from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.library import load_opencv
 
@@ -16,7 +17,10 @@ _TEXT_HEIGHT = 12
 
 
 def colour_of(name: str) -> tuple[int, int, int]:
-    """Red, green and blue of a class: always the same for a name."""
+    """Red, green and blue of a class: the colour in its name, else one that is always the same for a name."""
+    told = paint_of(name)
+    if told is not None:
+        return told
     hue = crc32(name.encode()) % _HUES / _HUES * 6.0
     rising = hue % 1.0
     high, up, down = 1.0, rising, 1.0 - rising

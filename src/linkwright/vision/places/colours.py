@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.vision.colour_words import PAINTS
 from linkwright.vision.places.camera import Floats
 
-COLOURS = ("red", "orange", "yellow", "green", "cyan", "blue", "purple", "pink", "brown", "white", "grey", "black")
+COLOURS = tuple(PAINTS)
 """The words, in English."""
 
 _HUES = ((16, "red"), (42, "orange"), (70, "yellow"), (165, "green"), (195, "cyan"), (262, "blue"), (292, "purple"))

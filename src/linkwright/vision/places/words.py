@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from math import atan2, degrees, hypot
 
-from linkwright.vision.places.colours import COLOURS
+from linkwright.vision.colour_words import SPELLINGS, told_colour, words_of
 
 LANGUAGES = ("en", "zh")
 
@@ -16,7 +16,6 @@ _CHINESE_COLOURS = {
     "红": "red", "橙": "orange", "橘": "orange", "黄": "yellow", "绿": "green", "青": "cyan", "蓝": "blue",
     "紫": "purple", "粉": "pink", "棕": "brown", "褐": "brown", "白": "white", "灰": "grey", "黑": "black",
 }  # fmt: skip
-_ENGLISH_COLOURS = {**{each: each for each in COLOURS}, "gray": "grey", "violet": "purple"}
 _ALIKE = (
     ("ball", "football", "soccer ball", "sports ball", "sphere", "球", "足球", "皮球", "小球"),
     ("crate", "box", "cube", "箱子", "箱", "盒子", "方块", "木箱"),
@@ -118,9 +117,9 @@ class Wanted:
             shape: its width by its height.
             score: of the detection; of a patch of a colour, how much of its box it fills.
         """
-        words = _words(name)
-        told = next((_ENGLISH_COLOURS[word] for word in words if word in _ENGLISH_COLOURS), None)
-        rest = " ".join(word for word in words if word not in _ENGLISH_COLOURS)
+        words = words_of(name)
+        told = told_colour(name)
+        rest = " ".join(word for word in words if word not in SPELLINGS)
         if self.colour is not None and self.colour != (told or colour):
             return False
         if not self.thing:
@@ -157,9 +156,9 @@ def wanted(text: str) -> Wanted | None:
     plain = text.strip().strip(".,!?。，！？").lower()
     if plain.isascii():
         plain = _VERBS.sub("", f"{' '.join(plain.split())} ", count=1) if _VERBS.match(plain) else plain
-        words = [word for word in _words(plain) if word not in _FILLERS]
-        colour = next((_ENGLISH_COLOURS[word] for word in words if word in _ENGLISH_COLOURS), None)
-        rest = " ".join(word for word in words if word not in _ENGLISH_COLOURS and word not in ("thing", "one"))
+        words = [word for word in words_of(plain) if word not in _FILLERS]
+        colour = next((SPELLINGS[word] for word in words if word in SPELLINGS), None)
+        rest = " ".join(word for word in words if word not in SPELLINGS and word not in ("thing", "one"))
         return Wanted(thing_of(rest), colour, " ".join(words)) if colour or rest else None
     plain = _CHINESE_VERBS.sub("", plain)
     colour = next((_CHINESE_COLOURS[sign] for sign in plain if sign in _CHINESE_COLOURS), None)
@@ -182,8 +181,8 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
 
 def named(name: str, colour: str | None, language: str) -> str:
     """An object with its colour: *red ball*, 红色的球."""
-    words = [word for word in _words(name) if word not in _ENGLISH_COLOURS]
-    told = next((_ENGLISH_COLOURS[word] for word in _words(name) if word in _ENGLISH_COLOURS), colour)
+    words = [word for word in words_of(name) if word not in SPELLINGS]
+    told = told_colour(name) or colour
     thing = " ".join(words)
     if language != "zh":
         return " ".join(filter(None, (told, thing or "thing")))
@@ -240,7 +239,3 @@ def _plural(name: str) -> str:
 
 def _joined(parts: Sequence[str], comma: str, last: str) -> str:
     return parts[0] if len(parts) == 1 else comma.join(parts[:-1]) + last + parts[-1]
-
-
-def _words(name: str) -> list[str]:
-    return [word for word in re.split(r"[\s_\-]+", name.lower()) if word]

@@ -1,0 +1,40 @@
+"""Colours in names of classes, such as ``red_ball``."""
+
+from __future__ import annotations
+
+import re
+
+PAINTS: dict[str, tuple[int, int, int]] = {
+    "red": (225, 35, 40),
+    "orange": (255, 140, 0),
+    "yellow": (245, 215, 25),
+    "green": (40, 175, 70),
+    "cyan": (40, 205, 225),
+    "blue": (45, 100, 240),
+    "purple": (150, 70, 215),
+    "pink": (240, 105, 185),
+    "brown": (145, 85, 45),
+    "white": (245, 245, 245),
+    "grey": (145, 145, 145),
+    "black": (30, 30, 30),
+}
+"""Red, green and blue of the colours that have a word, 0 to 255."""
+
+SPELLINGS = {**{each: each for each in PAINTS}, "gray": "grey", "violet": "purple"}
+"""English words for them."""
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a class's name, in lower case."""
+    return [word for word in re.split(r"[\s_\-]+", name.lower()) if word]
+
+
+def told_colour(name: str) -> str | None:
+    """The colour that a class has in its name, one of `PAINTS`."""
+    return next((SPELLINGS[word] for word in words_of(name) if word in SPELLINGS), None)
+
+
+def paint_of(name: str) -> tuple[int, int, int] | None:
+    """Red, green and blue of the colour that a class has in its name, 0 to 255."""
+    told = told_colour(name)
+    return None if told is None else PAINTS[told]
