@@ -9,7 +9,7 @@ function told(part: Partial<RecordingState> = {}): RecordingState {
   return { type: "recording_state", possible: true, path: "", length: 0, size: 0, saved: null, problem: "", files: [], ...part };
 }
 
-const FILE: RecordedFile = { name: "rosbag2_1", path: "/home/me/rosbag2_1", size: 1e6, length: 3, url: "/export/a/b.mcap" };
+const FILE: RecordedFile = { name: "rosbag2_1", path: "/home/me/rosbag2_1", size: 1e6, length: 3, url: "/export/a/b.mcap", simulated: null };
 
 describe("recording", () => {
   let sent: PageMessage[];

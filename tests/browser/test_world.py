@@ -103,7 +103,11 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
         "0",
         "0",
     ]  # beside the crate, which reaches from -2 to 2
-    page.get_by_role("dialog").get_by_role("button", name="Cancel").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("Model or file").fill("/nowhere/robot.urdf")
+    dialog.get_by_role("button", name="Add a model").click()
+    dialog.get_by_role("alert").get_by_text("no such file: '/nowhere/robot.urdf'").wait_for()
+    dialog.get_by_role("button", name="Cancel").click()
 
     box = page.locator(".canvas-box canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2

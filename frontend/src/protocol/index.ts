@@ -113,6 +113,7 @@ import type {
   ControlSimulation,
   DeleteModel,
   DragModel,
+  ModelAdded,
   PushLink,
   SimulationNotice,
   SimulationStatus,
@@ -210,6 +211,7 @@ export type ServerMessage =
   | Kept
   | LinkProvenance
   | LogLines
+  | ModelAdded
   | ModelChoices
   | ModellingState
   | NavigationState

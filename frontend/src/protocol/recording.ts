@@ -7,6 +7,7 @@ export interface RecordedFile {
   size: number;
   length: number;
   url: string;
+  simulated: number | null;
 }
 
 /** Whether something is recorded, which all pages see; told each second meanwhile. */

@@ -16,6 +16,12 @@ export interface SimulationNotice {
   type: "simulation_notice";
 }
 
+/** The model that the page asked for is in the world. */
+export interface ModelAdded {
+  name: string;
+  type: "model_added";
+}
+
 /** The user wants time to go on, to stand still, to make one step, or to begin anew. */
 export interface ControlSimulation {
   action: "play" | "pause" | "step" | "reset";

@@ -7,6 +7,8 @@ export class SimulationState {
   readonly changed = new Signal();
   /** The simulation did not do something; why. */
   readonly refused = new Signal<string>();
+  /** A model that this page asked for is in the world; its name. */
+  readonly added = new Signal<string>();
   /** The user wants to put a model at a place of the world, m. */
   readonly spawnAsked = new Signal<readonly number[]>();
   /** Where in the world there is room for a model, m; a world that is drawn knows better. */
@@ -18,6 +20,7 @@ export class SimulationState {
       this.status = status;
       this.changed.emit();
     });
+    connection.on("model_added", ({ name }) => this.added.emit(name));
     connection.on("simulation_notice", ({ text }) => this.refused.emit(text));
   }
 

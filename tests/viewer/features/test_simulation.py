@@ -144,6 +144,7 @@ async def test_models_are_put_into_the_world_by_a_path(tmp_path):
         request = await simulation.request("/spawn_entity")
         assert '<robot name="box">' in request.xml
         assert (request.initial_pose.position.x, request.initial_pose.position.z) == (1.0, 3.0)
+        assert (await client.until("model_added"))["name"] == "box"
         await client.send("spawn_model", address=str(model), position=[0, 0, 0])
         request = await simulation.request("/spawn_entity", 2)
         assert '<model name="ball">' in request.xml

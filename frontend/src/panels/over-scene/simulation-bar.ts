@@ -3,9 +3,9 @@ import { icon } from "../../icons";
 import type { Modelling } from "../../state/modelling/modelling";
 import type { SimulationState } from "../../state/simulation";
 import { strings } from "../../strings";
-import { Dialog } from "../../widgets/dialog";
 import { ModellingBar } from "../modelling/modelling-bar";
 import type { WorldCommands } from "../modelling/world-commands";
+import { SpawnDialog } from "./spawn-dialog";
 
 const NOTICE_MS = 8000;
 
@@ -17,9 +17,9 @@ export class SimulationBar {
   private readonly factor = h("output", { class: "simulation-figure", title: strings.simulation.factorHint });
   private readonly time = h("output", { class: "simulation-figure wide", title: strings.simulation.timeHint });
   private readonly notice = h("div", { class: "simulation-notice", role: "status" });
-  private timer = 0;
-
   private readonly model: HTMLButtonElement;
+  private timer = 0;
+  private asking: SpawnDialog | null = null;
 
   constructor(
     private readonly simulation: SimulationState,
@@ -68,30 +68,13 @@ export class SimulationBar {
   }
 
   private tell(text: string): void {
+    if (this.asking !== null) return; // it says so
     clearTimeout(this.timer);
     this.notice.textContent = text;
     this.timer = window.setTimeout(() => (this.notice.textContent = ""), NOTICE_MS);
   }
 
   private askSpawn(position: readonly number[]): void {
-    const words = strings.simulation;
-    const address = h("input", { class: "field", aria: { label: words.address } });
-    address.placeholder = words.addressHint;
-    const places = position.map((value, axis) => {
-      const field = h("input", { class: "field number", aria: { label: "xyz"[axis] ?? "" } });
-      field.value = String(Math.round(value * 1000) / 1000);
-      return field;
-    });
-    const run = (): boolean => {
-      const numbers = places.map((field) => Number(field.value));
-      if (address.value.trim() === "" || numbers.some((number) => !Number.isFinite(number))) return false;
-      this.simulation.spawn(address.value.trim(), numbers);
-      return true;
-    };
-    const rows = [
-      h("label", { class: "spawn-row" }, h("span", {}, words.address), address),
-      h("div", { class: "spawn-row" }, h("span", {}, words.position), h("span", { class: "spawn-places" }, ...places)),
-    ];
-    new Dialog(words.spawnTitle, rows, [{ label: strings.shell.cancel }, { label: words.spawn, main: true, run }]).open(address);
+    this.asking = new SpawnDialog(this.simulation, this.modelling, position, () => (this.asking = null));
   }
 }

@@ -6,7 +6,7 @@ import { Dialog, tell } from "../../widgets/dialog";
 import { openMenu, type MenuEntry } from "../../widgets/menu";
 import { saveFrom } from "../../widgets/save-file";
 import { chooseTopics } from "./record-dialog";
-import { amountText, lengthText } from "./timeline-text";
+import { amountText, lengthText, secondsText } from "./timeline-text";
 
 /** Files that the menu offers. */
 const MOST_FILES = 5;
@@ -95,6 +95,7 @@ export class RecordButton {
       words.made,
       [
         h("p", {}, words.madeHint(amountText(file.length, file.size))),
+        file.simulated === null ? "" : h("p", {}, words.simulated(secondsText(file.length), secondsText(file.simulated))),
         h("pre", { class: "copyable" }, file.path),
         h("p", {}, words.openHint),
         h("pre", { class: "copyable" }, `linkwright view ${file.name}`),

@@ -32,6 +32,11 @@ export function lengthText(seconds: number): string {
   return minutes(seconds, 0);
 }
 
+/** `7.3 s`, `1:30`: seconds; of a short time the tenths. */
+export function secondsText(seconds: number): string {
+  return seconds < 60 ? `${seconds.toFixed(1)} s` : lengthText(seconds);
+}
+
 /** `45 kB`, `4.5 MB`, `1.20 GB`. */
 export function sizeText(bytes: number): string {
   if (bytes < 1e6) return `${(bytes / 1e3).toFixed(0)} kB`;

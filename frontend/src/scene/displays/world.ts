@@ -144,10 +144,15 @@ export class WorldDrawing implements Drawing {
     return { robots, world: world.isEmpty() ? all : world };
   }
 
-  /** A free position for a model, in the frame of the world, m. */
+  /** A free position for a model, near the robots, in the frame of the world, m. */
   freePlace(): number[] {
-    const boxes = [...(this.shown?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box));
-    return freePlace(boxes.map(([, box]) => box), this.world());
+    const { robots } = this.extents();
+    const near = robots.isEmpty() ? null : robots.getCenter(new Vector3());
+    const names = new Set(this.scene?.robots);
+    // Walls around the robot have a box with all of the room in it.
+    const surrounds = (link: string, box: Box3): boolean => near !== null && !names.has(modelOf(link)) && box.containsPoint(near);
+    const boxes = [...(this.shown?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box) && !surrounds(link, box));
+    return freePlace(boxes.map(([, box]) => box), this.world(), near);
   }
 
   /** The pose of the file's camera, looking along x, in the fixed frame; null where it has none. */

@@ -21,6 +21,7 @@ export const recording = {
   begin: "Record",
   made: "Recorded",
   madeHint: (amount: string): string => `${amount}, on the machine of the program:`,
+  simulated: (real: string, simulated: string): string => `In ${real} of real time, ${simulated} of simulated time passed.`,
   openHint: "Later it opens again with",
   download: "Download",
   openHere: "Open here",

@@ -23,6 +23,7 @@ export const recording: typeof english = {
   begin: "录制",
   made: "录制完成",
   madeHint: (amount: string): string => `${amount}，位于程序所在的机器上：`,
+  simulated: (real, simulated) => `真实时间 ${real}，其间仿真时间 ${simulated}。`,
   openHint: "以后再次打开：",
   download: "下载",
   openHere: "在此打开",

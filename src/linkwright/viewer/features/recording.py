@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, in_one_line, phrase
-from linkwright.graph import Duration, JumpThreshold, Node
+from linkwright.graph import Clock, Duration, JumpThreshold, Node
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.protocol.recording import (
@@ -117,7 +117,7 @@ class RecordingFeature(PageFeature):
         jumps = node.get_clock().create_jump_callback(
             threshold, post_callback=lambda _: self._loop.call_soon_threadsafe(self._end_at_reset, recorder)
         )
-        self._running = _Running(node, writer, recorder, jumps)
+        self._running = _Running(node, writer, recorder, jumps, self.context.node.get_clock() if simulated else None)
         self._tell_later()
 
     def _guarded(self, callback: Callable[..., object]) -> Callable[..., object]:
@@ -150,7 +150,7 @@ class RecordingFeature(PageFeature):
             self._refused(error.diagnostics)
         running.node.destroy_node()
         if running.recorder.message_count:
-            self._made(path, running.length)
+            self._made(path, running.length, running.simulated)
         else:
             shutil.rmtree(path, ignore_errors=True)
             self._refused([_finding(phrase("nothing came, so that there is no recording"))])
@@ -233,10 +233,10 @@ class RecordingFeature(PageFeature):
         except OSError:
             return sys.maxsize
 
-    def _made(self, path: Path, length: float) -> None:
+    def _made(self, path: Path, length: float, simulated: float | None = None) -> None:
         for file in sorted(path.glob("*.mcap")):
             url = self.context.downloads.keep(file)
-            made = RecordedFile(path.name, str(path), file.stat().st_size, length, url)
+            made = RecordedFile(path.name, str(path), file.stat().st_size, length, url, simulated)
             self._files = [made, *self._files[: _MOST_FILES - 1]]
             self.context.node.get_logger().info(f"Recorded to '{display_path(path)}'")
 
@@ -286,19 +286,31 @@ class RecordingFeature(PageFeature):
 
 
 class _Running:
-    """A recording in progress."""
+    """A recording in progress; `clock` is that of the simulation, if there is one."""
 
-    def __init__(self, node: Node, writer: BagWriter, recorder: Recorder, jumps: JumpHandle) -> None:
+    def __init__(
+        self, node: Node, writer: BagWriter, recorder: Recorder, jumps: JumpHandle, clock: Clock | None
+    ) -> None:
         self.node = node
         self.writer = writer
         self.recorder = recorder
         self.jumps = jumps
         self._began = time.monotonic()
+        self._clock = clock
+        self._simulated_from = 0 if clock is None else clock.now().nanoseconds
 
     @property
     def length(self) -> float:
         """Seconds since it began."""
         return time.monotonic() - self._began
+
+    @property
+    def simulated(self) -> float | None:
+        """Seconds of the simulation since it began; None where there is none, or it began anew."""
+        if self._clock is None:
+            return None
+        passed = (self._clock.now().nanoseconds - self._simulated_from) / 1e9
+        return passed if passed >= 0 else None
 
 
 def _finding(message: Phrase) -> Diagnostic:

@@ -29,6 +29,7 @@ from linkwright.viewer.protocol.simulation import (
     ControlSimulation,
     DeleteModel,
     DragModel,
+    ModelAdded,
     PushLink,
     SimulationNotice,
     SimulationStatus,
@@ -189,9 +190,9 @@ class SimulationFeature(PageFeature):
             if name in taken:
                 free = next(each for number in count(2) if (each := f"{name}_{number}") not in taken)
                 fields.update(name=free, robot_namespace=f"/{free}")
-                spawn(partial(_tell_other_name, page, name, free))
+                spawn(partial(_tell_added, page, name, free))
             else:
-                spawn()
+                spawn(partial(_tell_added, page, name, name))
 
         spawn = partial(self._services.ask, page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
         self._services.ask(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
@@ -261,9 +262,12 @@ class SimulationFeature(PageFeature):
         self._services.ask(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
 
 
-def _tell_other_name(page: Page, name: str, free: str, response: Any) -> None:
-    """Tell a page that a model was renamed, since its name was taken."""
-    if response is not None and response.success:
+def _tell_added(page: Page, name: str, free: str, response: Any) -> None:
+    """Tell a page that a model is there, and that it was renamed where its name was taken."""
+    if response is None or not response.success:
+        return
+    page.send(ModelAdded(free))
+    if free != name:
         told = phrase(
             "There is a '{name}' already: this one is '{free}', and the topics of its plugins begin with /{free}. "
             "Frames of both have the same names.",

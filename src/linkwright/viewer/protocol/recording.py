@@ -6,13 +6,17 @@ from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessag
 
 
 class RecordedFile(Record):
-    """A recording that was made: its file on the server, bytes, seconds, and where pages can fetch it."""
+    """A recording that was made: its file on the server, bytes, seconds, and where pages can fetch it.
+
+    `simulated` are the seconds that passed in the simulation meanwhile; None where time is not simulated, or not known.
+    """
 
     name: str
     path: str
     size: int
     length: float
     url: str
+    simulated: float | None = None
 
 
 class RecordingState(ServerMessage):

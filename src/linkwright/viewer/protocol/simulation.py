@@ -30,6 +30,12 @@ class SimulationNotice(ServerMessage):
     text: str
 
 
+class ModelAdded(ServerMessage):
+    """The model that the page asked for is in the world."""
+
+    name: str
+
+
 class ControlSimulation(PageMessage):
     """The user wants time to go on, to stand still, to make one step, or to begin anew."""
 

@@ -1,0 +1,108 @@
+import { h } from "../../dom";
+import { icon } from "../../icons";
+import type { ModelChoice } from "../../protocol";
+import type { Modelling } from "../../state/modelling/modelling";
+import type { SimulationState } from "../../state/simulation";
+import { strings } from "../../strings";
+import { Dialog } from "../../widgets/dialog";
+
+/** Puts a model into the world: one of those on the search path, or a file; it stays open until the model is there. */
+export class SpawnDialog {
+  private readonly dialog: Dialog;
+  private readonly address = h("input", { class: "field", aria: { label: strings.simulation.address } });
+  private readonly places: readonly HTMLInputElement[];
+  private readonly list = h("div", { class: "choices", role: "listbox", aria: { label: strings.simulation.models } });
+  private readonly problem = h("p", { class: "problem", role: "alert" });
+  private models: readonly ModelChoice[] | null = null;
+
+  constructor(
+    private readonly simulation: SimulationState,
+    modelling: Modelling,
+    position: readonly number[],
+    closed: () => void,
+  ) {
+    const words = strings.simulation;
+    this.address.placeholder = words.addressHint;
+    this.address.addEventListener("input", () => this.fill());
+    this.places = position.map((value, axis) => {
+      const field = h("input", { class: "field number", aria: { label: "xyz"[axis] ?? "" } });
+      field.value = String(Math.round(value * 1000) / 1000);
+      return field;
+    });
+    const rows = [
+      h("label", { class: "spawn-row" }, h("span", {}, words.address), this.address),
+      this.list,
+      h("div", { class: "spawn-row" }, h("span", {}, words.position), h("span", { class: "spawn-places" }, ...this.places)),
+      this.problem,
+    ];
+    const choices = [{ label: strings.shell.cancel }, { label: words.spawn, main: true, run: () => this.run() }];
+    this.dialog = new Dialog(words.spawnTitle, rows, choices, "spawn-dialog");
+    const forget = [
+      modelling.offered.on((models) => {
+        this.models = models;
+        this.fill();
+      }),
+      simulation.added.on(() => this.dialog.close()),
+      simulation.refused.on((text) => this.tell(text)),
+    ];
+    this.dialog.element.addEventListener("close", () => {
+      for (const each of forget) each();
+      closed();
+    });
+    this.dialog.open(this.address);
+    this.fill();
+    modelling.askModels();
+  }
+
+  /** The models that have what is typed in their names, until one of them, or a path, is chosen. */
+  private fill(): void {
+    const words = strings.simulation;
+    const typed = this.address.value.trim();
+    const models = this.models ?? [];
+    const chosen = models.some(({ address }) => address === typed);
+    const shown = chosen ? models : models.filter(({ name }) => name.toLowerCase().includes(typed.toLowerCase()));
+    this.list.replaceChildren(...shown.map((model) => this.row(model, model.address === typed)));
+    if (this.models && shown.length === 0) {
+      this.list.append(h("p", { class: "empty" }, models.length === 0 ? words.noModels : words.notListed));
+    }
+    this.dialog.ready = typed !== "";
+    this.problem.textContent = "";
+  }
+
+  private row(model: ModelChoice, chosen: boolean): HTMLElement {
+    const { name, address } = model;
+    const choose = (): void => {
+      this.address.value = address;
+      this.fill();
+      this.list.querySelector<HTMLElement>("[aria-selected=true]")?.focus();
+    };
+    const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
+    const row = h("div", { class: "choice-row", role: "option", tabIndex: 0, aria: { selected: String(chosen) }, onClick: choose }, ...parts);
+    row.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" || event.key === " ") choose();
+      else if (event.key === "ArrowDown") (row.nextElementSibling as HTMLElement | null)?.focus();
+      else if (event.key === "ArrowUp") (row.previousElementSibling as HTMLElement | null)?.focus();
+      else return;
+      event.preventDefault();
+    });
+    return row;
+  }
+
+  private run(): boolean {
+    const typed = this.address.value.trim();
+    const numbers = this.places.map((field) => Number(field.value));
+    if (typed === "" || numbers.some((number) => !Number.isFinite(number))) return false;
+    const named = this.models?.find(({ name }) => name === typed);
+    this.simulation.spawn(named?.address ?? typed, numbers);
+    this.dialog.ready = false;
+    this.problem.classList.remove("problem");
+    this.problem.textContent = strings.simulation.adding;
+    return false;
+  }
+
+  private tell(text: string): void {
+    this.problem.classList.add("problem");
+    this.problem.textContent = text;
+    this.dialog.ready = true;
+  }
+}
