@@ -60,3 +60,8 @@ def test_an_inertia_that_is_the_same_everywhere_on_purpose_is_an_information(tmp
     assert severities(tmp_path, links) == [("LW315", "warning")]
     explained = links.replace('izz="1"/>', 'izz="1"/> <!-- to stabilise -->')
     assert severities(tmp_path, explained) == [("LW315", "info")]
+
+
+def test_a_comment_above_the_whole_inertial_explains_its_mass(tmp_path):
+    link = _LINK.format("a", '<mass value="300"/>', _BOX).replace("<inertial>", "<!-- ballast -->\n  <inertial>")
+    assert severities(tmp_path, link) == [("LW320", "info")]

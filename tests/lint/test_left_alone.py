@@ -165,3 +165,63 @@ def test_a_type_that_an_argument_chooses_may_follow_another_time(told, kind, cod
     joint = f'<joint name="r" type="{kind}"><parent link="a"/><child link="c"/><mimic joint="j_b"/></joint>'
     text = f'<xacro:arg name="kind" default="fixed"/><link name="a"/>{moving("b", "", "a")}<link name="c"/>{joint}'
     assert told(robot(text, PREFIX), "LW230", name="r.urdf.xacro") == codes
+
+
+@pytest.mark.parametrize(("size", "codes"), [(0.2, []), (8, ["LW321"])])
+def test_a_stray_visual_does_not_make_a_link_too_light(told, size, codes):
+    shape = BOX.format(8) + f'<collision><geometry><box size="{size} {size} {size}"/></geometry></collision>'
+    assert told(robot(f'<link name="base"/>{moving("a", shape + inertial(1, 0.0067))}'), "LW321") == codes
+
+
+@pytest.mark.parametrize(("upper", "codes"), [("0", ["LW202"]), ("1", ["LW205", "LW206", "LW222"])])
+def test_a_joint_without_a_range_is_told_of_once(told, upper, codes):
+    joint = '<joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
+    joint += f'<limit lower="0" upper="{upper}" effort="0" velocity="0"/></joint><gazebo/>'
+    assert sorted(told(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW2")) == codes
+
+
+@pytest.mark.parametrize(("tag", "codes"), [("insert_block", ["LW720"]), ("visual", ["LW705"])])
+def test_what_a_tag_without_its_prefix_would_use_is_not_called_unused(told, tag, codes):
+    inside = f'<xacro:macro name="m" params="*origin"><link name="l"/><{tag} name="origin"/></xacro:macro>'
+    call = '<xacro:m><origin xyz="0 0 1"/></xacro:m>'
+    assert told(robot(inside + call, PREFIX), "LW705", "LW720", name="r.urdf.xacro") == codes
+
+
+MANIFEST = """<package format="3"><name>p</name><version>1.0.0</version><description>A robot.</description>
+<maintainer email="a@b.org">A</maintainer><license>MIT</license>{more}</package>"""
+
+
+@pytest.mark.parametrize(("more", "severity"), [("", "WARNING"), ("<exec_depend>far</exec_depend>", "INFO")])
+def test_meshes_of_a_package_that_is_declared_are_only_not_here(tmp_path, more, severity):
+    mesh = '<link name="l"><visual><geometry><mesh filename="package://far/a.stl"/></geometry></visual></link>'
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=more))
+    (tmp_path / "r.urdf").write_text(robot(mesh))
+    found = examine(tmp_path / "r.urdf", settings=Settings(select=("LW423",))).diagnostics
+    assert [each.severity.name for each in found if each.code == "LW423"] == [severity]
+
+
+@pytest.mark.parametrize(("build", "codes"), [("ament_cmake", []), ("ament_python", ["LW827"])])
+def test_cmake_does_not_read_a_setup_py(tmp_path, build, codes):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=f"<export><build_type>{build}</build_type></export>"))
+    (tmp_path / "CMakeLists.txt").write_text("project(p)\n")
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p/__init__.py").write_text("")
+    (tmp_path / "setup.py").write_text(
+        "from setuptools import setup\n"
+        "setup(name='p', packages=['p'], entry_points={'console_scripts': ['run = p.run:main']})\n"
+    )
+    found = examine_package(tmp_path, Settings(select=("LW827",))).diagnostics
+    assert [each.code for each in found] == codes
+
+
+@pytest.mark.parametrize(("ignored", "codes"), [("dist/", []), ("*.log", ["LW824"])])
+def test_what_git_ignores_is_made_before_it_is_installed(tmp_path, ignored, codes):
+    (tmp_path / ".git").mkdir()
+    (tmp_path / ".gitignore").write_text(f"{ignored}\n")
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    (tmp_path / "CMakeLists.txt").write_text(
+        "project(p)\nfind_package(ament_cmake REQUIRED)\n"
+        "install(DIRECTORY web/dist DESTINATION share/p)\nament_package()\n"
+    )
+    found = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
+    assert [each.code for each in found] == codes

@@ -98,6 +98,7 @@ def test_a_file_address_without_a_root_is_below_the_search_path(tmp_path):
     for folder in ("a", "a/models"):
         finder = ResourceFinder(packages, {"GAZEBO_RESOURCE_PATH": str(tmp_path / folder)})
         assert finder.file("file://models/box/meshes/m.stl", Path("/nowhere")) == mesh
+        assert finder.file("file://box/meshes/m.stl", Path("/nowhere")) == mesh
     finder = ResourceFinder(packages, {})
     assert finder.file("file://models/box/meshes/m.stl", mesh.parents[1]) == mesh
     assert isinstance(finder.file("file://models/box/meshes/no.stl", mesh.parents[1]), Missing)

@@ -32,24 +32,29 @@ _HEADINGS = frozenset(
 """Words that say what the line is, and nothing of why its value is what it is."""
 
 
-def is_explained(element: Element | None) -> bool:
-    """Return whether a comment beside an element, or right above it, says more than what the element is.
+def is_explained(element: Element | None, tag: str) -> bool:
+    """Return whether a comment beside or right above a child of an element, or right above the element, says why.
 
-    Commented-out elements and suppressions explain nothing.
+    Commented-out elements, suppressions, and headings that only say what stands there explain nothing.
     """
-    if element is None or element.source is None:
+    if element is None:
         return False
-    found = element_range(element)
-    if found is None:
-        return False
+    return any(map(_explains, (*_comments(element.first(tag), beside=True), *_comments(element, beside=False))))
+
+
+def _comments(element: Element | None, *, beside: bool) -> list[str]:
+    """The comments right above an element, and those on its lines."""
+    found = element_range(element) if element is not None else None
+    if element is None or element.source is None or found is None:
+        return []
     text, (start, end) = element.source.text, found
     line = text.rfind("\n", 0, start) + 1
-    last = text.find("\n", end)
+    last = text.find("\n", end) if beside else start
     comments = [each[1] for each in _COMMENT.finditer(text, line, len(text) if last < 0 else last)]
     above = _ABOVE.search(text, max(0, text.rfind("<!--", 0, start)), line + len(text[line:start]))
     if above is not None and not text[line:start].strip():
         comments.append(above[1])
-    return any(map(_explains, comments))
+    return comments
 
 
 def _explains(comment: str) -> bool:

@@ -112,7 +112,9 @@ class PackageContext:
 
     @cached_property
     def setup(self) -> SetupFile | None:
-        """Its ``setup.py``, or None."""
+        """Its ``setup.py``, or None where CMake builds the package and nobody reads one."""
+        if self.manifest is not None and self.manifest.build_type == "ament_cmake" and self.has("CMakeLists.txt"):
+            return None
         from linkwright.packages.readers.setup_py import read_setup
 
         source = self.text("setup.py")

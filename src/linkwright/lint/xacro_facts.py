@@ -29,6 +29,7 @@ TAGS = frozenset(
     f"xacro:{name}"
     for name in ("arg", "attribute", "call", "element", "if", "include", "insert_block", "macro", "property", "unless")
 )
+_BARE = frozenset({"include", "insert_block", "macro"})
 _DIRECTIVE_IN_COMMENT = "xacro:eval-comments"
 _LARGEST_FOLDER = 200
 _DEEPEST = 1_000
@@ -111,6 +112,11 @@ class FileFacts:
     arguments_open: bool = False
     calls_open: bool = False
     has_content: bool = False
+
+    @cached_property
+    def has_bare_tags(self) -> bool:
+        """Whether there are tags without the prefix of xacro, which does not evaluate what they were to do (LW720)."""
+        return any(element.tag in _BARE for element in self.document.root.walk())
 
     @cached_property
     def calls_by_macro(self) -> Mapping[int, Sequence[Definition]]:

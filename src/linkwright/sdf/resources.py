@@ -38,6 +38,8 @@ _HOOKED = re.compile(
     r"(?:;|\s+[\"']?\$\{?(?:AMENT|COLCON)_CURRENT_PREFIX\}?/)share(?:/(?P<path>[^\s\"';:]*))?"
 )
 """``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"``."""
+_BELOW = ("", "models", "media/models", "Media/models")
+"""Where in a folder of the search path Gazebo classic looks for ``file://PATH`` (its ``SystemPaths``)."""
 _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
 """Models of Fuel that stand in nearly every world, and ours by which they are replaced."""
 
@@ -70,7 +72,8 @@ class ResourceFinder:
     5. our own: ``ground_plane`` and ``sun``,
     6. the folder of the file that names it and the one around that, and ``models`` in both.
 
-    ``file://PATH`` without a third slash is below one of these, or below the folder around one, as in Gazebo classic.
+    ``file://PATH`` without a third slash is below one of these, or below the folder around one, as in Gazebo classic,
+    or in ``models``, ``media/models`` or ``Media/models`` there.
 
     Nothing is fetched from the network: of addresses on Fuel only what gz has put into its cache is found.
 
@@ -179,8 +182,9 @@ class ResourceFinder:
     def _below(self, address: str, path: str, beside: Path) -> Path | Missing:
         around = (each.parent for each in self._folders)
         for folder in (*self._folders, *around, *(beside.absolute() / "x").parents):
-            if (folder / path).exists():
-                return folder / path
+            for below in _BELOW:
+                if (folder / below / path).exists():
+                    return folder / below / path
         hint = phrase(
             "add the folder that '{path}' starts from to {variable}", path=path, variable=SEARCH_VARIABLES[-1]
         )

@@ -69,7 +69,7 @@ class PlaceholderInertia(Rule):
                 part(inertial, "inertia"),
                 notes=[Note(others)],
                 hint=phrase("`linkwright inertia` computes one for each from its shapes"),
-                severity=Severity.INFO if is_explained(part(inertial, "inertia")) else None,
+                severity=Severity.INFO if is_explained(inertial.element, "inertia") else None,
             )
 
 

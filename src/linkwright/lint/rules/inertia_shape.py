@@ -10,6 +10,7 @@ from math import prod
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
+from linkwright.geometry.shapes import volume_of
 from linkwright.lint.explanations import is_explained
 from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
@@ -98,7 +99,7 @@ class DensityTooHigh(Rule):
                         )
                     ],
                     hint=phrase("masses are in kg and lengths in m"),
-                    severity=Severity.INFO if is_explained(part(inertial, "mass")) else None,
+                    severity=Severity.INFO if is_explained(inertial.element, "mass") else None,
                 )
 
 
@@ -108,7 +109,7 @@ class DensityTooLow(Rule):
     ## Why
 
     Air has 1.2 kg/m3. A solid lighter than that is a mass in tonnes, or shapes in millimetres or centimetres. Links
-    that fixed joints connect are weighed together.
+    that fixed joints connect are weighed together, by their collision shapes where they have any.
 
     ## Example
 
@@ -141,7 +142,7 @@ class DensityTooLow(Rule):
             if not heavy or any(isinstance(geometry, Mesh) for geometry in shapes):
                 continue  # a frame of rods, as in a mesh, fills little of its box
             mass = bodies.mass(body)
-            volume = sum(subject.extents.volume(link) or 0.0 for link in members)
+            volume = sum(volume_of(geometry) for geometry in shapes if not isinstance(geometry, Mesh))
             if mass < LIGHTEST_DENSITY * volume:
                 link, inertial = max(heavy, key=lambda each: each[1].mass)
                 yield self.report(

@@ -11,6 +11,7 @@ from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import joints, parts, shown, values
+from linkwright.urdf import Joint
 from linkwright.urdf.values import plain
 
 _NO_TILT = 1e-9
@@ -154,7 +155,7 @@ class AxisImplicit(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every joint that turns and does not name its axis."""
         for joint, element in joints(subject):
-            if joint.type in ("revolute", "continuous") and element.first("axis") is None:
+            if joint.type in ("revolute", "continuous") and element.first("axis") is None and not _is_locked(joint):
                 yield self.report(
                     phrase(
                         "{type} joint '{name}' has no <axis>, so it turns about x", type=joint.type, name=joint.name
@@ -162,6 +163,11 @@ class AxisImplicit(Rule):
                     element,
                     hint=phrase('add <axis xyz="0 0 1"/>, or <axis xyz="1 0 0"/> if x is meant'),
                 )
+
+
+def _is_locked(joint: Joint) -> bool:
+    """Whether the limits leave it no way to move, which LW202 tells."""
+    return joint.type == "revolute" and joint.limit is not None and joint.limit.lower == joint.limit.upper
 
 
 class AxisOnFixed(Rule):

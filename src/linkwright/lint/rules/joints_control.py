@@ -260,7 +260,8 @@ class CalibrationOutside(Rule):
 
     ## Why
 
-    The joint can never reach the place where its reference signal changes, so a calibration never ends.
+    The joint can never reach the place where its reference signal changes, so a calibration never ends. Nothing in
+    ROS 2 reads it, so the rule is off by default.
 
     ## Example
 
@@ -276,6 +277,7 @@ class CalibrationOutside(Rule):
 
     code = "LW245"
     name = "calibration-outside"
+    default = False
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:

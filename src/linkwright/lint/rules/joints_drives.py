@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import BOUNDED, is_for_simulation, limits, parts, shown, value
+from linkwright.lint.walk import BOUNDED, bounds, is_for_simulation, limits, parts, shown, value
 
 
 class _Zero(Rule):
@@ -28,6 +28,9 @@ class _Zero(Rule):
             if element.first("springStiffness") is not None
         }
         for joint, limit in limits(subject, *BOUNDED, "continuous"):
+            ends = bounds(limit)
+            if ends is not None and ends[0] == ends[1] and joint.type in BOUNDED:
+                continue  # it cannot move anyway, which LW202 tells
             if joint.mimic is None and joint.name not in springs and value(limit, self.attribute) == 0:
                 yield self.report(
                     phrase(
@@ -126,7 +129,7 @@ class EffortNegative(_Negative):
     ## Why
 
     `effort` is a size that holds in both directions. A negative one leaves no admissible effort at all; what a
-    simulator makes of it is its own affair.
+    simulator makes of it is its own affair. urdfdom reads it; SDF writes -1 for "no limit", URDF has no such value.
 
     ## Example
 
@@ -145,7 +148,6 @@ class EffortNegative(_Negative):
     name = "effort-negative"
     holds_for_parts = True
     attribute = "effort"
-    severity = Severity.ERROR
 
 
 class VelocityNegative(_Negative):

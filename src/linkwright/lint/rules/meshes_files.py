@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, counted, display_path, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, counted, display_path, phrase
 from linkwright.diagnostics.pointers import is_pointer_file
 from linkwright.lint.fix import replace_value
 from linkwright.lint.made_files import is_ignored_by_git
@@ -74,7 +74,8 @@ class UnknownPackage(Rule):
     ## Why
 
     Without the package there is no mesh. Either its name is misspelt, or the workspace that holds it is not there or
-    not sourced, or a folder such as `meshes` stands where the package's name belongs.
+    not sourced, or a folder such as `meshes` stands where the package's name belongs. It is an information where
+    `package.xml` declares the package: it is only not here.
 
     ## Example
 
@@ -117,7 +118,9 @@ class UnknownPackage(Rule):
                 len(uses),
                 package=package,
             )
-            yield self.report(message, uses[0].element, "filename", hint=hints[package])
+            manifest = subject.package.manifest if subject.package is not None else None
+            severity = Severity.INFO if manifest is not None and manifest.declares(package) else None
+            yield self.report(message, uses[0].element, "filename", hint=hints[package], severity=severity)
 
 
 class MissingFile(Rule):

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
+from linkwright.lint.made_files import is_ignored_by_git
 from linkwright.lint.rules.package_manifest import PackageRule
 
 if TYPE_CHECKING:
@@ -235,18 +236,24 @@ class InstalledFileMissing(PackageRule):
         setup, cmake = package.setup, package.cmake
         if setup is not None:
             for item in setup.installed:
-                if item.is_pattern or package.has(item.text) or item.text == f"resource/{package.name}":
+                if item.is_pattern or _is_there(package, item.text) or item.text == f"resource/{package.name}":
                     continue
                 message = phrase("setup.py installs '{text}', which does not exist", text=item.text)
                 yield self.report(message, span=item.span, source=setup.source, hint=near_file(package, item.text))
         if cmake is not None:
             for each in cmake.required:
                 text = each.text.rstrip("/")
-                if text and not text.startswith("/") and "<" not in text and not package.has(text):
+                if text and not text.startswith("/") and "<" not in text and not _is_there(package, text):
                     message = phrase("CMakeLists.txt installs '{text}', which does not exist", text=each.text)
                     like = near_folder(package, text)
                     hint = phrase("did you mean {names}?", names=quoted(like)) if like else near_file(package, text)
                     yield self.report(message, span=cmake.span(each), source=each.source, hint=hint)
+
+
+def _is_there(package: PackageContext, path: str) -> bool:
+    """Whether a file or folder is among the sources, or is made before the package is installed: git ignores it."""
+    place = package.folder / path
+    return package.has(path) or is_ignored_by_git(place) or is_ignored_by_git(place / "_")
 
 
 def shared_folders(package: PackageContext) -> list[str]:

@@ -187,7 +187,9 @@ class UnusedInclude(XacroRule):
     needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        if facts.is_library or any(file.is_open or file.calls_open for file in facts.files.values()):
+        if facts.is_library or any(
+            file.is_open or file.calls_open or file.has_bare_tags for file in facts.files.values()
+        ):
             return
         paths = _included_paths(facts)
         for file in facts.own.values():
@@ -237,6 +239,8 @@ class UnusedMacroParameter(XacroRule):
             return  # macros that are called by a value of their name must all take the same parameters
         shared = _shared_parameters(facts)
         for file in facts.own.values():
+            if file.has_bare_tags:
+                continue
             for macro in file.macros:
                 yield from (each for name, each in self._of_macro(macro, file, facts) if name not in shared)
 
