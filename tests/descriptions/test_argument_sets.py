@@ -332,3 +332,42 @@ def test_a_package_that_forgets_to_declare_what_it_uses_gives_values_where_no_ot
     assert values(sets(workspace, "user/launch/far.launch.py", text)) == [{"name": "robot", "prefix": "far_"}]
     text = launch_file("default_value='near_'")
     assert values(sets(workspace, "arm/launch/near.launch.py", text)) == [{"name": "robot", "prefix": "near_"}]
+
+
+@pytest.mark.parametrize(
+    ("mapping", "found"),
+    [
+        ("{'side': 'left'}", [{"prefix": "left"}]),
+        ("{'other': 'left'}", [{"prefix": "right"}]),
+        ("ask()", []),
+        ("os.environ", [{"prefix": "right"}]),
+        ("context.launch_configurations", [{"prefix": "right"}]),
+    ],
+)
+def test_the_default_of_a_look_up_counts_where_the_key_is_known_to_be_missing(
+    workspace: Path, mapping: str, found: list[dict[str, str]]
+) -> None:
+    text = f"""
+import os
+import xacro
+from ament_index_python.packages import get_package_share_path
+
+def setup(context):
+    side = {mapping}.get('side', 'right')
+    xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': side}})
+"""
+    assert values(sets(workspace, "arm/launch/look.launch.py", text)) == found
+
+
+def test_names_that_are_made_of_each_other_again_and_again_are_worked_out_once(workspace: Path) -> None:
+    again = "\n".join(f"    a{i} = a{i} or ask(a{i})\n    a{i} = str(a{i - 1}) + str(a{i - 1})" for i in range(1, 28))
+    text = f"""
+import xacro
+from ament_index_python.packages import get_package_share_path
+
+def setup(a0):
+{again}
+    xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': 'a', 'name': a27}})
+"""
+    found = sets(workspace, "arm/launch/again.launch.py", text)
+    assert [(dict(each.values), each.open) for each in found] == [({"prefix": "a"}, ("name",))]

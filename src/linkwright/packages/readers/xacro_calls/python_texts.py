@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Union
 
 from linkwright.packages.readers.python_values import argument_of, called_name
@@ -23,6 +23,8 @@ from linkwright.packages.readers.xacro_calls.texts import (
 )
 
 _DEEPEST = 30
+_MOST_PIECES = 100
+"""A text of more pieces is not followed."""
 _JOINS = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitution"})
 _SHARES = frozenset({"get_package_share_directory", "get_package_share_path", "FindPackageShare"})
 _PASSING = frozenset(
@@ -69,6 +71,7 @@ class PythonTexts:
     file: CallingFile
     calls: Mapping[str, Sequence[tuple[ast.Call, Scope]]]
     _depth: int = 0
+    _names: dict[tuple[int, str], Value] = field(default_factory=dict)
 
     def value(self, node: ast.expr | None, scope: Scope) -> Value:
         """The value of an expression; an open place where it cannot be told."""
@@ -154,6 +157,19 @@ class PythonTexts:
             return owner.values[node.slice.value] if abs(node.slice.value) < len(owner.values) else _OPEN
         return _OPEN
 
+    def _got(self, owner: ast.expr, node: ast.Call, scope: Scope) -> Value:
+        """What ``mapping.get(key, default)`` gives: the default only where the mapping is known not to have the key."""
+        key, default = (*node.args, None)[:2] if node.args else (None, None)
+        if isinstance(owner, ast.Attribute) and owner.attr == "launch_configurations":
+            return self._launch_argument(key, default, scope)
+        mapping = self.value(owner, scope)
+        if not isinstance(mapping, Entries):
+            return _OPEN
+        name = _plain(self.text(key, scope)) or ""
+        if name in mapping.values or not name or "" in mapping.values:
+            return mapping.values.get(name, _OPEN)
+        return self.value(default, scope)
+
     # --- calls ------------------------------------------------------------------------------------------------
 
     def _call(self, node: ast.Call, scope: Scope) -> Value:
@@ -166,6 +182,8 @@ class PythonTexts:
             return (Share(self.text(first, scope)),)
         if name in _JOINS:
             return self._joined_path(node, name, owner, scope)
+        if name == "get" and owner is not None and first is not None and "environ" not in ast.unparse(owner):
+            return self._got(owner, node, scope)
         if (name in ("getenv", "get") and len(node.args) == 2) or name == "EnvironmentVariable":
             default = argument_of(node, "default_value") or (node.args[1] if len(node.args) > 1 else None)
             return self.value(default, scope)
@@ -222,6 +240,14 @@ class PythonTexts:
         if found is None:
             return _OPEN
         home, bindings = found
+        key = (id(home), name)
+        if key not in self._names:
+            self._names[key] = _OPEN  # for a name that is made of itself
+            value = self._value_of_name(name, home, bindings)
+            self._names[key] = _OPEN if isinstance(value, tuple) and len(value) > _MOST_PIECES else value
+        return self._names[key]
+
+    def _value_of_name(self, name: str, home: Scope, bindings: Sequence[Binding]) -> Value:
         if not bindings and home.function is not None:
             return self._parameter(name, home)
         values = [self._bound(each, home) for each in bindings if not each.is_added]
