@@ -20,6 +20,7 @@ from tests.wire.programs import linkwright
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 IMAGES = 45
+FLOOD = 300
 NODES = 50
 
 Image = get_message("sensor_msgs/msg/Image")
@@ -146,6 +147,20 @@ def test_images_come_whole_at_30_hz_both_ways(processes, real_node):
     us.spin_until(lambda: len(got) == IMAGES)
     assert got == list(range(IMAGES))
     assert real.ask_until(lambda images: len(images) == IMAGES, "received_images") == list(range(IMAGES))
+
+
+def test_pictures_that_are_replaced_while_they_are_on_their_way_do_not_stop_the_reader(processes, real_node):
+    """Fast DDS goes on reading what it has freed when it is told of a gap in place of the rest of a picture."""
+    us = processes("ours")
+    real = real_node()
+    publisher = us.node.create_publisher(Image, "/images_to_ros", 1)
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    picture = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
+    for number in range(FLOOD):
+        picture.header.frame_id = str(number)
+        publisher.publish(picture)
+        us.executor.spin_once(timeout_sec=0.01)
+    assert real.ask_until(lambda images: images and images[-1] == FLOOD - 1, "received_images")
 
 
 def test_what_was_said_before_is_heard_by_who_comes_later(processes, real_node):

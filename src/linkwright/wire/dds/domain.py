@@ -17,8 +17,10 @@ class Domain:
         participant: ours.
         remote: who is outside.
         types: descriptions of types.
+        fragment_size: the bytes of a sample up to which it surely goes into one packet.
     """
 
     participant: Participant
     remote: RemoteGraph
     types: WireTypes
+    fragment_size: int

@@ -73,7 +73,7 @@ class Engine(AnyEngine):
         self._is_fast_possible = settings.range is not Range.OFF
         self._participant = Participant(settings)
         types = self._participant.types
-        self._domain = Domain(self._participant, remote, types)
+        self._domain = Domain(self._participant, remote, types, settings.fragment_size)
         owner = self._participant.entity
         self._control = WaitingThread("linkwright-dds", owner, self._report, self._idle)
         self._reception = WaitingThread("linkwright-dds-receive", owner, self._report)
@@ -85,6 +85,7 @@ class Engine(AnyEngine):
         self._clients: dict[Any, OutsideServer] = {}
         self._presences: dict[Any, QuietReader | QuietClient] = {}
         self._leaving: dict[OutgoingTopic, float] = {}
+        self._waiting: dict[OutgoingTopic, None] = {}
         self._is_told = False
         self._told_at = time.monotonic()
         self._tell_span = _FIRST_TELL_SPAN
@@ -143,7 +144,7 @@ class Engine(AnyEngine):
     def open_publisher(self, publisher: Any) -> None:
         """Mirror a publisher."""
         try:
-            topic = OutgoingTopic(publisher, self._domain, self._on_mismatch)
+            topic = OutgoingTopic(publisher, self._domain, self._on_mismatch, self._on_waiting)
         except BaseException:
             publisher.set_outside(None)
             raise
@@ -213,13 +214,14 @@ class Engine(AnyEngine):
         self._do_some_work()
         self._look_outside()
         self._end_leaving()
+        self._write_waiting()
         late = self._review_replies()
         self._tell_mismatches()
         self._tell()
         asking, departing = self._discovery.ask_silent(), self._departures.review()
         if self._work:
             return 0.0
-        if self._leaving or self._mismatched or late:
+        if self._leaving or self._waiting or self._mismatched or late:
             return _LOOK_AGAIN
         return min((each for each in (asking, departing) if each is not None), default=None)
 
@@ -263,6 +265,19 @@ class Engine(AnyEngine):
         self._matches_changed = True
         self._control.wake()
 
+    def _on_waiting(self, topic: OutgoingTopic) -> None:
+        """Note a topic whose messages wait for acknowledgements; called by any thread."""
+        if topic not in self._waiting:
+            self._waiting[topic] = None
+            self._control.wake()
+
+    def _write_waiting(self) -> None:
+        """Write what waited for acknowledgements that have come."""
+        for topic in tuple(self._waiting):
+            del self._waiting[topic]  # first: what comes from now on is noted anew
+            if topic.review():
+                self._waiting[topic] = None
+
     def _on_mismatch(self, topic: OutgoingTopic | IncomingTopic) -> None:
         self._mismatched[topic] = time.monotonic() + _NAMED_WITHIN
         self._control.wake()
@@ -286,6 +301,7 @@ class Engine(AnyEngine):
         for topic, due in tuple(self._leaving.items()):
             if now >= due or topic.acknowledged(0):
                 del self._leaving[topic]
+                self._waiting.pop(topic, None)
                 topic.close()
 
     def _tell(self) -> None:

@@ -242,6 +242,12 @@ class RemoteGraph(Outside):
         with self._lock:
             return {guid[:_PREFIX] for guid in self._participants if is_fast(guid) and guid not in dead}
 
+    def is_read_by_fast(self, topic: str) -> bool:
+        """Whether a participant of Fast DDS that is not known to have been killed reads a DDS topic."""
+        dead = self._dead_participants()
+        readers = self.endpoints_of(topic, writers=False)
+        return any(each.is_fast and each.participant not in dead for each in readers)
+
     def is_dead(self, prefix: bytes) -> bool:
         """Whether a participant, named by the prefix of its GUIDs, is known to have been killed."""
         return any(guid.startswith(prefix) for guid in self._dead_participants())

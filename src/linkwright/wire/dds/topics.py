@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 from linkwright.graph.endpoints.bus import describe_mismatch, report_to_publisher, report_to_subscription
 from linkwright.graph.endpoints.info import MessageInfo
 from linkwright.graph.qos.compatibility import incompatible_policies
-from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile
+from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import InterfaceNotFoundError, serialize, type_hash
+from linkwright.wire.dds.backlog import Backlog
 from linkwright.wire.dds.cyclone import (
     ANY_STATE,
     DATA_AVAILABLE,
@@ -106,13 +107,28 @@ class MirroredTopic(ABC):
 
 
 class OutgoingTopic(MirroredTopic):
-    """A publisher's writer; see `MirroredTopic` for the arguments."""
+    """A publisher's writer.
+
+    Args:
+        publisher: the publisher.
+        domain: where the others are.
+        mismatch: called when a subscription of another process requests more than is offered.
+        waiting: called when messages wait to be written: `review` is to be called soon.
+    """
 
     _STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
 
-    def __init__(self, publisher: Publisher[Any], domain: Domain, mismatch: Callable[[Any], None]) -> None:
+    def __init__(
+        self,
+        publisher: Publisher[Any],
+        domain: Domain,
+        mismatch: Callable[[Any], None],
+        waiting: Callable[[OutgoingTopic], None],
+    ) -> None:
         super().__init__(publisher, domain, mismatch)
         self._publisher = publisher
+        self._waiting = waiting
+        self._backlog = self._make_backlog(domain.fragment_size)
         publisher.assert_outside = self._assert_liveliness
         self._always = publisher.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
         self._send = self._sender()
@@ -131,10 +147,17 @@ class OutgoingTopic(MirroredTopic):
             self._mismatch(self)
         return False
 
+    def review(self) -> bool:
+        """Write what waited for acknowledgements that have come; whether something still waits."""
+        return self._backlog is not None and self._backlog.review()
+
     def acknowledged(self, nanoseconds: int) -> bool:
-        """Wait until all reliable readers have acknowledged what was written; whether they have."""
-        code: int = self._dds.dds_wait_for_acks(self.entity, nanoseconds)
-        return code >= 0
+        """Wait until all reliable readers have acknowledged what was published; whether they have."""
+        until = time.monotonic_ns() + nanoseconds
+        while self.review():
+            if not self._are_acknowledged(max(0, until - time.monotonic_ns())):
+                return False
+        return self._are_acknowledged(max(0, until - time.monotonic_ns()))
 
     def close(self) -> None:
         """Delete the writer."""
@@ -155,20 +178,46 @@ class OutgoingTopic(MirroredTopic):
     def _acknowledged(self, seconds: float | None) -> bool:
         return self.acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
 
+    def _are_acknowledged(self, nanoseconds: int) -> bool:
+        """Whether all readers acknowledge, within the time given, what was written so far."""
+        code: int = self._dds.dds_wait_for_acks(self.entity, nanoseconds)
+        return code >= 0
+
+    def _make_backlog(self, fragment_size: int) -> Backlog | None:
+        """What large samples wait in, where the writer replaces samples that readers may ask for again."""
+        profile = self._publisher.qos_profile
+        is_reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
+        if not is_reliable or profile.history is HistoryPolicy.KEEP_ALL:
+            return None
+        depth = max(profile.depth, 1)
+        return Backlog(
+            depth,
+            fragment_size,
+            self._write,
+            acknowledged=lambda: self._are_acknowledged(0),
+            matters=lambda: self._remote.is_read_by_fast(self.topic_name),
+        )
+
     def _sender(self) -> Callable[[Any], None]:
-        write, writer, reference = self._dds.dds_write, self.entity, c.byref
-        keeps_all = self._publisher.qos_profile.history is HistoryPolicy.KEEP_ALL
+        backlog = self._backlog
 
         def send(message: Any) -> None:
             data = message if type(message) is bytes else _bytes_of(message)
-            if len(data) & 3:
-                data += bytes(-len(data) & 3)
-            sample = Sample(data, len(data))
-            code = write(writer, reference(sample))
-            if code < 0:
-                self._failed(self._insist(sample) if code == TIMEOUT and keeps_all else code)
+            if backlog is None:
+                self._write(data)
+            elif backlog.send(data):
+                self._waiting(self)
 
         return send
+
+    def _write(self, data: bytes) -> None:
+        if len(data) & 3:
+            data += bytes(-len(data) & 3)
+        sample = Sample(data, len(data))
+        code = self._dds.dds_write(self.entity, c.byref(sample))
+        if code < 0:
+            keeps_all = self._publisher.qos_profile.history is HistoryPolicy.KEEP_ALL
+            self._failed(self._insist(sample) if code == TIMEOUT and keeps_all else code)
 
     def _insist(self, sample: Sample) -> int:
         """Retry, for history KEEP_ALL, until slow readers have caught up or the lease of dead ones is over."""

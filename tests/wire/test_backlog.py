@@ -1,0 +1,103 @@
+from __future__ import annotations
+
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.messages import get_message
+from linkwright.wire.dds.backlog import PATIENCE, Backlog
+
+UInt8MultiArray = get_message("std_msgs/msg/UInt8MultiArray")
+SMALL, LARGE = 100, 1000
+DEPTH = 2
+
+
+class Writer:
+    """A writer of two samples whose readers acknowledge when they are told to."""
+
+    def __init__(self) -> None:
+        self.written: list[int] = []
+        self.acknowledged = False
+        self.matters = True
+        self.now = 0.0
+        self.backlog = Backlog(
+            DEPTH,
+            SMALL,
+            lambda sample: self.written.append(sample[0]),
+            lambda: self.acknowledged,
+            lambda: self.matters,
+            lambda: self.now,
+        )
+
+    def send(self, *numbers: int, size: int = LARGE) -> bool:
+        return [self.backlog.send(bytes([number]) * size) for number in numbers][-1]
+
+
+def test_no_more_large_samples_are_underway_than_the_writer_keeps():
+    writer = Writer()
+    assert not writer.send(1, 2)
+    assert writer.send(3)
+    assert writer.written == [1, 2]
+    writer.acknowledged = True
+    assert not writer.backlog.review()
+    assert writer.written == [1, 2, 3]
+
+
+def test_newer_samples_replace_those_that_wait():
+    writer = Writer()
+    assert writer.send(1, 2, 3, 4, 5)
+    writer.acknowledged = True
+    assert not writer.backlog.review()
+    assert writer.written == [1, 2, 4, 5]
+
+
+def test_small_samples_alone_never_wait():
+    writer = Writer()
+    assert not writer.send(1, 2, 3, 4, size=SMALL)
+    assert writer.written == [1, 2, 3, 4]
+
+
+def test_small_samples_do_not_overtake_or_replace_large_ones():
+    writer = Writer()
+    writer.send(1)
+    assert writer.send(2, 3, size=SMALL)
+    assert writer.written == [1, 2]
+    writer.acknowledged = True
+    writer.send(4, size=SMALL)
+    assert writer.written == [1, 2, 3, 4]
+
+
+def test_nobody_waits_where_only_others_than_fast_dds_listen():
+    writer = Writer()
+    writer.matters = False
+    assert not writer.send(1, 2, 3, 4)
+    assert writer.written == [1, 2, 3, 4]
+
+
+def test_a_reader_that_does_not_answer_holds_a_topic_up_once():
+    writer = Writer()
+    assert writer.send(1, 2, 3)
+    writer.now = PATIENCE
+    assert not writer.backlog.review()
+    assert not writer.send(4, 5)
+    assert writer.written == [1, 2, 3, 4, 5]
+    writer.acknowledged = True
+    writer.send(6)
+    writer.acknowledged = False
+    writer.send(7)
+    assert writer.send(8)
+
+
+def test_what_waits_is_written_when_readers_have_acknowledged(processes, monkeypatch):
+    a, b = processes("a"), processes("b")
+    monkeypatch.setattr(a.transport._remote, "is_read_by_fast", lambda topic: True)
+    got: list[int] = []
+    newest = QoSProfile(1)
+    b.node.create_subscription(UInt8MultiArray, "pictures", lambda message: got.append(message.data[0]), 10)
+    publisher = a.node.create_publisher(UInt8MultiArray, "pictures", newest)
+    b.spin_until(lambda: publisher.get_subscription_count() == 1)
+    for number in range(1, 21):
+        publisher.publish(UInt8MultiArray(data=bytes([number]) * 1_000_000))
+    b.spin_until(lambda: got and got[-1] == 20)
+    assert got == sorted(got)
+    publisher.publish(UInt8MultiArray(data=bytes([21]) * 1_000_000))
+    publisher.publish(UInt8MultiArray(data=bytes([22]) * 1_000_000))
+    assert publisher.wait_for_all_acked()
+    b.spin_until(lambda: got[-1] == 22)
