@@ -1,12 +1,13 @@
 from __future__ import annotations
 
+import socket
 import threading
 from typing import Any
 
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import String
-from linkwright.wire.dds import engine, join
+from linkwright.wire.dds import discovery, engine, join
 from linkwright.wire.dds.discovery_info import ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint
 from tests.waiting import SECONDS, wait_until
@@ -104,6 +105,17 @@ def test_a_killed_process_and_the_one_that_takes_its_place_are_one(processes, pr
     us.spin_until(lambda: names(us) == ["ours"], 2)
     programs("our_program", "worker")
     us.spin_until(lambda: names(us) == ["ours", "worker"])
+
+
+def test_a_process_of_this_machine_is_known_by_the_name_and_the_id_of_the_machine(monkeypatch):
+    """Fast DDS 3 tells the id, Fast DDS 2 and Cyclone tell the name."""
+    here = socket.gethostname()
+    monkeypatch.setattr(discovery, "machine_id", lambda: "3d12")
+    for told in ("3d12", f"{here}:0", here):
+        properties = {"fastdds.physical_data.host": told, "fastdds.physical_data.process": "42"}
+        assert next(discovery.told_processes(lambda name, told=properties: told.get(name, ""))) == (here, "42")
+    elsewhere = {"__Hostname": "elsewhere", "__Pid": "42"}
+    assert list(discovery.told_processes(lambda name: elsewhere.get(name, ""))) == [("", ""), ("elsewhere", "42")]
 
 
 def test_fifty_nodes_with_their_services_are_found(processes, programs):

@@ -199,6 +199,14 @@ def test_a_mismatch_of_quality_of_service_is_told_on_both_sides(processes, real_
     assert sorted(told) == ["publisher", "subscription"]
 
 
+def test_one_that_is_killed_is_gone_long_before_its_lease_is_over(processes, real_node):
+    us = processes("ours")
+    real = real_node()
+    us.spin_until(lambda: has(us, "real_node"))
+    real.kill()
+    us.spin_until(lambda: not has(us, "real_node"), 5.0)
+
+
 def test_one_that_is_killed_and_comes_back_is_heard_again(processes, real_node):
     us = processes("ours")
     got: list[str] = []

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import socket
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache, partial
+from pathlib import Path
 from typing import Any
 
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile
@@ -135,8 +137,7 @@ class Discovery:
 
     def _host_of(self, qos: int) -> str:
         """The machine of a participant, as Fast DDS and Cyclone tell it; empty where neither does."""
-        told = (self._dds.property(qos, host).partition(":")[0] for host, _ in _PROCESS_PROPERTIES)
-        return next((host for host in told if host), "")
+        return next((host for host, _ in told_processes(partial(self._dds.property, qos)) if host), "")
 
     def _process_of(self, qos: int) -> int | None:
         """The process of a participant, as Fast DDS and Cyclone tell it; None unless it runs on this machine.
@@ -145,9 +146,8 @@ class Discovery:
         """
         if not process_namespace():
             return None
-        for host, process in _PROCESS_PROPERTIES:
-            where, number = self._dds.property(qos, host), self._dds.property(qos, process)
-            if where.partition(":")[0] == _HOST and number.isdecimal() and runs(int(number)):
+        for host, number in told_processes(partial(self._dds.property, qos)):
+            if host == _HOST and number.isdecimal() and runs(int(number)):
                 return int(number)
         return None
 
@@ -217,6 +217,28 @@ class Discovery:
 
     def _forget_evidence(self, participant: bytes) -> None:
         self._evidence.pop(participant, None)
+
+
+def told_processes(property_of: Callable[[str], str]) -> Iterator[tuple[str, str]]:
+    """The host and the number of a participant's process, as each vendor tells them.
+
+    Fast DDS 3 names its machine by the machine's id, for which this machine's name stands here.
+
+    Args:
+        property_of: the value of a property of the participant; empty where it has none.
+    """
+    for host, process in _PROCESS_PROPERTIES:
+        name = property_of(host).partition(":")[0]
+        yield _HOST if name and name == machine_id() else name, property_of(process)
+
+
+@lru_cache(maxsize=1)
+def machine_id() -> str:
+    """The machine's own id, as systemd keeps it; empty where there is none."""
+    try:
+        return Path("/etc/machine-id").read_text(encoding="ascii").strip()
+    except (OSError, UnicodeError):
+        return ""
 
 
 def _pointer(qos: int) -> int:
