@@ -1,0 +1,153 @@
+"""Pictures of 1 MB between nodes of Linkwright and of real ROS 2 on Fast DDS: how many come, and does a reader hang?
+
+``python -m benchmarks.pictures``, after ``make .build/ros/.ready`` and ``make .build/ros-kilted/.ready ROS=kilted``;
+``--loops 3`` keeps as many cores busy beside it. The figures of `docs/decisions/0095-large-messages-to-fast-dds.md`
+are from here. Both sides of a pair run this file, each with its own rclpy.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+SIZE = 1_000_000
+STARTING = 60.0
+HANGS_AFTER = 5.0
+"""Seconds without a picture, while they are published, after which a reader counts as hung."""
+
+PAIRS = [
+    ("linkwright", "jazzy"),
+    ("linkwright", "kilted"),
+    ("jazzy", "linkwright"),
+    ("kilted", "linkwright"),
+    ("jazzy", "jazzy"),
+]
+
+
+def profile(reliable: bool, depth: int) -> Any:
+    """The quality of service of both sides."""
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+    return QoSProfile(
+        depth=depth, reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
+    )
+
+
+def publish(reliable: bool, depth: int, rate: float, seconds: float) -> None:
+    """Publish pictures from the moment on that somebody listens, and print how many."""
+    import rclpy
+    from sensor_msgs.msg import Image
+
+    rclpy.init()
+    node = rclpy.create_node("pictures")
+    publisher = node.create_publisher(Image, "/picture", profile(reliable, depth))
+    picture = Image(height=1, width=SIZE, encoding="mono8", step=SIZE, data=bytes(SIZE))
+    until = time.monotonic() + STARTING
+    while not publisher.get_subscription_count() and time.monotonic() < until:
+        rclpy.spin_once(node, timeout_sec=0.1)
+    time.sleep(1.0)
+    began, count = time.monotonic(), 0
+    while time.monotonic() < began + seconds:
+        publisher.publish(picture)
+        count += 1
+        while (left := began + count / rate - time.monotonic()) > 0:
+            rclpy.spin_once(node, timeout_sec=left)
+    print(count, flush=True)
+    time.sleep(1.0)
+    os._exit(0)
+
+
+def subscribe(reliable: bool, counter: Path) -> None:
+    """Count the pictures that come, in a file: a reader that hangs cannot be asked."""
+    import rclpy
+    from sensor_msgs.msg import Image
+
+    came = 0
+
+    def on_picture(_: Image) -> None:
+        nonlocal came
+        came += 1
+        counter.write_text(str(came))
+
+    rclpy.init()
+    node = rclpy.create_node("looking")
+    node.create_subscription(Image, "/picture", on_picture, profile(reliable, 5))
+    rclpy.spin(node)
+
+
+def program(side: str, *words: str) -> subprocess.Popen[str]:
+    """Start one side of a pair."""
+    variables = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    if side == "linkwright":
+        from linkwright.standins.process import environment
+
+        python = sys.executable
+        variables |= {"PYTHONPATH": environment()["PYTHONPATH"], "ROS_DISTRO": "jazzy"}
+    else:
+        folder = Path(".build/ros" if side == "jazzy" else ".build/ros-kilted").absolute()
+        python = str(folder / "bin/python")
+        variables |= {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp", "AMENT_PREFIX_PATH": str(folder)}
+    return subprocess.Popen([python, __file__, *words], env=variables, stdout=subprocess.PIPE, text=True)
+
+
+def measure(pair: tuple[str, str], reliable: bool, depth: int, rate: float, seconds: float) -> dict[str, Any]:
+    """How many pictures came of how many, and whether the reader hung."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as ends:
+        counter = Path(folder) / "came"
+        counter.write_text("0")
+        kind = "reliable" if reliable else "best-effort"
+        reader = program(pair[1], "subscribe", kind, str(counter))
+        ends.callback(reader.kill)
+        writer = program(pair[0], "publish", kind, str(depth), str(rate), str(seconds))
+        ends.callback(writer.kill)
+        seen, since, hung = "0", time.monotonic(), False
+        while writer.poll() is None:
+            time.sleep(0.2)
+            came = counter.read_text() or seen
+            if came != seen:
+                seen, since = came, time.monotonic()
+            hung = hung or (seen != "0" and time.monotonic() - since > HANGS_AFTER)
+        sent = int((writer.stdout.read() if writer.stdout else "") or 0)
+        came = counter.read_text()
+    return {
+        "pair": " to ".join(pair),
+        "kind": kind,
+        "depth": depth,
+        "rate": rate,
+        "sent": sent,
+        "came": int(came),
+        "hung": hung,
+    }
+
+
+def main() -> None:
+    """Measure each pair, reliable and best effort, with depths and rates."""
+    if sys.argv[1:2] == ["publish"]:
+        publish(sys.argv[2] == "reliable", int(sys.argv[3]), float(sys.argv[4]), float(sys.argv[5]))
+    if sys.argv[1:2] == ["subscribe"]:
+        subscribe(sys.argv[2] == "reliable", Path(sys.argv[3]))
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("--loops", type=int, default=0, help="busy loops beside it")
+    options.add_argument("--seconds", type=float, default=6.0, help="of each measurement")
+    chosen = options.parse_args()
+    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(chosen.loops)]
+    try:
+        for pair in PAIRS:
+            for reliable, depth in ((True, 1), (True, 5), (True, 10), (False, 5)):
+                for rate in (10.0, 30.0):
+                    print(json.dumps(measure(pair, reliable, depth, rate, chosen.seconds)), flush=True)
+    finally:
+        for loop in loops:
+            loop.kill()
+
+
+if __name__ == "__main__":
+    main()
