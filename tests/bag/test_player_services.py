@@ -105,6 +105,20 @@ async def test_a_burst_of_all_ends_with_the_round(scene):
     assert not scene.player.finished
 
 
+async def test_a_looped_recording_without_a_span_leaves_time_for_others(clock, tmp_path):
+    with BagWriter(tmp_path / "short") as writer:
+        writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
+        for number in range(3):
+            writer.write("/chatter", START + number, serialize(String(data=str(number))))
+    graph = Graph(clock=clock)
+    with BagReader(tmp_path / "short") as bag:
+        scene = Scene(graph, bag, PlayOptions(loop=True))
+        await clock.advance(0.01)
+        assert 3 < len(scene.heard) < 40
+        assert scene.heard[:4] == ["0", "1", "2", "0"]
+        await graph.close()
+
+
 @pytest.mark.parametrize("paused", [True, False])
 async def test_it_goes_on_from_another_time(scene, clock, paused):
     scene = scene(paused=paused)

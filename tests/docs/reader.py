@@ -14,6 +14,7 @@ import threading
 import time
 from codecs import getincrementaldecoder
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -133,7 +134,8 @@ class Terminal:
     def close(self) -> None:
         """Close the terminal's window."""
         self._shell.send_signal(signal.SIGHUP)
-        os.write(self._own, b"\n")  # a shell that the signal meets just before it reads looks at it after the next line
+        with suppress(OSError):  # the shell has ended, of which another error tells
+            os.write(self._own, b"\n")  # a shell that the signal meets just before it reads looks at it after the line
         self._shell.wait(PATIENCE)
         self._reading.join(PATIENCE)
         os.close(self._own)

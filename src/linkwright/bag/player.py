@@ -18,6 +18,9 @@ _NANOSECONDS_PER_SECOND = 1_000_000_000
 _AT_ONCE = 200
 """Messages that are due are published this many at a time, so that the loop can serve others in between."""
 
+_SHORTEST_ROUND_NS = 1_000_000
+"""How long a round of a looped recording takes at least, so that others are served where it has but one message."""
+
 
 @dataclass(frozen=True)
 class PlayOptions:
@@ -181,9 +184,10 @@ class Player:
 
     # --- the round ------------------------------------------------------------------------------------------------
 
-    def _begin(self) -> None:
+    def _begin(self, not_before_ns: int = 0) -> None:
         self._read_from(self._begin_ns)
-        self._since_ns = self._steady_ns() + round(self._options.delay * _NANOSECONDS_PER_SECOND)
+        delay_ns = round(self._options.delay * _NANOSECONDS_PER_SECOND)
+        self._since_ns = max(not_before_ns, self._steady_ns() + delay_ns)
         self._end_or_schedule()
 
     def _read_from(self, time_ns: int) -> None:
@@ -216,7 +220,7 @@ class Player:
         if self._next is not None and not self._is_beyond_end():
             self._schedule()
         elif self._options.loop and self.message_count:
-            self._begin()
+            self._begin(self._since_ns + _SHORTEST_ROUND_NS)
         else:
             self.close()
 
