@@ -20,6 +20,7 @@ from linkwright.graph.log.rosout import LOG_TYPE, ROSOUT_TOPIC, Rosout
 from linkwright.graph.loop.callback_groups import FREE_GROUP, CallbackGroup
 from linkwright.graph.loop.entity import GuardCondition
 from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.loop.self_waits import STRICT
 from linkwright.graph.loop.timer import Rate, Timer
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.remapping import Remappings
@@ -122,6 +123,9 @@ class Node(NodeParameters, NodeQueries):
                 NodeParameters.declare_parameters_from_overrides(self)
             if start_parameter_services:
                 ParameterServices(self, name, partial(Node.create_service, self))
+            if STRICT in store.overrides:
+                said = "Let responses wait for the callback group of their client, as rclpy does."
+                handle.strict_callback_groups = self.__own(STRICT, False, said)
             if self.__describes_types(store):
                 TypeDescriptions(handle, partial(Node.create_service, self))
             SimulatedTime(handle, self, self.__clock)
@@ -133,11 +137,13 @@ class Node(NodeParameters, NodeQueries):
         """Whether others can ask for its types: as is usual where it runs, unless its parameter says otherwise."""
         if TYPE_DESCRIPTIONS not in store.overrides and not is_usual():
             return False
-        if not NodeParameters.has_parameter(self, TYPE_DESCRIPTIONS):
-            said = "Start the ~/get_type_description service for this node."
-            descriptor = ParameterDescriptor(description=said, read_only=True)
-            NodeParameters.declare_parameter(self, TYPE_DESCRIPTIONS, True, descriptor)
-        return bool(NodeParameters.get_parameter(self, TYPE_DESCRIPTIONS).value)
+        return self.__own(TYPE_DESCRIPTIONS, True, "Start the ~/get_type_description service for this node.")
+
+    def __own(self, name: str, usual: bool, said: str) -> bool:
+        """The value of a parameter that the node itself obeys, declared unless it is."""
+        if not NodeParameters.has_parameter(self, name):
+            NodeParameters.declare_parameter(self, name, usual, ParameterDescriptor(description=said, read_only=True))
+        return bool(NodeParameters.get_parameter(self, name).value)
 
     @cached_property
     def graph(self) -> LocalGraph:

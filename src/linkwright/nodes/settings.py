@@ -11,7 +11,7 @@ from linkwright.graph import Node, Parameter, ParameterType
 from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.nodes.options import NodeOptions
 
-_EVERYWHERE = ("qos_overrides.", "start_type_description_service", "diagnostic_updater.")
+_EVERYWHERE = ("qos_overrides.", "start_type_description_service", "strict_callback_groups", "diagnostic_updater.")
 """Prefixes of parameters that any node may be given, whether it reads them or not."""
 
 

@@ -35,11 +35,17 @@ class Asking:
         action: client of the action.
     """
 
-    def __init__(self, *, client_group: Any = None, executor: Callable[[], Executor] = MultiThreadedExecutor) -> None:
+    def __init__(
+        self,
+        *,
+        client_group: Any = None,
+        executor: Callable[[], Executor] = MultiThreadedExecutor,
+        parameters: dict[str, Any] | None = None,
+    ) -> None:
         self.errors: list[str] = []
         self._graph = Graph(threads=True, on_log=self._heard)
         self._nodes = [
-            self._graph.create_node(name, start_parameter_services=False, enable_rosout=False)
+            self._graph.create_node(name, parameters=parameters, start_parameter_services=False, enable_rosout=False)
             for name in ("server", "asking")
         ]
         server, asking = self._nodes
@@ -138,9 +144,8 @@ def test_what_is_there_already_and_who_waits_outside_of_callbacks_are_fine(askin
     assert asks.errors == []
 
 
-def test_it_hangs_as_on_a_robot_where_that_is_asked_for(asking, monkeypatch) -> None:
-    monkeypatch.setenv(self_waits.STRICT, "1")
-    asks = asking()
+def test_it_hangs_as_on_a_robot_where_a_parameter_of_the_node_asks_for_it(asking) -> None:
+    asks = asking(parameters={self_waits.STRICT: True})
     answers: list[Any] = []
     assert asks.run(lambda: answers.append(asks.client.call(TRIGGER.Request(), timeout_sec=0.2)))
     assert answers == [None]

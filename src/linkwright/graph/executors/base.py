@@ -23,7 +23,7 @@ from linkwright.graph.faults import (
 from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.loop.self_waits import is_strict, tell_if_it_waits_for_itself
+from linkwright.graph.loop.self_waits import tell_if_it_waits_for_itself
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -78,7 +78,6 @@ class Executor:
         self._nodes_lock = threading.RLock()
         self._blocked: deque[Entity] = deque()
         self._is_shutdown = False
-        self._is_strict = is_strict()
         self._spinners: list[int] = []
         self._spinners_changed = threading.Condition(threading.RLock())
         if context is not None:
@@ -203,11 +202,7 @@ class Executor:
 
     def can_execute(self, entity: Any) -> bool:
         """Whether the callback group of something lets it run now."""
-        return bool(self._is_free(entity) or entity.callback_group.can_execute(entity))
-
-    def _is_free(self, entity: Entity) -> bool:
-        """Whether no callback group holds an entity back."""
-        return entity.unblockable and not self._is_strict
+        return bool(entity.unblockable or entity.callback_group.can_execute(entity))
 
     def wait_for_ready_callbacks(
         self,
@@ -306,7 +301,7 @@ class Executor:
             return not item.ended()
         if item.dispatcher is not self:
             return False
-        if self._is_free(item):
+        if item.unblockable:
             return not self._postpone(item)
         group = item.callback_group
         if group.can_execute(item) and (not begin or group.beginning_execution(item)):
@@ -356,7 +351,7 @@ class Executor:
         def run() -> object:
             nonlocal begun
             callback_of = entity  # see `linkwright.graph.loop.self_waits`
-            if not (self._is_free(callback_of) or callback_of.callback_group.beginning_execution(callback_of)):
+            if not (callback_of.unblockable or callback_of.callback_group.beginning_execution(callback_of)):
                 self._block(callback_of)
                 return None
             begun = True
@@ -370,7 +365,7 @@ class Executor:
         return Task(run, executor=self, ended=ended)
 
     def _end(self, entity: Entity) -> None:
-        if not self._is_free(entity):
+        if not entity.unblockable:
             entity.callback_group.ending_execution(entity)
         if self._blocked:
             self._release_blocked()

@@ -163,6 +163,7 @@ class NodeHandle(Handle):
         default_callback_group: the group of entities that are in no other.
         intake: is shown each message that comes for a subscription of the node, in any thread, with the subscription
             before it; the message waits for the callback only if the answer is true. None for all messages to.
+        strict_callback_groups: whether responses to its requests wait for the callback group of the client.
     """
 
     def __init__(
@@ -188,6 +189,7 @@ class NodeHandle(Handle):
         self.default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self.is_destroyed = False
         self.intake: Callable[[Any, Any], bool] | None = None
+        self.strict_callback_groups = False
         self._parts: dict[Part, None] = {}
         self._cleanups: dict[Callable[[], object], None] = {}
 

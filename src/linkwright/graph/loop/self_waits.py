@@ -3,7 +3,7 @@
 In rclpy the response to a request is taken in the callback group of its client. While a callback of a mutually
 exclusive group runs, nothing else of that group does: a callback that blocks until the response is there blocks for
 ever. Here responses run no code of the user's and are let in all the same. So that nobody finds out on the robot, it is
-logged as an error; with `STRICT` in the environment it hangs as there.
+logged as an error; where the parameter `STRICT` of the node asks for it, it hangs as there.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import Any, Protocol
 import linkwright
 from linkwright.graph.loop.callback_groups import MutuallyExclusiveCallbackGroup
 
-STRICT = "LINKWRIGHT_STRICT_CALLBACK_GROUPS"
-"""The environment variable that has responses wait for their callback group, as in rclpy."""
+STRICT = "strict_callback_groups"
+"""The parameter by which a node has responses wait for the callback group of their client, as in rclpy."""
 
 RUNNER = "callback_of"
 """The name of the local variable by which a function that runs callbacks holds the entity that it runs one of."""
@@ -39,11 +39,6 @@ class Waited(Protocol):
 
     def ended(self) -> bool:
         """Whether there is nothing more to wait for."""
-
-
-def is_strict() -> bool:
-    """Whether responses wait for their callback group."""
-    return os.environ.get(STRICT, "0") not in ("", "0")
 
 
 def tell_if_it_waits_for_itself(future: Waited) -> None:
