@@ -63,6 +63,17 @@ class TestArithmetic:
         with pytest.raises(TypeError, match="Clock type must be a ClockType enum"):
             Time(clock_type="ros")
 
+    @pytest.mark.parametrize("value", [Time(seconds=1), Duration(seconds=1)])
+    def test_something_else_is_not_equal_and_in_humble_not_to_be_compared(self, value, monkeypatch):
+        monkeypatch.setenv("ROS_DISTRO", "jazzy")
+        assert value != 1
+        assert not value == 1  # noqa: SIM201  # another method
+        monkeypatch.setenv("ROS_DISTRO", "humble")
+        with pytest.raises(TypeError, match=r"Can't compare .* with object of type: <class 'int'>"):
+            assert value == 1
+        with pytest.raises(TypeError, match="Can't compare"):
+            assert value != 1
+
     def test_limits(self):
         with pytest.raises(ValueError, match="must not be negative"):
             Time(seconds=-1)

@@ -52,7 +52,7 @@ class Duration:
         return hash(self.nanoseconds)
 
     def __eq__(self, other: object) -> bool:
-        return self.nanoseconds == other.nanoseconds if isinstance(other, Duration) else NotImplemented
+        return self.nanoseconds == other.nanoseconds if isinstance(other, Duration) else _differs("duration", other)
 
     def __lt__(self, other: object) -> bool:
         return self.nanoseconds < other.nanoseconds if isinstance(other, Duration) else NotImplemented
@@ -182,7 +182,7 @@ class Time:
             raise ValueError("Subtraction leads to negative time.") from error
 
     def __eq__(self, other: object) -> bool:
-        return self.nanoseconds == other._of_same(self) if isinstance(other, Time) else NotImplemented
+        return self.nanoseconds == other._of_same(self) if isinstance(other, Time) else _differs("time", other)
 
     def __lt__(self, other: object) -> bool:
         return self.nanoseconds < other._of_same(self) if isinstance(other, Time) else NotImplemented
@@ -228,3 +228,16 @@ class Time:
         if self.clock_type != other.clock_type:
             raise TypeError("Can't compare times with different clock types")
         return self.nanoseconds
+
+
+def _differs(kind: str, other: object) -> bool:
+    """Whether something that is neither equals: not implemented, but in Humble an error, which finds ``duration == 5``.
+
+    Raises:
+        TypeError: ``ROS_DISTRO`` is Humble or an earlier one.
+    """
+    from linkwright.messages.distribution import is_before_iron
+
+    if is_before_iron():
+        raise TypeError(f"Can't compare {kind} with object of type: {type(other)}")
+    return NotImplemented  # type: ignore[no-any-return]  # what operators give
