@@ -12,7 +12,9 @@ CASES = load_cases()
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.name) for case in CASES])
 def test_case(case: Case, tmp_path, monkeypatch):
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    monkeypatch.chdir(tmp_path)
-    assert case.run(tmp_path) == case.said
+    folder = tmp_path / "case"  # packages of other tests lie beside tmp_path, and those beside a package are found
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    assert case.run(folder) == case.said
     if case.fixed is not None:
-        assert case.mend(tmp_path) == case.fixed
+        assert case.mend(folder) == case.fixed
