@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.packages import PackageFinder, PackageNotFoundError, current_finder, use_finder
+from linkwright.packages import PackageFinder, PackageNotFoundError, current_finder, is_substitute, use_finder
 from linkwright.packages.finder import shipped_folder
 from linkwright.packages.sources import SourceScan
 
@@ -283,3 +283,14 @@ class TestResolve:
     def test_an_unknown_package(self, packages: PackageFinder) -> None:
         with pytest.raises(PackageNotFoundError, match="'armm' not found"):
             packages.resolve("package://armm/a.stl")
+
+
+@pytest.mark.parametrize("name", ["launch_ros", "rclpy", "std_msgs", "robot_state_publisher", "rviz2", "xacro"])
+def test_packages_of_which_we_have_something_have_a_share_folder_after_all_others(tmp_path: Path, name: str) -> None:
+    found = finder(tmp_path)
+    share = found.share(name)
+    assert is_substitute(share)
+    assert share.name == name
+    assert name not in found.packages()
+    own = install(tmp_path / "ros", name)
+    assert finder(tmp_path, tmp_path / "ros").share(name) == own

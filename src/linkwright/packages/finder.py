@@ -14,7 +14,7 @@ from linkwright.packages.errors import PackageNotFoundError
 from linkwright.packages.manifest import enclosing_package
 from linkwright.packages.share_layout import share_of_sources
 from linkwright.packages.sources import SourceScan
-from linkwright.packages.substituted import SUBSTITUTES
+from linkwright.packages.substituted import SUBSTITUTES, substituted_share
 
 START_VARIABLE = "LINKWRIGHT_START"
 """The environment variable by which a launcher tells its processes where its own search for packages began."""
@@ -142,7 +142,7 @@ class PackageFinder:
         for root in self._source_roots():
             yield _share_of(name, self._scan(root).find(name))
         yield self._shipped().get(name)
-        yield ament.share_in_prefix(SUBSTITUTES, name)
+        yield substituted_share(name)
 
     def _all(self) -> Iterator[tuple[str, Path]]:
         for prefix in self._prefixes():

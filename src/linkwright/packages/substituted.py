@@ -1,19 +1,41 @@
 """Our own packages in the place of packages of ROS that launch files include, such as those of Gazebo and nav2.
 
 They lie in the folder ``substitutes``, laid out as installed packages. They have the launch files of those packages and
-what these need, and start nodes of ours.
+what these need, and start nodes of ours. Packages of which we have modules, messages or nodes only, such as rclpy,
+std_msgs and robot_state_publisher, have a share folder there by name, with nothing in it.
 """
 
 from __future__ import annotations
 
+from functools import cache
+from importlib.metadata import entry_points
 from pathlib import Path
 
+import linkwright
 from linkwright.packages.ament import install_prefix, share_in_prefix
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.installed_file import InstalledFile
 
 SUBSTITUTES = Path(__file__).parent / "substitutes"
 """The prefix that they are installed to."""
+
+
+def substituted_share(name: str) -> Path | None:
+    """The share folder of ours for a package of ROS; None where we have nothing of that package."""
+    share = share_in_prefix(SUBSTITUTES, name)
+    if share is None and name in _known_in_part():
+        return SUBSTITUTES / "share" / name
+    return share
+
+
+@cache
+def _known_in_part() -> frozenset[str]:
+    """The packages of which we have modules, messages or nodes."""
+    ours = Path(linkwright.__file__).parent
+    found = {file.stem for folder in ("standins/tables", "messages/data") for file in (ours / folder).glob("*.txt")}
+    for group in ("linkwright.nodes", "linkwright.components"):
+        found.update(each.name.partition("/")[0] for each in entry_points(group=group))
+    return frozenset({*found, "rviz2"})
 
 
 def is_substitute(share: Path) -> bool:
