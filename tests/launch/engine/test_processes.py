@@ -11,6 +11,7 @@ from launch.actions import (
     EmitEvent,
     ExecuteProcess,
     LogInfo,
+    OpaqueFunction,
     RegisterEventHandler,
     SetLaunchConfiguration,
     Shutdown,
@@ -283,9 +284,21 @@ class TestHandlers:
         with pytest.raises(TypeError, match="target_action must be an ExecuteProcess"):
             OnProcessExit(target_action="talker", on_exit=[])
 
-    async def test_completion_needs_an_event(self, launch) -> None:
+    async def test_each_action_is_completed_and_a_process_once_it_has_ended(self, launch) -> None:
+        first, second = LogInfo(msg="first"), python("0", on_exit=[LogInfo(msg="exited")])
+        third = OpaqueFunction(function=lambda _: None)
+        done = await launch(
+            RegisterEventHandler(OnExecutionComplete(target_action=first, on_completion=[LogInfo(msg="then"), second])),
+            RegisterEventHandler(OnExecutionComplete(target_action=second, on_completion=lambda *_: third)),
+            RegisterEventHandler(OnExecutionComplete(target_action=third, on_completion=[LogInfo(msg="last")])),
+            first,
+        )
+        assert done.messages[:2] == ["first", "then"]
+        assert sorted(done.messages[2:]) == ["exited", "last"]
+
+    async def test_a_handler_of_all_completions_does_not_react_to_its_own_actions(self, launch) -> None:
         done = await launch(RegisterEventHandler(OnExecutionComplete(on_completion=[LogInfo(msg="x")])))
-        assert done.messages == []
+        assert done.messages == ["x"]
 
 
 class TestEnds:

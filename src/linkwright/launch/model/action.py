@@ -56,7 +56,21 @@ class Action(LaunchDescriptionEntity):
         if self.condition is not None and not self.condition.evaluate(context):
             return None
         following = self.execute(context)
+        self._tell_completion(context)
         return None if following is None else as_entities(following)
+
+    def _tell_completion(self, context: LaunchContext) -> None:
+        """Emit the event of its completion, where a handler is for it; of what has a future, once that is done."""
+        from linkwright.launch.model.events import ExecutionComplete
+
+        event = ExecutionComplete(action=self)
+        if not context.would_handle_event(event):
+            return
+        future = self.get_asyncio_future()
+        if future is None:
+            context.emit_event_sync(event)
+        else:
+            future.add_done_callback(lambda _: context.emit_event_sync(event))
 
     def execute(self, context: LaunchContext) -> Any:
         """Do the work; may return entities to be visited next."""

@@ -191,18 +191,33 @@ def _listed(entities: Any) -> Iterable[Any]:
 
 
 class OnExecutionComplete(OnActionEventBase):
-    """Reacts when an action that takes time has ended."""
+    """Reacts when an action was executed; when it takes time, such as a process, once it has ended.
+
+    Without a target it reacts to all actions but those that it gives itself, which would never end.
+    """
 
     def __init__(
         self, *, on_completion: EntitiesOrCallable, target_action: Any = None, handle_once: bool = False
     ) -> None:
+        self._given: list[LaunchDescriptionEntity] = []
         super().__init__(
-            action_matcher=target_action,
+            action_matcher=self._is_of_another if target_action is None else target_action,
             on_event=on_completion,
             target_event_cls=events.ExecutionComplete,
             target_action_cls=Action,
             handle_once=handle_once,
         )
+        if target_action is None:
+            self._action_name = None
+
+    def handle(self, event: Any, context: LaunchContext) -> Any:
+        """The entities to be visited for the event."""
+        following = super().handle(event, context)
+        self._given += as_entities(following) if following is not None else ()
+        return following
+
+    def _is_of_another(self, action: Action) -> bool:
+        return not any(action is each for each in self._given)
 
 
 class OnIncludeLaunchDescription(BaseEventHandler):

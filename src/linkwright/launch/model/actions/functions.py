@@ -7,7 +7,6 @@ import inspect
 from collections.abc import Callable, Coroutine, Iterable, Mapping
 from typing import Any
 
-from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
 
@@ -86,8 +85,6 @@ class OpaqueCoroutine(Action):
         task = loop.create_task(self._coroutine(*args, **self._kwargs))
         self._task = task
         context.register_event_handler(OnShutdown(on_shutdown=lambda *_: self._cancel(task)))
-        # Handlers of the end of actions are called for this one too.
-        task.add_done_callback(lambda _: context.emit_event_sync(events.ExecutionComplete(action=self)))
 
     @staticmethod
     def _cancel(task: asyncio.Task[Any]) -> None:
