@@ -1,0 +1,149 @@
+"""Tests as processes of a launch that end with 0 (``launch_testing.legacy``), as nav2 and others still have them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, TypeVar
+
+from linkwright.launch.model.actions import EmitEvent, ExecuteProcess, RegisterEventHandler
+from linkwright.launch.model.event_handlers import OnExecutionComplete, OnShutdown
+from linkwright.launch.model.events import Shutdown
+from linkwright.launch.model.process_event_handlers import OnProcessExit, OnProcessIO
+
+_Action = TypeVar("_Action")
+_RUNS, _PASSED, _FAILED, _DROPPED = "runs", "passed", "failed", "dropped"
+
+_OutputTest = tuple[Any, Callable[[Any, bytes], Any], Callable[[Any, Any], bool], Sequence[Any]]
+
+
+class LaunchTestService:
+    """Ends a launch when its tests are done, and gives the status of the first one that failed."""
+
+    def __init__(self) -> None:
+        self._tests: dict[str, str] = {}
+        self._statuses: list[int] = []
+
+    def add_fixture_action(
+        self, launch_description: Any, action: _Action, exit_allowed: Collection[int] | bool = (0,)
+    ) -> _Action:
+        """Add what the tests need; where it is a process that ends, the launch ends.
+
+        Args:
+            launch_description: what it is added to.
+            action: the action.
+            exit_allowed: with which statuses a process may end before the tests do; whether it may with any.
+        """
+        launch_description.add_action(action)
+
+        def on_exit(event: Any, context: Any) -> Any:
+            allowed = exit_allowed if isinstance(exit_allowed, bool) else event.returncode in exit_allowed
+            if allowed or context.is_shutdown:
+                return None
+            self._statuses.append(event.returncode or 1)
+            return _shutdown(f"{_name(event.action)} fixture process died!")
+
+        if isinstance(action, ExecuteProcess):
+            launch_description.add_action(RegisterEventHandler(OnProcessExit(target_action=action, on_exit=on_exit)))
+        return action
+
+    def add_test_action(self, launch_description: Any, action: _Action) -> _Action:
+        """Add a test: a process passes by ending with 0, another action by being completed."""
+        test = f"test_{id(action)}"
+
+        def on_exit(event: Any, _: Any) -> Any:
+            if event.returncode == 0:
+                return self._passed(test)
+            self._statuses.append(event.returncode)
+            return self._failed(test, f"{_name(event.action)} test failed!")
+
+        def on_completion(event: Any, _: Any) -> Any:
+            future = event.action.get_asyncio_future()
+            if future is not None and future.cancelled():
+                self._tests[test] = _DROPPED
+                return None
+            error = None if future is None else future.exception()
+            return self._passed(test) if error is None else self._failed(test, str(error))
+
+        handler: Any
+        if isinstance(action, ExecuteProcess):
+            handler = OnProcessExit(target_action=action, on_exit=on_exit)
+        else:
+            handler = OnExecutionComplete(target_action=action, on_completion=on_completion)
+        launch_description.add_action(RegisterEventHandler(handler))
+        launch_description.add_action(action)
+        self._tests[test] = _RUNS
+        return action
+
+    def add_output_test(
+        self,
+        launch_description: Any,
+        action: _Action,
+        output_test: _OutputTest,
+        test_suffix: str = "output",
+        output_filter: Callable[[bytes], bytes] | None = None,
+        side_effect: str | None = None,
+    ) -> _Action:
+        """Add a test of what a process of the description writes.
+
+        Args:
+            launch_description: what has the process.
+            action: the process.
+            output_test: what a function of `linkwright.standins.launch_testing_api.legacy_output` gives.
+            test_suffix: tells several tests of one process apart.
+            output_filter: takes out of the output what does not count.
+            side_effect: ``shutdown`` ends the launch once the test has passed.
+        """
+        test = f"test_{id(action)}_{test_suffix}"
+        written, collate, matches, patterns = output_test
+        missing = list(patterns)
+        self._tests[test] = _RUNS
+
+        def on_stdout(event: Any) -> Any:
+            nonlocal written
+            written = collate(written, output_filter(event.text) if output_filter else event.text)
+            missing[:] = [each for each in missing if not matches(written, each)]
+            return None if missing else self._passed(test, side_effect)
+
+        def on_exit(*_: Any) -> Any:
+            return self._ended(test) if missing else None  # the last lines may come after the end
+
+        def on_shutdown(*_: Any) -> None:
+            if missing:
+                self._failed(test, f"not all {_name(action)} output matched!")
+
+        for handler in (
+            OnProcessExit(target_action=action, on_exit=on_exit),
+            OnShutdown(on_shutdown=on_shutdown),
+            OnProcessIO(target_action=action, on_stdout=on_stdout),
+        ):
+            launch_description.add_action(RegisterEventHandler(handler))
+        return action
+
+    def run(self, launch_service: Any, *args: Any, **kwargs: Any) -> int:
+        """Run a launch service; returns its status, or where that is 0, that of the first test that failed."""
+        status = int(launch_service.run(*args, **kwargs))
+        return status or next(iter(self._statuses), int(_FAILED in self._tests.values()))
+
+    def _passed(self, test: str, side_effect: str | None = None) -> Any:
+        self._tests[test] = _PASSED
+        if side_effect == "shutdown":
+            return [_shutdown("shutdown after test")]
+        return self._ended(test)
+
+    def _failed(self, test: str, reason: str) -> Any:
+        self._tests = {name: _DROPPED if state == _RUNS else state for name, state in self._tests.items()}
+        self._tests[test] = _FAILED
+        return [_shutdown(reason)]
+
+    def _ended(self, test: str) -> Any:
+        """End the launch where no other test runs."""
+        others = [state for name, state in self._tests.items() if name != test]
+        return None if _RUNS in others else [_shutdown("all tests finished")]
+
+
+def _shutdown(reason: str) -> Any:
+    return EmitEvent(event=Shutdown(reason=reason))
+
+
+def _name(action: Any) -> str:
+    return str(action.process_details["name"])

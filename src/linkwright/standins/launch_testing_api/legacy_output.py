@@ -1,0 +1,72 @@
+"""What the output of a process is compared with (``launch_testing.legacy.output``), all in bytes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+_OutputTest = tuple[bytes, Callable[[bytes, bytes], bytes], Callable[..., bool], Sequence[Any]]
+
+
+def get_default_filtered_prefixes() -> list[bytes]:
+    """How lines begin that do not count."""
+    return [b"pid", b"rc"]
+
+
+def get_default_filtered_patterns() -> list[bytes]:
+    """Patterns of lines that do not count: none."""
+    return []
+
+
+def create_output_lines_filter(
+    filtered_prefixes: Sequence[bytes] | None = None,
+    filtered_patterns: Sequence[bytes] | None = None,
+    filtered_rmw_implementation: str | None = None,  # noqa: ARG001  # ours writes nothing
+) -> Callable[[bytes], bytes]:
+    """What takes lines that begin so, or match a pattern, out of an output."""
+    prefixes = tuple(filtered_prefixes or get_default_filtered_prefixes())
+    patterns = [re.compile(each) for each in filtered_patterns or get_default_filtered_patterns()]
+
+    def filtered(output: bytes) -> bytes:
+        lines = output.splitlines(keepends=True)
+        return b"".join(
+            line for line in lines if not line.startswith(prefixes) and not any(each.match(line) for each in patterns)
+        )
+
+    return filtered
+
+
+def create_output_lines_test(expected_lines: Sequence[bytes]) -> _OutputTest:
+    """A test that each of these texts is in a line."""
+    return b"", _joined, lambda output, text: any(text in line for line in output.splitlines()), expected_lines
+
+
+def create_output_regex_test(expected_patterns: Sequence[re.Pattern[bytes]]) -> _OutputTest:
+    """A test that each of these patterns is found."""
+    return b"", _joined, lambda output, pattern: pattern.search(output) is not None, expected_patterns
+
+
+def create_output_test_from_file(output_file: str) -> _OutputTest:
+    """A test by a file ``.txt`` with lines, or ``.regex`` with patterns.
+
+    Args:
+        output_file: its path without the suffix.
+
+    Raises:
+        RuntimeError: there is neither.
+    """
+    for suffix, create in ((".txt", create_output_lines_test), (".regex", _of_patterns)):
+        path = Path(output_file + suffix)
+        if path.is_file():
+            return create(path.read_bytes().splitlines())
+    raise RuntimeError(f"could not find output check file: {output_file}")
+
+
+def _of_patterns(texts: Sequence[bytes]) -> _OutputTest:
+    return create_output_regex_test([re.compile(each) for each in texts])
+
+
+def _joined(output: bytes, more: bytes) -> bytes:
+    return output + more

@@ -1,0 +1,77 @@
+"""Tests as processes of a launch (``launch_testing.legacy``)."""
+
+from __future__ import annotations
+
+import re
+import sys
+from typing import Any
+
+import pytest
+from launch.actions import ExecuteProcess, OpaqueFunction
+from launch_testing.legacy import LaunchTestService, output
+
+from launch import LaunchDescription, LaunchService
+
+
+def python(program: str) -> Any:
+    return ExecuteProcess(cmd=[sys.executable, "-u", "-c", program])
+
+
+LASTS = "import time; time.sleep(600)"
+
+
+class Watched:
+    """A description with what tests it."""
+
+    def __init__(self) -> None:
+        self.description, self.service = LaunchDescription(), LaunchTestService()
+
+    def run(self) -> int:
+        launch = LaunchService(noninteractive=True)
+        launch.include_launch_description(self.description)
+        return self.service.run(launch)
+
+
+@pytest.fixture
+def tests() -> Watched:
+    return Watched()
+
+
+def test_the_launch_ends_with_0_once_all_tests_passed(tests) -> None:
+    tests.service.add_fixture_action(tests.description, python(LASTS))
+    tests.service.add_test_action(tests.description, python("pass"))
+    tests.service.add_test_action(tests.description, OpaqueFunction(function=lambda _: None))
+    assert tests.run() == 0
+
+
+def test_the_launch_ends_with_the_status_of_the_test_that_failed(tests) -> None:
+    tests.service.add_test_action(tests.description, python(LASTS))
+    tests.service.add_test_action(tests.description, python("raise SystemExit(7)"))
+    assert tests.run() == 7
+
+
+def test_a_fixture_that_ends_ends_the_launch(tests) -> None:
+    tests.service.add_test_action(tests.description, python(LASTS))
+    tests.service.add_fixture_action(tests.description, python("pass"), exit_allowed=[3])
+    assert tests.run() == 1
+
+
+@pytest.mark.parametrize(("expected", "status"), [(b"second", 0), (b"third", 1)])
+def test_output_is_compared(tests, expected, status) -> None:
+    talker = python("print('pid 7'); print('the first'); print('the second')")
+    tests.description.add_action(talker)
+    wanted = output.create_output_lines_test([b"first", expected])
+    tests.service.add_output_test(tests.description, talker, wanted)
+    assert tests.run() == status
+
+
+def test_outputs_are_filtered_and_compared_with_files(tmp_path) -> None:
+    assert output.create_output_lines_filter()(b"pid 7\nthe first\n") == b"the first\n"
+    (tmp_path / "lines.txt").write_bytes(b"first\n")
+    (tmp_path / "patterns.regex").write_bytes(b"f.rst\n")
+    for name, wanted in ("lines", [b"first"]), ("patterns", [re.compile(b"f.rst")]):
+        _, _, matches, patterns = output.create_output_test_from_file(str(tmp_path / name))
+        assert list(patterns) == wanted
+        assert matches(b"the first\n", patterns[0])
+    with pytest.raises(RuntimeError, match="could not find"):
+        output.create_output_test_from_file(str(tmp_path / "none"))
