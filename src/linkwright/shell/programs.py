@@ -70,4 +70,8 @@ def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
     if "ROS_DISTRO" not in environment:
         environment.update(ROS_VARIABLES)
         environment[ASSUMED] = "1"
-        environment.setdefault("GZ_SIM_RESOURCE_PATH", "")  # launch files add to it without asking whether it is there
+        for name in (
+            "GZ_SIM_RESOURCE_PATH",
+            "LD_LIBRARY_PATH",
+        ):  # launch files add to them and do not ask for them first
+            environment.setdefault(name, "")

@@ -6,6 +6,7 @@ import importlib
 import sys
 from collections.abc import Mapping, Sequence
 from importlib.machinery import ModuleSpec
+from pathlib import Path
 from types import ModuleType
 
 from linkwright.standins import modules
@@ -76,21 +77,22 @@ class _ModulesOfWorkspace:
         from linkwright.packages.active import active_finder
 
         finder = active_finder()
-        if finder is None or path is not None or not _asked_by_user():
+        asking = None if finder is None or path is not None else _asking_file()
+        if finder is None or asking is None:
             return None
         from linkwright.packages.programs.python_modules import find_module
 
-        return find_module(finder, fullname)
+        return find_module(finder, fullname, asking.parent)
 
 
-def _asked_by_user() -> bool:
-    """Whether the running import stands in a user's file: libraries try imports that may well fail."""
+def _asking_file() -> Path | None:
+    """The user's file that the running import stands in; None for a library's, which tries what may well fail."""
     from linkwright.launch.errors.user_code import is_users
 
     frame = sys._getframe(2)
     while frame.f_back is not None and frame.f_code.co_filename.startswith("<frozen importlib"):
         frame = frame.f_back
-    return is_users(frame.f_code.co_filename)
+    return Path(frame.f_code.co_filename) if is_users(frame.f_code.co_filename) else None
 
 
 def _may_be_interfaces(name: str) -> bool:

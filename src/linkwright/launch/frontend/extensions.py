@@ -60,13 +60,13 @@ def load_workspace_extensions() -> None:
         for module in _modules(package, share):
             if (share, module) not in _loaded:
                 _loaded.add((share, module))
-                _import(module, finder)
+                _import(module, finder, share)
 
 
-def _import(module: str, finder: PackageFinder) -> None:
+def _import(module: str, finder: PackageFinder, share: Path) -> None:
     try:
         top = module.partition(".")[0]
-        spec = None if top in sys.modules else find_module(finder, top)
+        spec = None if top in sys.modules else find_module(finder, top, share)
         if spec is not None and spec.loader is not None:
             sys.modules[top] = module_from_spec(spec)
             spec.loader.exec_module(sys.modules[top])

@@ -8,15 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from importlib.machinery import ModuleSpec, PathFinder
+from itertools import chain
 from pathlib import Path
 
-from linkwright.packages import PackageFinder, install_prefix, is_installed
+from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
 from linkwright.packages.programs.source_programs import NOT_FOR_PROGRAMS, python_root
 from linkwright.packages.programs.workspace_environment import python_folders
 
 
-def find_module(finder: PackageFinder, name: str) -> ModuleSpec | None:
-    """The top-level module of a name: in the package of this name, else in any package; None where none has it."""
+def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | None:
+    """The top-level module of a name; None where no package has it.
+
+    Args:
+        finder: where packages are.
+        name: of the module. The package of this name comes first, then the one that asks, then any: many packages have
+            a module ``scripts`` or ``utils``.
+        near: the folder of the file that imports it.
+    """
     if name in NOT_FOR_PROGRAMS:
         return None
     own = finder.find(name)
@@ -26,7 +34,9 @@ def find_module(finder: PackageFinder, name: str) -> ModuleSpec | None:
             spec = PathFinder.find_spec(name, [str(own)])  # its folder of modules has no __init__.py
         if spec is not None:
             return spec
-    return _first(name, (folder for package, share in finder.packages().items() for folder in _folders(share, package)))
+    asking = enclosing_package(near)
+    packages = chain(() if asking is None else (asking,), finder.packages().items())
+    return _first(name, (folder for package, share in packages for folder in _folders(share, package)))
 
 
 def _folders(share: Path, package: str) -> Iterator[Path]:

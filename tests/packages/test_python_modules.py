@@ -1,0 +1,25 @@
+"""Python modules of the packages of a workspace."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.packages import PackageFinder
+from linkwright.packages.programs.python_modules import find_module
+
+NAMES = ("a_robot", "b_robot", "c_robot")
+
+
+@pytest.mark.parametrize("asking", NAMES)
+def test_of_modules_with_one_name_a_launch_file_gets_that_of_its_package(tmp_path: Path, asking: str) -> None:
+    for name in NAMES:
+        (tmp_path / name / "scripts").mkdir(parents=True)
+        (tmp_path / name / "scripts" / "__init__.py").touch()
+        (tmp_path / name / "CMakeLists.txt").write_text("ament_python_install_package(scripts)")
+        (tmp_path / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
+    (tmp_path / asking / "launch").mkdir()
+    found = find_module(PackageFinder(start=tmp_path, environment={}), "scripts", tmp_path / asking / "launch")
+    assert found is not None
+    assert found.origin == str(tmp_path / asking / "scripts" / "__init__.py")
