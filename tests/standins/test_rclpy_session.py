@@ -289,7 +289,7 @@ class TestSmallModules:
             with pytest.raises(ValueError, match=match):
                 expand_topic_name(*names)
         assert topic_or_service_is_hidden("/a/_action/status")
-        assert not topic_or_service_is_hidden("/a/b")
+        assert not any(topic_or_service_is_hidden(name) for name in ("/a/b", "", "a_/b_", "/2bad"))
         assert validate_topic_name("~/chatter")
         with pytest.raises(InvalidTopicNameException, match="must be absolute"):
             validate_full_topic_name("chatter")
