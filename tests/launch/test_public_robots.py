@@ -345,7 +345,7 @@ class TestPrograms:
         offer_ros_variables(bare)
         offer_ros_variables(sourced)
         of_ros = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
-        assert bare == {"A": "b", **of_ros, ASSUMED: "1", "GZ_SIM_RESOURCE_PATH": ""}
+        assert bare == {"A": "b", **of_ros, ASSUMED: "1", "GZ_SIM_RESOURCE_PATH": "", "LD_LIBRARY_PATH": ""}
         assert sourced == {"ROS_DISTRO": "jazzy"}
         models = {"GZ_SIM_RESOURCE_PATH": "/models"}
         offer_ros_variables(models)
