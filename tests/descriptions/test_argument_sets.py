@@ -371,3 +371,16 @@ def setup(a0):
 """
     found = sets(workspace, "arm/launch/again.launch.py", text)
     assert [(dict(each.values), each.open) for each in found] == [({"prefix": "a"}, ("name",))]
+
+
+@pytest.mark.parametrize(("function", "prefix"), [("describe", "a b"), ("xacro.process_file", '"a b"')])
+def test_a_helper_may_make_a_command_line_of_its_values_which_takes_quotes_away(
+    workspace: Path, function: str, prefix: str
+) -> None:
+    text = f"""
+from ament_index_python.packages import get_package_share_path
+
+def setup():
+    {function}(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': '"a b"'}})
+"""
+    assert values(sets(workspace, "arm/launch/quoted.launch.py", text)) == [{"prefix": prefix}]

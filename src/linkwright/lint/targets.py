@@ -26,7 +26,7 @@ _ATTRIBUTE = re.compile(r"""\b(name|default)\s*=\s*["']([^"']+)["']""")
 _GIVEN = re.compile(r"\$\(arg\s+(\S+?)\s*\)")
 _OPTIONAL = re.compile(r"\$\(optenv\s+\S+\s+([^)]*)\)")
 _DECLARATIONS = frozenset({"xacro:include", "xacro:macro", "xacro:property", "xacro:arg"})
-_WITHOUT_LINKS = frozenset({"gazebo", "material", "ros2_control", "transmission"})
+_WITHOUT_LINKS = frozenset({"gazebo", "material", "ros2_control", "transmission", "webots"})
 """What a part of a robot may hold that others include under a name which no text search finds."""
 
 
@@ -90,16 +90,26 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
 def _entries(found: list[Path]) -> Iterator[Path]:
     included = {name for path in found for name in _included_names(_text(path))}
     for path in found:
-        if path.name in included or _is_for_webots(path):
+        if path.name in included or (path.suffix == _URDF and _is_part(path)):
             continue
         if path.suffix in _WHOLE or _describes_robot(path):
             yield path
 
 
-def _is_for_webots(path: Path) -> bool:
-    """Whether it is a file of plugins for webots_ros2_driver, which is called a URDF and holds no links."""
-    text = _text(path) if path.suffix == _URDF else ""
-    return "<webots>" in text and "<link" not in text
+def _is_part(path: Path) -> bool:
+    """Whether a file is called a URDF and only holds what goes with links: materials, or plugins of a simulator.
+
+    Such are the files of webots_ros2_driver, and parts of a robot that somebody expanded one by one.
+    """
+    text = _text(path)
+    if "<link" in text or "<joint" in text or "xacro:" in text:
+        return False
+    try:
+        root = sources.read(str(path)).root
+    except LinkwrightError:
+        return False  # which the check will tell
+    tags = {element.tag for element in root.elements()}
+    return root.tag == "robot" and bool(tags) and tags <= _WITHOUT_LINKS
 
 
 def _included_names(text: str) -> Iterator[str]:

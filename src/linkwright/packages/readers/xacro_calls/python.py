@@ -109,7 +109,8 @@ class _Reader:
             is_given = len(node.args) > 1 or argument_of(node, "mappings") is not None
             mapping = UNKNOWN_ENTRIES if is_given else {}
         if paths and mapping is not None:
-            self._note((paths[0], dict(_texts_of(mapping))), node)
+            is_command = name == "Xacro" or name not in _WITHOUT_ARGUMENTS  # a helper may make a command line of them
+            self._note((paths[0], dict(_texts_of(mapping))), node, is_command=is_command)
 
     def _of_builder(self, node: ast.Call, scope: Scope) -> None:
         """``MoveItConfigsBuilder(...).robot_description(...)``."""
@@ -127,7 +128,7 @@ class _Reader:
             argument_of(node, "mappings") or (node.args[1] if len(node.args) > 1 else None), scope
         )
         arguments = dict(_texts_of(mappings.values)) if isinstance(mappings, Entries) else {}
-        self._note((_below_share(folder, file), arguments), node)
+        self._note((_below_share(folder, file), arguments), node, is_command=True)  # as of what substitutions give
 
     def _inclusion(self, node: ast.Call, scope: Scope) -> None:
         source = node.args[0] if node.args else argument_of(node, "launch_description_source")
