@@ -17,6 +17,8 @@ from linkwright.hosting.plans import HostOptions
 from linkwright.hosting.view import ModelView, run_view
 from linkwright.hosting.xacro_calls import XacroCall
 from linkwright.packages import PackageFinder
+from linkwright.viewer.features.arguments import ArgumentsFeature
+from linkwright.viewer.protocol.arguments import NOTHING_ASKED, ArgumentForm, GiveArguments
 from tests.waiting import eventually
 
 GOOD = '<robot name="a"><link name="b"/></robot>'
@@ -126,3 +128,24 @@ async def test_a_model_in_sdf_is_shown(tmp_path: Path) -> None:
         robot = view.descriptions.library.read(known).robot
         assert robot is not None
         assert list(robot.links) == ["base"]
+
+
+async def test_arguments_that_pages_give_make_the_robot(tmp_path: Path) -> None:
+    path = tmp_path / "m.xacro"
+    path.write_text(
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="a"><link name="$(arg side)_link"/></robot>'
+    )
+    async with shown(path) as (view, until):
+        await until("the argument 'side' is not declared")
+        await until("[viewer-2]: started")
+        viewer = view._viewer
+        assert viewer is not None
+        feature = viewer.add_feature(ArgumentsFeature)
+        await eventually(lambda: feature.opening() != [NOTHING_ASKED])
+        (form,) = feature.opening()
+        assert isinstance(form, ArgumentForm)
+        assert form.names == ["side"]
+        feature.receive(None, GiveArguments({"side": "left", "other": "x"}))  # type: ignore[arg-type]
+        await until("[robot_state_publisher-3]: started")
+        assert feature.opening() == [NOTHING_ASKED]
+        assert viewer.manager.fixed_frame == "left_link"

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.hosting.argument_form import argument_form
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
 from linkwright.hosting.node_host import NodeHost
 from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
@@ -23,6 +24,7 @@ from linkwright.packages import PackageFinder
 if TYPE_CHECKING:
     from linkwright.bag import BagWriter, Recorder
     from linkwright.viewer import RvizConfig, Viewer
+    from linkwright.viewer.protocol.arguments import ArgumentForm
 
 _PUBLISH_FREQUENCY = 60.0
 """Hz; at robot_state_publisher's own 20 a dragged slider is seen to lag."""
@@ -98,6 +100,8 @@ class ModelView:
         self.visiting = False
         self._call = call
         self._text: str | None = None
+        self._viewer: Viewer | None = None
+        self._form: ArgumentForm | None = None
         self._failures: set[object] = set()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._is_over = asyncio.Event()
@@ -184,6 +188,7 @@ class ModelView:
             if not error.missing:
                 self.reload.bind(self._call, self._publish_repaired)
                 self.reload.report(self._call, error.diagnostics)
+                self.spawn(self._find_arguments(self._call, error))
                 return True
             self.log.diagnostics(error.diagnostics)
             self.shut_down("there is no model")
@@ -200,13 +205,50 @@ class ModelView:
     def _plan_others(self) -> None:
         """Have the nodes started that the model is shown with."""
         self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
-        self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config)
+        self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._take_viewer)
+
+    def _take_viewer(self, viewer: Viewer) -> None:
+        self._viewer = viewer
+        self._show_form()
 
     def _publish_repaired(self, _: str) -> None:
-        self.reload.unbind(self._call, self._publish_repaired)
-        self.mend(self._call)
+        self._publish_anew(self._call)
+
+    def _publish_anew(self, call: XacroCall) -> None:
+        """Publish a model that was broken, or the same with other arguments."""
+        broken, self._call, self._form = self._call, call, None
+        self.reload.unbind(broken, self._publish_repaired)
+        self.reload.show(broken, ())
+        self.mend(broken)
+        self._show_form()
         self._publish()
+        self._look_at_root()
         self.spawn(self.host.start_planned())
+
+    async def _find_arguments(self, call: XacroCall, error: DescriptionError) -> None:
+        """Ask the pages for arguments, where these are what is missing."""
+        form = await asyncio.to_thread(argument_form, call, self.finder, error.diagnostics)
+        if form is not None and call is self._call and self._text is None:
+            self._form = form
+            self._show_form()
+
+    def _show_form(self) -> None:
+        from linkwright.viewer.features.arguments import ArgumentsFeature
+        from linkwright.viewer.protocol.arguments import NOTHING_ASKED
+
+        if self._viewer is not None:
+            feature = self._viewer.add_feature(ArgumentsFeature)
+            feature.ask(self._form or NOTHING_ASKED, self._take_arguments)
+
+    def _take_arguments(self, values: dict[str, str]) -> None:
+        self._publish_anew(XacroCall(self._call.path, tuple(values.items())))
+
+    def _look_at_root(self) -> None:
+        """Make the root the fixed frame of a model that was not known when the viewer began."""
+        robot = None if self._text is None else self.descriptions.library.read(self._text).robot
+        manager = None if self._viewer is None else self._viewer.managers.shared
+        if robot is not None and manager is not None and manager.fixed_frame not in robot.links:
+            manager.set_fixed_frame(robot.root)
 
     def _plan(
         self,

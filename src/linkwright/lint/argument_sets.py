@@ -200,9 +200,11 @@ class SetCheck:
 
     def _without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
         """The check where no caller gives a value that is known: what nobody declares or fills in, somebody gives."""
-        asked = [name for each in default.checked.diagnostics if (name := _asked(each))]
+        asked = [name for each in default.checked.diagnostics if (name := asked_argument(each))]
         if asked:
-            return self._only(default, lambda error: _asked(error) is None, list(dict.fromkeys(asked)), _when(sets))
+            return self._only(
+                default, lambda error: asked_argument(error) is None, list(dict.fromkeys(asked)), _when(sets)
+            )
         names = dict.fromkeys((*_opened(sets), *empty_defaults(_sources(default.checked))))
         changed = {
             name: found for name in list(names)[:_MOST_TRIED] if (found := self._changed(default, {name: _ANY_VALUE}))
@@ -279,7 +281,7 @@ def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
     return Note(phrase("this is so with {values}", values=shown), run.given.span)
 
 
-def _asked(diagnostic: Diagnostic) -> str | None:
+def asked_argument(diagnostic: Diagnostic) -> str | None:
     """The argument that a finding says nothing declares, unless it may be a misspelt one."""
     if diagnostic.code != UNDECLARED or as_phrase(diagnostic.hint or "").template.startswith("did you mean"):
         return None

@@ -12,15 +12,16 @@ export class OwnerNotice {
   private readonly told = new Map<string, string>();
   private timer: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(session: Session) {
+  constructor(private readonly session: Session) {
     this.element.hidden = true;
     session.displays.statusChanged.on((display) => {
       if (display?.cls.endsWith("/RobotModel") === true) this.look(display);
     });
   }
 
-  /** A warning about its topic is what a RobotModel has while several descriptions come that are not the same. */
+  /** A warning about its topic is what a RobotModel with a robot has while several descriptions come that are not the same. */
   private look({ id, name, status }: DisplayState): void {
+    if ((this.session.robots.get(id)?.links.length ?? 0) === 0) return;
     const text = status.find((row) => row.name === "Topic" && row.level === "warn")?.text ?? "";
     if (text === (this.told.get(id) ?? "")) return;
     this.told.set(id, text);

@@ -5,9 +5,11 @@ import type { WorldCommands } from "../modelling/world-commands";
 import type { Panel } from "../panel";
 import { talkButton } from "../voice/talk-button";
 import { VoiceNotice } from "../voice/voice-notice";
+import { ArgumentFormCard } from "./argument-form";
 import { CardColumn, type Below } from "./card-column";
 import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
+import { FrameNotice } from "./frame-notice";
 import { GoalNotice } from "./goal-notice";
 import { InspectMenu } from "./inspect-menu";
 import { LineNotice } from "./line-notice";
@@ -41,10 +43,12 @@ export class ScenePanel implements Panel {
     const inspect = new InspectMenu(session, this.column.changed);
     const sign = new OrientationSign(session);
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);
-    this.notices.append(simulation.element, notice.element, banner.element);
+    const form = new ArgumentFormCard(session.connection);
+    this.notices.append(simulation.element, notice.element, banner.element, form.element);
     const told = [
       new ToolNotice(session.tools),
       new GoalNotice(session.monitor.navigation),
+      new FrameNotice(session, fit),
       new LineNotice(session),
       new OwnerNotice(session),
       new MeshNotice(session.meshProgress),

@@ -116,6 +116,20 @@ export const en = {
   scene: {
     label: "3D view",
     waiting: "Waiting for a robot description",
+    frame: {
+      missing: (name: string): string => `The frame '${name}' does not exist`,
+      hint: "It is the Fixed Frame: without it nothing has a place. A node may still publish it.",
+      use: (name: string): string => `Use ${name}`,
+      useWithRobot: (name: string): string => `Use ${name}, and show the robot`,
+    },
+    arguments: {
+      label: "Arguments of the description",
+      title: (file: string): string => `${file} needs arguments`,
+      known: "These are the values that launch files and tests of its package give.",
+      unknown: "No launch file says which values they have.",
+      choose: "Values as in",
+      show: "Show",
+    },
     keys: "3D view. Arrow keys turn it, with Shift they move it, plus and minus zoom, F looks at what is selected, question mark lists all keys.",
     noWebgl: "This browser gives no WebGL 2, which the 3D view needs.",
     noWebglHelp: "Turn on its hardware acceleration, or open the page in another browser. The other panels work without it.",

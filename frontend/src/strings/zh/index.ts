@@ -103,6 +103,20 @@ export const zh: Strings = {
   },
   scene: {
     label: "三维视图",
+    frame: {
+      missing: (name) => `坐标系 '${name}' 不存在`,
+      hint: "它是固定坐标系：没有它，一切都没有位置。也许稍后有节点发布它。",
+      use: (name) => `使用 ${name}`,
+      useWithRobot: (name) => `使用 ${name} 并显示机器人`,
+    },
+    arguments: {
+      label: "描述文件的参数",
+      title: (file) => `${file} 需要参数`,
+      known: "这些是其软件包的 launch 文件和测试所给的值。",
+      unknown: "没有 launch 文件给出它们的值。",
+      choose: "取值来自",
+      show: "显示",
+    },
     waiting: "正在等待机器人描述",
     keys: "三维视图。方向键旋转，Shift 加方向键平移，加号和减号缩放，F 看向所选对象，问号列出所有按键。",
     noWebgl: "三维视图需要 WebGL 2，而此浏览器不提供。",

@@ -1,0 +1,68 @@
+import { h } from "../../dom";
+import type { Connection } from "../../connection/connection";
+import type { ArgumentForm } from "../../protocol";
+import { strings } from "../../strings";
+
+/** Over the scene while the description lacks arguments: a field for each, and the values that launch files give. */
+export class ArgumentFormCard {
+  readonly element = h("form", { class: "argument-form", aria: { label: strings.scene.arguments.label } });
+  private fields = new Map<string, HTMLInputElement>();
+
+  constructor(private readonly connection: Connection) {
+    this.element.hidden = true;
+    this.element.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.give();
+    });
+    // The keys of the scene do not apply where values are typed.
+    this.element.addEventListener("keydown", (event) => event.stopPropagation());
+    connection.on("argument_form", (form) => this.show(form));
+  }
+
+  private show(form: ArgumentForm): void {
+    const words = strings.scene.arguments;
+    const { file, names, values, choices } = form;
+    this.element.hidden = file === "";
+    if (file === "") return;
+    this.fields = new Map(names.map((name) => [name, field(name, values[name] ?? "")]));
+    const submit = h("button", { class: "tool framed primary" }, words.show);
+    submit.type = "submit";
+    const rows = [...this.fields].map(([name, input]) => h("label", { class: "argument-row" }, h("span", {}, name), input));
+    this.element.replaceChildren(
+      h("h2", {}, words.title(file)),
+      h("p", {}, choices.length > 0 ? words.known : words.unknown),
+      ...(choices.length > 1 ? [this.choice(form)] : []),
+      h("div", { class: "argument-rows" }, ...rows),
+      h("footer", {}, submit),
+    );
+    if (document.activeElement === document.body) this.element.querySelector<HTMLElement>("select, input")?.focus();
+  }
+
+  /** The sets of values that occur; choosing one fills the fields. */
+  private choice({ choices, names }: ArgumentForm): HTMLElement {
+    const words = strings.scene.arguments;
+    const select = h("select", { class: "choice", aria: { label: words.choose } });
+    select.append(...choices.map(({ label }, index) => new Option(label, String(index))));
+    select.addEventListener("change", () => {
+      const values = choices[Number(select.value)]?.values ?? {};
+      for (const name of names) {
+        const input = this.fields.get(name);
+        if (input) input.value = values[name] ?? "";
+      }
+    });
+    return h("label", { class: "argument-row" }, h("span", {}, words.choose), select);
+  }
+
+  /** What is left empty is not given: the file has a value of its own, or says what is missing. */
+  private give(): void {
+    const given = [...this.fields].map(([name, { value }]) => [name, value.trim()] as const).filter(([, value]) => value !== "");
+    this.connection.send({ type: "give_arguments", values: Object.fromEntries(given) });
+  }
+}
+
+function field(name: string, value: string): HTMLInputElement {
+  const input = h("input", { class: "field wide", aria: { label: name } });
+  input.value = value;
+  input.spellcheck = false;
+  return input;
+}

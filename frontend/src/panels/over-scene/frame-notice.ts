@@ -1,0 +1,86 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { TopicChoice } from "../../protocol";
+import { largestRoot } from "../../state/frame-tree";
+import { obviousDisplay } from "../../state/obvious-display";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+
+const ROBOT_MODEL = "rviz_default_plugins/RobotModel";
+/** A frame that comes so soon is not missed, ms: localisation takes its time. */
+const PATIENCE_MS = 3000;
+
+/** Over the scene while the Fixed Frame does not exist: what is missing, and a button for a frame that does, with the robot. */
+export class FrameNotice {
+  readonly element = h("div", { class: "line-notice failed", role: "alert", data: { notice: "frame" } });
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  /** The frame of which it is, or was, told. */
+  private told: string | null = null;
+  private robot: TopicChoice | null = null;
+
+  constructor(
+    private readonly session: Session,
+    private readonly fit: () => void,
+  ) {
+    const { displays, frames, configuration } = session;
+    this.element.hidden = true;
+    const review = coalesced(() => this.review());
+    for (const signal of [displays.treeChanged, frames.tableChanged]) signal.on(review);
+    displays.statusChanged.on(review);
+    displays.valueChanged.on(review);
+    configuration.offered.on(({ topics }) => {
+      this.robot = topics.find((each) => each.classes.length > 0 && obviousDisplay(each) === ROBOT_MODEL) ?? null;
+      if (!this.element.hidden) this.show();
+    });
+  }
+
+  private get missing(): string | null {
+    const { globalStatus, fixedFrame } = this.session.displays;
+    return globalStatus.some(({ name, level }) => name === "Fixed Frame" && level === "error") ? fixedFrame : null;
+  }
+
+  private review(): void {
+    const { missing } = this;
+    if (missing === this.told) {
+      if (!this.element.hidden) this.show();
+      return;
+    }
+    clearTimeout(this.timer);
+    this.told = missing;
+    this.element.hidden = true;
+    if (missing === null) return;
+    this.session.configuration.askChoices();
+    this.timer = setTimeout(() => this.show(), PATIENCE_MS);
+  }
+
+  private show(): void {
+    const words = strings.scene.frame;
+    const root = largestRoot(this.session.frames);
+    if (this.told === null || root === null) return;
+    const close = button(strings.diagnostics.close, () => (this.element.hidden = true), "tool bare", icon("close"));
+    const { robot } = this;
+    const adds = robot !== null && !this.session.displays.displays.some(({ cls }) => cls === ROBOT_MODEL);
+    const label = adds ? words.useWithRobot(root) : words.use(root);
+    const use = button(label, () => this.use(root, adds ? robot.topic : null), "tool framed primary", label);
+    this.element.replaceChildren(
+      h("header", {}, h("strong", {}, words.missing(this.told)), close),
+      h("div", {}, words.hint),
+      h("div", { class: "notice-choices" }, use),
+    );
+    this.element.hidden = false;
+  }
+
+  private use(frame: string, description: string | null): void {
+    const { session } = this;
+    const row = session.displays.globalOptions.find("Fixed Frame");
+    if (row) session.setProperty(row.id, frame);
+    if (description === null) return;
+    const forget = session.robotChanged.on(({ links }) => {
+      if (links.length === 0) return;
+      forget();
+      // The frames of its links come with the next transforms.
+      setTimeout(this.fit, 1000);
+    });
+    session.configuration.add(ROBOT_MODEL, "RobotModel", null, description);
+  }
+}

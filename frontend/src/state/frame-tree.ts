@@ -1,0 +1,13 @@
+import type { FrameStore } from "./frames";
+
+/** The root of the tree that has most frames, the first of several; null where there are none. */
+export function largestRoot({ names, parents }: Pick<FrameStore, "names" | "parents">): string | null {
+  const sizes = new Map<number, number>();
+  for (let row = 0; row < names.length; row++) {
+    let root = row;
+    for (let steps = 0; steps < names.length && (parents[root] ?? -1) >= 0; steps++) root = parents[root] ?? root;
+    sizes.set(root, (sizes.get(root) ?? 0) + 1);
+  }
+  const [largest] = [...sizes].sort(([, a], [, b]) => b - a);
+  return largest === undefined ? null : (names[largest[0]] ?? null);
+}

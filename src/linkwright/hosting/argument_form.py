@@ -1,0 +1,64 @@
+"""The form for a description that fails for arguments which nobody gave."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.hosting.xacro_calls import XacroCall
+from linkwright.packages import PackageFinder
+
+if TYPE_CHECKING:
+    from linkwright.viewer.protocol.arguments import ArgumentForm
+
+_MOST_TRIED = 12
+"""Sets of values with which the description is expanded; of more nobody chooses."""
+
+
+def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Diagnostic]) -> ArgumentForm | None:
+    """The arguments that a description needs, with the sets of values of its callers that make a robot of it.
+
+    Takes as long as it takes to expand the description with each set; may run in another thread.
+
+    Args:
+        call: the use of xacro that failed.
+        finder: where packages are.
+        findings: what was wrong.
+
+    Returns:
+        None where other values would change nothing, as far as that is known.
+    """
+    from linkwright.descriptions.argument_sets import argument_sets
+    from linkwright.lint.argument_sets import asked_argument
+    from linkwright.viewer.protocol.arguments import ArgumentChoice, ArgumentForm
+
+    if call.path.suffix == ".sdf":
+        return None
+    given = dict(call.arguments)
+    sets: list[dict[str, str]] = []
+    for each in argument_sets(call.path, finder)[:_MOST_TRIED]:
+        values = {**given, **each.values}
+        if each.values and values not in sets and _expands(call, values, finder):
+            sets.append(values)
+    asked = [name for each in findings if (name := asked_argument(each))]
+    names = list(dict.fromkeys([*asked, *(name for values in sets for name in values), *(given if asked else ())]))
+    if not names:
+        return None
+    choices = [ArgumentChoice(_label(values, sets), values) for values in sets]
+    return ArgumentForm(call.path.name, names, sets[0] if sets else given, choices)
+
+
+def _expands(call: XacroCall, values: Mapping[str, str], finder: PackageFinder) -> bool:
+    from linkwright.descriptions import examine
+
+    try:
+        return not examine(call.path, arguments=values, packages=finder, xacro=True, partly=True).problems
+    except LinkwrightError:
+        return False
+
+
+def _label(values: Mapping[str, str], sets: Sequence[Mapping[str, str]]) -> str:
+    """The values that sets differ in."""
+    apart = [name for name in values if any(other.get(name) != values[name] for other in sets)]
+    return " ".join(f"{name}:={values[name]}" for name in apart or values)

@@ -1,0 +1,78 @@
+"""A description that fails for arguments which nobody gave."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.hosting.argument_form import argument_form
+from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, XacroCall
+from linkwright.packages import PackageFinder
+
+_PACKAGE = (
+    "<package format='3'><name>box_description</name><version>1.0.0</version><description>d</description>"
+    "<maintainer email='a@b.c'>a</maintainer><license>MIT</license></package>"
+)
+_ROBOT = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="box">
+  <xacro:property name="size" value="${dict(small=0.2, large=0.6)['$(arg model)']}"/>
+  <link name="body"><visual><geometry><box size="${size} ${size} ${size}"/></geometry></visual></link>
+</robot>
+"""
+_LAUNCH = """import xacro
+from ament_index_python.packages import get_package_share_directory
+path = get_package_share_directory('box_description') + '/urdf/box.xacro'
+xacro.process_file(path, mappings={{'model': '{model}'}})
+"""
+
+
+@pytest.fixture
+def box(tmp_path: Path) -> Path:
+    """A description that needs an argument, in a package whose launch files give three values."""
+    package = tmp_path / "box_description"
+    for folder in ("urdf", "launch"):
+        (package / folder).mkdir(parents=True)
+    (package / "package.xml").write_text(_PACKAGE)
+    for model in ("small", "large", "none"):
+        (package / "launch" / f"{model}.launch.py").write_text(_LAUNCH.format(model=model))
+    path = package / "urdf" / "box.xacro"
+    path.write_text(_ROBOT)
+    return path
+
+
+def form_of(path: Path, **arguments: str):
+    finder = PackageFinder(start=[path.parent], environment={})
+    call = XacroCall(path, tuple(arguments.items()))
+    with pytest.raises(DescriptionError) as caught:
+        Descriptions(finder).read(call)
+    return argument_form(call, finder, caught.value.diagnostics)
+
+
+def test_the_values_of_launch_files_that_make_a_robot_are_offered(box: Path) -> None:
+    form = form_of(box)
+    assert form is not None
+    assert (form.file, form.names) == ("box.xacro", ["model"])
+    assert sorted((each.label, each.values["model"]) for each in form.choices) == [
+        ("model:=large", "large"),
+        ("model:=small", "small"),
+    ]
+    assert form.values == form.choices[0].values
+
+
+def test_a_value_that_makes_no_robot_is_asked_for_again(box: Path) -> None:
+    form = form_of(box, model="huge")
+    assert form is not None
+    assert {each.values["model"] for each in form.choices} == {"small", "large"}
+
+
+def test_an_argument_that_nobody_gives_is_asked_for_without_a_value(tmp_path: Path) -> None:
+    path = tmp_path / "a.xacro"
+    path.write_text(_ROBOT)
+    form = form_of(path)
+    assert form is not None
+    assert (form.names, form.values, form.choices) == (["model"], {}, [])
+
+
+def test_what_is_wrong_whatever_the_arguments_are_asks_for_none(box: Path) -> None:
+    box.write_text(_ROBOT.replace("</robot>", ""))
+    assert form_of(box) is None
