@@ -187,6 +187,30 @@ describe("the arrangements that the browser keeps", () => {
   });
 });
 
+describe("the voice panel", () => {
+  const node = (present: boolean): ServerMessage => ({ type: "voice_node", present });
+
+  it("is open where a robot listens, also in a file that says which panels are open, whichever comes first", () => {
+    receive(node(false));
+    tell(1, "/a.rviz", ["displays"]);
+    expect(dock.isOpen("voice")).toBe(false);
+    receive(node(true));
+    expect(dock.isOpen("voice")).toBe(true);
+  });
+
+  it("stays closed once it was closed", () => {
+    receive(node(true));
+    tell(1, "/a.rviz", ["displays"]);
+    expect(dock.isOpen("voice")).toBe(true);
+    dock.use(["displays"]);
+    receive(node(true));
+    hello();
+    tell(1, "/a.rviz", ["displays"]);
+    receive(node(true));
+    expect(dock.isOpen("voice")).toBe(false);
+  });
+});
+
 describe("the pad", () => {
   const simulation = (drivable: boolean): ServerMessage => ({
     type: "simulation_status", present: true, drivable, paused: false, time: null, real_time_factor: null,

@@ -139,7 +139,7 @@ import type {
   ViewClasses,
   ViewState,
 } from "./views-and-tools";
-import type { SayCommand, Talk, VoiceSaid, VoiceState, WatchVoice } from "./voice";
+import type { SayCommand, Talk, VoiceNode, VoiceSaid, VoiceState, WatchVoice } from "./voice";
 import type {
   AskWordsFile,
   BeginTake,
@@ -248,6 +248,7 @@ export type ServerMessage =
   | Tree
   | ViewClasses
   | ViewState
+  | VoiceNode
   | VoiceSaid
   | VoiceState
   | VoiceWords

@@ -8,6 +8,12 @@ export const MOST_SAMPLES = 1600;
 
 export const MOST_LOST_SAMPLES = 80000;
 
+/** Whether a node is there that carries out spoken commands. */
+export interface VoiceNode {
+  present: boolean;
+  type: "voice_node";
+}
+
 /** Start or stop sending what is heard and answered. */
 export interface WatchVoice {
   watched: boolean;

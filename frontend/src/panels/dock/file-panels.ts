@@ -44,6 +44,9 @@ export class FilePanels {
   /** Neither a file nor the browser says how this page's panels are arranged. */
   private unarranged = false;
   private drivable = false;
+  /** The browser keeps no arrangement for the file. */
+  private isFirstVisit = false;
+  private listens = false;
 
   constructor(
     private readonly connection: Connection,
@@ -51,7 +54,7 @@ export class FilePanels {
   ) {
     connection.on("hello", () => {
       this.told = this.configuration = this.shown = null;
-      this.drivable = false;
+      this.drivable = this.listens = false;
     });
     connection.on("panels", (message) => {
       this.told = message;
@@ -65,6 +68,10 @@ export class FilePanels {
       this.drivable = drivable;
       this.openPad();
     });
+    connection.on("voice_node", ({ present }) => {
+      this.listens = present;
+      this.openVoice();
+    });
     dock.changed.on(() => this.compare());
   }
 
@@ -73,6 +80,13 @@ export class FilePanels {
     if (!this.drivable || !this.unarranged) return;
     this.unarranged = false;
     this.dock.open("teleop");
+  }
+
+  /** A robot is there to be talked to, in a file that is seen for the first time. */
+  private openVoice(): void {
+    if (!this.listens || !this.isFirstVisit) return;
+    this.isFirstVisit = false;
+    this.dock.open("voice");
   }
 
   /** Follows the configuration as soon as both messages about it are there. */
@@ -94,6 +108,8 @@ export class FilePanels {
     this.open = this.openNow;
     this.unarranged = configuration.path === null && !isKept;
     this.openPad();
+    this.isFirstVisit = !isKept;
+    this.openVoice();
   }
 
   private compare(): void {

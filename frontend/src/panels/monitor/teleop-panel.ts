@@ -42,11 +42,18 @@ export class TeleopPanel implements Panel {
     };
     const stop = button(words.stopHint, () => this.pad.letGo(), "tool stop", icon("stop"), words.stop);
     const focus = h("div", { class: "note teleop-focus" }, this.focus.active, this.focus.inactive);
-    const side = h("div", { class: "teleop-side" }, this.velocity, stop, focus, h("p", { class: "note" }, words.keys));
+    const side = h("div", { class: "teleop-side" }, this.velocity, stop, focus);
     this.element = h(
       "div",
       { class: "panel monitor" },
-      h("div", { class: "scroll teleop" }, h("div", { class: "teleop-main" }, this.pad.element, side), this.aim, this.form()),
+      h(
+        "div",
+        { class: "scroll teleop" },
+        h("div", { class: "teleop-main" }, this.pad.element, side),
+        h("p", { class: "note" }, words.keys),
+        this.aim,
+        this.form(),
+      ),
     );
     for (const event of ["focus", "blur"]) this.pad.element.addEventListener(event, () => this.showFocus());
     state.changed.on(() => this.show());

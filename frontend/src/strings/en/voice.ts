@@ -10,7 +10,7 @@ export const voice = {
   level: "Level of the microphone",
   levelOff: "off",
   history: "Conversation",
-  nothing: "Hold the button and say a command, such as: forward, turn left, stop.",
+  nothing: "Hold the button and say a command, such as: forward, turn left, stop. Enrol words below, under Words; or type a command.",
   clearHint: "Forget the conversation",
   parts: { partial: "hearing", text: "heard", command: "understood", response: "answer" },
   idle: "The microphone is not in use.",

@@ -12,7 +12,7 @@ export const voice: typeof english = {
   level: "麦克风音量",
   levelOff: "关闭",
   history: "对话",
-  nothing: "按住按钮说出命令，例如：前进、左转、停止。",
+  nothing: "按住按钮说出命令，例如：前进、左转、停止。可在下方“词语”中录入词语，或直接输入命令。",
   clearHint: "清除对话",
   parts: { partial: "正在听", text: "听到", command: "理解", response: "回答" },
   idle: "麦克风未使用。",

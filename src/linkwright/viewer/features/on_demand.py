@@ -32,6 +32,7 @@ _SIMULATION = "simulation:SimulationFeature"
 _MODELLING = "modelling.feature:ModellingFeature"
 _RECORDING = "recording:RecordingFeature"
 _LOG = "monitor.log:LogFeature"
+_VOICE = "voice.feature:VoiceFeature"
 _OUTCOME = "monitor.goal_outcome:GoalOutcomeFeature"
 
 _ANSWERED_BY: dict[str, tuple[type, ...]] = {
@@ -74,7 +75,7 @@ _ANSWERED_BY: dict[str, tuple[type, ...]] = {
         simulation.DragModel,
         simulation.PushLink,
     ),
-    "voice.feature:VoiceFeature": (
+    _VOICE: (
         voice_words.AskWordsFile,
         voice_words.BeginTake,
         voice_words.EndTake,
@@ -95,6 +96,7 @@ _WOKEN_BY = {
     "/world_description": _MODELLING,
     "/navigate_to_pose/_action/status": _OUTCOME,
     "/rosout": _LOG,
+    "/voice/response": _VOICE,
 }
 """Topics on which a publisher means that there is something to tell pages."""
 

@@ -54,6 +54,12 @@ def unpack_sound(frame: bytes) -> SoundBlock | None:
     return SoundBlock(np.frombuffer(frame, "<i2", count, _HEADER.size).astype(np.int16), lost / SOUND_RATE)
 
 
+class VoiceNode(ServerMessage):
+    """Whether a node is there that carries out spoken commands."""
+
+    present: bool
+
+
 class WatchVoice(PageMessage):
     """Start or stop sending what is heard and answered."""
 

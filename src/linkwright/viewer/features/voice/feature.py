@@ -13,12 +13,14 @@ from linkwright.speech.sound.samples import RATE
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.voice.floor import Floor, SoundBudget
 from linkwright.viewer.features.voice.words import WordBook
+from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.protocol.voice import (
     SaidPart,
     SayCommand,
     SoundBlock,
     Talk,
     Talking,
+    VoiceNode,
     VoiceSaid,
     VoiceState,
     WatchVoice,
@@ -61,6 +63,10 @@ class VoiceFeature(PageFeature):
         """How many nodes the button's state was published to."""
         self._said = 0
         self._words = WordBook()
+
+    def opening(self) -> list[ServerMessage]:
+        """Whether there is a node to talk to."""
+        return [VoiceNode(self._node.count_publishers(_SAID["response"]) > 0)]
 
     def receive(self, page: Page, message: Any) -> None:
         """Publish sound or a text, note who talks, or start or stop telling a page."""
