@@ -97,19 +97,15 @@ def _entries(found: list[Path]) -> Iterator[Path]:
 
 
 def _is_part(path: Path) -> bool:
-    """Whether a file is called a URDF and only holds what goes with links: materials, or plugins of a simulator.
+    """Whether a file is called a URDF and only holds what goes with links, such as materials, plugins or macros.
 
     Such are the files of webots_ros2_driver, and parts of a robot that somebody expanded one by one.
     """
-    text = _text(path)
-    if "<link" in text or "<joint" in text or "xacro:" in text:
-        return False
     try:
         root = sources.read(str(path)).root
-    except LinkwrightError:
-        return False  # which the check will tell
-    tags = {element.tag for element in root.elements()}
-    return root.tag == "robot" and bool(tags) and tags <= _WITHOUT_LINKS
+    except LinkwrightError as error:
+        return any(diagnostic.code == _EMPTY_FILE for diagnostic in error.diagnostics)
+    return root.tag == "robot" and next(root.elements(), None) is not None and not _has_content(root)
 
 
 def _included_names(text: str) -> Iterator[str]:
