@@ -138,6 +138,12 @@ async def test_time_passes_by_steps_while_it_is_paused(tmp_path):
         assert it.simulator.server.simulation.time == 0
 
 
+@pytest.mark.parametrize("pause", [True, False])
+async def test_who_begins_paused_says_how_it_goes_on(tmp_path, pause):
+    async with simulator(tmp_path, pause=pause) as it:
+        assert any("/unpause_physics" in record.text for record in it.log) is pause
+
+
 async def test_it_runs_beside_the_event_loop_and_ends_after_its_seconds(tmp_path):
     async with simulator(tmp_path, robot(joint_states()), pause=False, seconds=1.0) as it:
         states = it.hear("simulation_interfaces/msg/SimulationState", "/simulation_state", LATCHED)

@@ -39,6 +39,11 @@ _PARAMETERS: dict[str, Any] = {
     "robot_namespace": "",
 }
 
+_PAUSED = (
+    "The simulation is paused, and nothing is measured or moved: let it go on in the page, or call /unpause_physics. "
+    "'gz sim' begins at once with -r"
+)
+
 
 class Simulator(SingleNode):
     """The running node.
@@ -121,6 +126,8 @@ class Simulator(SingleNode):
             self._reports.begin()
             self._tell_state()
             self.server.exchange.deliver()
+            if said["pause"]:
+                self._node.get_logger().info(_PAUSED)
             self.runner.start()
 
     def close(self) -> None:
