@@ -99,13 +99,13 @@ def test_words_enrolled_with_the_microphone_drive_mbot_and_stop_it(
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     program = start("launch", "my_robot_voice", "voice.launch.py")
     page = open_page(program, wait=False)
+    words = page.locator(".word-box summary")
+    words.wait_for()  # a robot that can be talked to opens the panel
     page.add_init_script(_KEPT)
     page.add_init_script(_BUSY)
     page.reload()
     until(page, "lw.ready && 'base_footprint' in lw.frames")
-    page.get_by_role("button", name="Panels").click()
-    page.get_by_role("menuitemcheckbox", name="Voice").click()
-    page.locator(".word-box summary").click()
+    words.click()
     for word in ("forward", "stop"):
         page.get_by_label("Word or phrase of a command").fill(word)
         page.keyboard.press("Enter")

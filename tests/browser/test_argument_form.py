@@ -1,0 +1,28 @@
+"""A description that needs arguments: the page asks for them, and shows the robot once they are given."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.browser.conftest import until
+from tests.hosting.test_argument_form import box as box  # a fixture
+
+pytestmark = pytest.mark.browser
+
+
+def test_the_values_of_a_launch_file_are_chosen_by_keyboard_and_make_a_robot(start_fresh, open_page, box):
+    page = open_page(start_fresh("view", str(box)), wait=False)
+    form = page.get_by_role("form", name="Arguments of the description")
+    form.wait_for()
+    model = form.get_by_label("model", exact=True)
+    values = {model.input_value()}
+    page.keyboard.press("ArrowDown")  # the focus is on the choice
+    values.add(model.input_value())
+    assert values == {"small", "large"}
+    model.fill("huge")
+    page.keyboard.press("Enter")
+    page.get_by_text("huge").first.wait_for()  # the error names it, and the form comes again
+    form.get_by_label("model", exact=True).fill("large")
+    page.keyboard.press("Enter")
+    until(page, "lw.robot?.links === 1")
+    form.wait_for(state="hidden")
