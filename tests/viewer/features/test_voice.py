@@ -62,6 +62,15 @@ def publishers(made: World) -> list[int]:
     return [made.graph.count_publishers(topic) for topic in (*AUDIO, "/voice/listen")]
 
 
+@pytest.mark.parametrize(("topic", "present"), [("/voice/command", True), ("/voice/response", False)])
+async def test_only_a_node_that_understands_commands_can_be_talked_to(topic, present):
+    async with world() as made:
+        made.graph.create_node("other").create_publisher("std_msgs/msg/String", topic, 10)
+        async with page(made.viewer) as client:
+            await client.send("watch_voice", watched=True)
+            assert (await client.until("voice_node"))["present"] is present
+
+
 async def test_sound_is_published_while_the_button_is_held():
     async with heard() as (made, client, ears):
         await client.send("talk", mode="ready")

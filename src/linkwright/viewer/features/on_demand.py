@@ -96,7 +96,7 @@ _WOKEN_BY = {
     "/world_description": _MODELLING,
     "/navigate_to_pose/_action/status": _OUTCOME,
     "/rosout": _LOG,
-    "/voice/response": _VOICE,
+    "/voice/command": _VOICE,
 }
 """Topics on which a publisher means that there is something to tell pages."""
 

@@ -65,8 +65,8 @@ class VoiceFeature(PageFeature):
         self._words = WordBook()
 
     def opening(self) -> list[ServerMessage]:
-        """Whether there is a node to talk to."""
-        return [VoiceNode(self._node.count_publishers(_SAID["response"]) > 0)]
+        """Whether there is a node to talk to; others may answer too, such as one that seeks objects."""
+        return [VoiceNode(self._node.count_publishers(_SAID["command"]) > 0)]
 
     def receive(self, page: Page, message: Any) -> None:
         """Publish sound or a text, note who talks, or start or stop telling a page."""
