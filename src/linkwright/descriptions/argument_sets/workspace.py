@@ -45,9 +45,7 @@ class CallingFiles:
             return
         name, folder = own
         yield from ((name, file) for file in self.of(folder))
-        for other, place in self._near(folder, folders).items():
-            if other != name and name in self._manifest(place):
-                yield from ((other, file) for file in self.of(place))
+        yield from self._of_others(name, folder, folders, using=True)
 
     def elsewhere(self, path: Path, folders: tuple[Path, ...]) -> Iterator[tuple[str | None, CallingFile]]:
         """The files of the packages that do not say that they use that of a file, as `around` has the others.
@@ -57,11 +55,15 @@ class CallingFiles:
             folders: packages to look at besides those that lie near.
         """
         own = enclosing_package(path.parent)
-        if own is None:
-            return
-        name, folder = own
+        if own is not None:
+            yield from self._of_others(*own, folders, using=False)
+
+    def _of_others(
+        self, name: str, folder: Path, folders: tuple[Path, ...], *, using: bool
+    ) -> Iterator[tuple[str, CallingFile]]:
+        """The files of other packages that say that they use a package, or of those that do not."""
         for other, place in self._near(folder, folders).items():
-            if other != name and name not in self._manifest(place):
+            if other != name and (name in self._manifest(place)) is using:
                 yield from ((other, file) for file in self.of(place))
 
     def of(self, folder: Path) -> tuple[CallingFile, ...]:
