@@ -1,8 +1,8 @@
 """Pictures of 1 MB between nodes of Linkwright and of real ROS 2 on Fast DDS: how many come, and does a reader hang?
 
 ``python -m benchmarks.pictures``, after ``make .build/ros/.ready`` and ``make .build/ros-kilted/.ready ROS=kilted``;
-``--loops 3`` keeps as many cores busy beside it. The figures of `docs/decisions/0095-large-messages-to-fast-dds.md`
-are from here. Both sides of a pair run this file, each with its own rclpy.
+``--loops 3`` keeps as many cores busy beside it. It measures what `docs/decisions/0095-large-messages-to-fast-dds.md`
+tells, whose figures come from scripts that this file was made of. Both sides of a pair run it, each with its own rclpy.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def publish(reliable: bool, depth: int, rate: float, seconds: float) -> None:
     until = time.monotonic() + STARTING
     while not publisher.get_subscription_count() and time.monotonic() < until:
         rclpy.spin_once(node, timeout_sec=0.1)
-    time.sleep(1.0)
+    time.sleep(1.0)  # both sides have found each other by then
     began, count = time.monotonic(), 0
     while time.monotonic() < began + seconds:
         publisher.publish(picture)
@@ -61,7 +61,7 @@ def publish(reliable: bool, depth: int, rate: float, seconds: float) -> None:
         while (left := began + count / rate - time.monotonic()) > 0:
             rclpy.spin_once(node, timeout_sec=left)
     print(count, flush=True)
-    time.sleep(1.0)
+    time.sleep(1.0)  # what was lost is sent again
     os._exit(0)
 
 
@@ -110,7 +110,7 @@ def measure(pair: tuple[str, str], reliable: bool, depth: int, rate: float, seco
         ends.callback(writer.kill)
         seen, since, hung = "0", time.monotonic(), False
         while writer.poll() is None:
-            time.sleep(0.2)
+            time.sleep(0.2)  # a reader that hangs tells nobody: its file is looked at
             came = counter.read_text() or seen
             if came != seen:
                 seen, since = came, time.monotonic()

@@ -150,7 +150,7 @@ def test_images_come_whole_at_30_hz_both_ways(processes, real_node):
 
 
 def test_pictures_that_are_replaced_while_they_are_on_their_way_do_not_stop_the_reader(processes, real_node):
-    """Fast DDS goes on reading what it has freed when it is told of a gap in place of the rest of a picture."""
+    """Fast DDS keeps reading a sample that it has freed when a GAP replaces the rest of an image."""
     us = processes("ours")
     real = real_node()
     publisher = us.node.create_publisher(Image, "/images_to_ros", 1)

@@ -10,7 +10,7 @@ SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
 """The suffixes of the files of a recording, with the names of their storages."""
 
 METADATA = "metadata.yaml"
-"""The file that tells of the others in the folder of a recording."""
+"""The file that describes the other files in the folder of a recording."""
 
 ROS1 = ".bag"
 """The suffix of recordings of ROS 1, which are refused with a hint on converting them."""

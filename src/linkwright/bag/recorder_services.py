@@ -11,7 +11,7 @@ from linkwright.messages import get_message
 
 
 class RecorderServices:
-    """Offers a recorder's services below the name of its node, and tells of files on ``events/write_split``.
+    """Offers a recorder's services below the name of its node, and publishes each split on ``events/write_split``.
 
     Names and types are those of ``rosbag2_transport::Recorder``.
 

@@ -31,7 +31,7 @@ def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, in
         size: bytes of all.
         storage: one of `linkwright.bag.STORAGES`.
         span_ns: the times of the first and the last message, nanoseconds since the epoch.
-        topics: what is told of each.
+        topics: the topics with their types and message counts.
     """
     start, end = span_ns
     told = [

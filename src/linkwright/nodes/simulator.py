@@ -40,7 +40,7 @@ _PARAMETERS: dict[str, Any] = {
 }
 
 _PAUSED = (
-    "The simulation is paused, and nothing is measured or moved: let it go on in the page, or call /unpause_physics. "
+    "The simulation is paused, and nothing moves or measures: resume it in the page, or call /unpause_physics. "
     "'gz sim' begins at once with -r"
 )
 

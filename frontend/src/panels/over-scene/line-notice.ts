@@ -59,7 +59,7 @@ export class LineNotice {
   }
 }
 
-/** What is slow; where the page no longer is, the notice tells of it for a while, unless something else is. */
+/** The cause to show. The notice about a slow page stays for a while after the page has recovered, unless something is reduced. */
 export function causeOf(cause: SlowCause, isTold: boolean, reduced: number): SlowCause {
   return isTold && reduced === 0 ? "page" : cause;
 }
