@@ -23,7 +23,7 @@ export class SpawnDialog {
   ) {
     const words = strings.simulation;
     this.address.placeholder = words.addressHint;
-    this.address.addEventListener("input", () => this.fill());
+    this.address.addEventListener("input", () => this.edited());
     this.places = position.map((value, axis) => {
       const field = h("input", { class: "field number", aria: { label: "xyz"[axis] ?? "" } });
       field.value = String(Math.round(value * 1000) / 1000);
@@ -50,8 +50,15 @@ export class SpawnDialog {
       closed();
     });
     this.dialog.open(this.address);
-    this.fill();
+    this.edited();
     modelling.askModels();
+  }
+
+  /** What was said of another address goes. */
+  private edited(): void {
+    this.fill();
+    this.dialog.ready = this.address.value.trim() !== "";
+    this.problem.textContent = "";
   }
 
   /** The models that have what is typed in their names, until one of them, or a path, is chosen. */
@@ -65,15 +72,13 @@ export class SpawnDialog {
     if (this.models && shown.length === 0) {
       this.list.append(h("p", { class: "empty" }, models.length === 0 ? words.noModels : words.notListed));
     }
-    this.dialog.ready = typed !== "";
-    this.problem.textContent = "";
   }
 
   private row(model: ModelChoice, chosen: boolean): HTMLElement {
     const { name, address } = model;
     const choose = (): void => {
       this.address.value = address;
-      this.fill();
+      this.edited();
       this.list.querySelector<HTMLElement>("[aria-selected=true]")?.focus();
     };
     const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
