@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import String, TFMessage, get_message, get_service
-from tests.browser.conftest import becomes, state, until
+from linkwright.viewer.features.modelling import things
+from linkwright.viewer.protocol.modelling import ModelChoices
+from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import configuration
 from tests.waiting import wait_until
 
@@ -67,7 +71,9 @@ def test_models_are_drawn_and_move(live, open_page):
     assert bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
 
 
-def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live, open_page):
+def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live, open_page, monkeypatch):
+    listed = threading.Event()
+    monkeypatch.setattr(things, "choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
     viewer = described(live)
     asked: list[tuple[str, object]] = []
 
@@ -96,6 +102,8 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     page.get_by_role("button", name="Let the simulation go on").wait_for()
     assert page.get_by_role("button", name="Make one step").is_enabled()
     viewer.settle(page)
+    record = page.get_by_role("button", name="Record", exact=True).bounding_box()
+    assert record["x"] + record["width"] <= page.viewport_size["width"]
     page.get_by_role("button", name="Add a model", exact=True).click()
     places = page.get_by_role("dialog").locator(".spawn-places input")
     assert [each.input_value() for each in places.all()] == [
@@ -106,7 +114,11 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Model or file").fill("/nowhere/robot.urdf")
     dialog.get_by_role("button", name="Add a model").click()
-    dialog.get_by_role("alert").get_by_text("no such file: '/nowhere/robot.urdf'").wait_for()
+    failure = dialog.get_by_role("alert").get_by_text("no such file: '/nowhere/robot.urdf'")
+    failure.wait_for()
+    listed.set()
+    dialog.get_by_text("No model is on the search path").wait_for()
+    assert failure.is_visible(), "a list that comes late takes nothing away"
     dialog.get_by_role("button", name="Cancel").click()
 
     box = page.locator(".canvas-box canvas").bounding_box()
