@@ -10,12 +10,15 @@ import asyncio
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
 from linkwright.geometry.single import Transform, quaternion_from_rpy
 from linkwright.graph import Graph, Parameter, SetParametersResult
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+
+if TYPE_CHECKING:
+    from linkwright.sdf.plugins import Plugin
 
 _EMPTY, _DESCRIPTION = "empty", "robot_description"
 _LEFT_OUT = frozenset({"SDF150", "SDF160", "SDF161"})
@@ -104,7 +107,7 @@ class Simulator(SingleNode):
             )
             self._log(remarkable)
             simulation = Simulation(loaded.world, loaded.finder, step=said["step"] or None)
-            how = ServerOptions(said["seed"], said["usual_names"], said["gazebo_mistakes"])
+            how = ServerOptions(said["seed"], said["usual_names"], said["gazebo_mistakes"], self._systems())
             self.server = SimulationServer(simulation, self._node, how)
             own = PluginNode(self._node, self.server.exchange, owned=False, qos={}, usual=None)
             self._reports = Reports(self.server, own, said["publish_rate"])
@@ -135,6 +138,10 @@ class Simulator(SingleNode):
         self.runner.close()
         self.server.close()
         super().close()
+
+    def _systems(self) -> Sequence[Plugin]:
+        """The plugins of a world that names none."""
+        return ()
 
     def _renew(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
         """Replace the robot by a changed description, in its present state; an invalid one is refused."""
@@ -169,6 +176,15 @@ class Simulator(SingleNode):
                 logger.error(text)
             else:
                 logger.warning(text)
+
+
+class GzServer(Simulator):
+    """The running node in the place of gz's server: a world without plugins gets those that gz gives it."""
+
+    def _systems(self) -> Sequence[Plugin]:
+        from linkwright.simulation.plugins.registry import SYSTEMS_OF_GZ
+
+        return SYSTEMS_OF_GZ
 
 
 def _call_on(loop: asyncio.AbstractEventLoop, function: Callable[[int], None], status: int) -> None:

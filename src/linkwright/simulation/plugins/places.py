@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from linkwright.geometry.single import Transform, compose, invert
 from linkwright.sdf.frames import FrameError, Frames, transform_of
 from linkwright.sdf.joints import Joint
 from linkwright.sdf.models import Model
+from linkwright.sdf.plugins import Plugin
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.plugin import PlacedSensor, PluginPlace
 
 
-def of_world(world: World) -> Iterator[PluginPlace]:
-    """The plugins of a world itself."""
-    for plugin in world.plugins:
+def of_world(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginPlace]:
+    """The plugins of a world itself.
+
+    Args:
+        world: the world, as it was read.
+        systems: the plugins of a world that names none.
+    """
+    for plugin in world.plugins or systems:
         yield PluginPlace(plugin.name or plugin.filename, plugin, world, None, "", None)
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.extensions import EntryPoint, extensions
-from linkwright.sdf.plugins import library_name
+from linkwright.sdf.plugins import Plugin, library_name
 
 if TYPE_CHECKING:
     from linkwright.simulation.plugins.plugin import PluginClass
@@ -37,8 +37,8 @@ _SENSORS_OF_SYSTEMS = {
     "cpu-lidar": ("lidar",),
 }
 """The systems of gz that publish what sensors measure, and the types of these; each is simulated."""
-_OWN_SYSTEMS = ("physics", "user-commands", "scene-broadcaster", "label")
-"""The systems of gz for what the simulation itself does: move, take and delete models, tell of the world, label it."""
+_OWN_SYSTEMS = ("physics", "user-commands", "label")
+"""The systems of gz for what the simulation itself does: move, take and delete models, label it."""
 _NONE = ("", "__default__")
 """Values of ``filename`` for no library, in files that programs wrote."""
 _BUILT_IN = frozenset(
@@ -48,6 +48,10 @@ _BUILT_IN = frozenset(
     )
 )
 """Libraries of other simulators for what this one does itself; all others that no plugin simulates are told of."""
+
+
+SYSTEMS_OF_GZ = tuple(Plugin(f"gz-sim-{name}-system") for name in ("physics", "user-commands", "scene-broadcaster"))
+"""The systems that gz gives a world that names none."""
 
 
 def is_of_gz(filename: str) -> bool:

@@ -16,7 +16,7 @@ from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.graph import Node
 from linkwright.sdf.comparison import alike
 from linkwright.sdf.models import Model
-from linkwright.sdf.plugins import library_name, original_library
+from linkwright.sdf.plugins import Plugin, library_name, original_library
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World
@@ -56,11 +56,13 @@ class ServerOptions:
         usual_names: whether topics of gz, such as ``/model/robot/cmd_vel``, have their usual names too: ``/cmd_vel``
             for the first robot that has one.
         gazebo_mistakes: whether plugins make the known mistakes of Gazebo.
+        systems: the plugins of a world that names none.
     """
 
     seed: int = 0
     usual_names: bool = False
     gazebo_mistakes: bool = False
+    systems: Sequence[Plugin] = ()
 
 
 class SimulationServer:
@@ -107,7 +109,7 @@ class SimulationServer:
         """Start the plugins of the world and of its models."""
         self.tell(self.simulation.scene.diagnostics)
         self._tell_unsimulated(unsimulated(self.simulation.world))
-        self._load(_WORLD, of_world(self.simulation.world), "")
+        self._load(_WORLD, of_world(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
         self.tell(overlaps(self.simulation))  # not before: plugins attach what is meant to overlap
@@ -195,7 +197,7 @@ class SimulationServer:
         self._of_world = {each.name for each in wanted.models}
         if not alike(before.plugins, wanted.plugins):
             self._end(self._plugins.pop(_WORLD, []))
-            self._load(_WORLD, of_world(wanted), "")
+            self._load(_WORLD, of_world(wanted, self._options.systems), "")
 
     def _exchange(self, gone: Iterable[str], coming: Sequence[Coming]) -> None:
         """Remove models and add others, those of the same name in their places; connected ones are replaced as well."""

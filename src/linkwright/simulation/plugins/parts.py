@@ -1,0 +1,105 @@
+"""The parts of a model that have poses: the models in it, links, and what is fixed to links."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import Enum, auto
+from functools import partial
+
+from linkwright.geometry.single import Transform, compose, invert
+from linkwright.sdf.frames import Frames
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.simulation import Simulation
+
+Pose = Callable[[], Transform]
+
+
+class PartKind(Enum):
+    """What a part is."""
+
+    MODEL = auto()
+    NESTED_MODEL = auto()
+    LINK = auto()
+    VISUAL = auto()
+    COLLISION = auto()
+    SENSOR = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Something with a pose.
+
+    Attributes:
+        kind: what it is.
+        name: with the models and the link that it is in, ``robot::arm::link``.
+        parent: the name of the model, link or world that its pose is given in.
+        pose: gives that pose now.
+    """
+
+    kind: PartKind
+    name: str
+    parent: str
+    pose: Pose
+
+
+def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
+    """The parts of a model of a simulation, each model and link before what is in it.
+
+    Args:
+        simulation: the world that the model is in.
+        model: with its includes resolved.
+        path: its name in the world; one of a nested model, ``robot::arm``, is itself no part.
+    """
+    place = _frame_of(simulation, model, path)
+    if SEPARATOR not in path:
+        yield Part(PartKind.MODEL, path, simulation.world.name, place)
+    yield from _parts(simulation, model, path, Frames(model), place)
+
+
+def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
+    """The pose in the world of a model's frame."""
+    top, _, inside = path.partition(SEPARATOR)
+    if not inside or not model.links:
+        return lambda: simulation.model_pose(top)
+    first = model.links[0].name
+    return _moving_with(simulation, f"{path}{SEPARATOR}{first}", Frames(model).pose(first))
+
+
+def _moving_with(simulation: Simulation, link: str, place: Transform) -> Pose:
+    """The pose in the world of a frame that is fixed to a link."""
+    back = invert(place)
+    return lambda: compose(simulation.link_pose(link), back)
+
+
+def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, place: Pose) -> Iterator[Part]:
+    """The parts in a model whose frame is at a place in the world."""
+    for link in model.links:
+        name = f"{path}{SEPARATOR}{link.name}"
+        yield Part(PartKind.LINK, name, path, partial(_between, place, partial(simulation.link_pose, name)))
+        for kind, fixed in (
+            (PartKind.VISUAL, link.visuals),
+            (PartKind.COLLISION, link.collisions),
+            (PartKind.SENSOR, link.sensors),
+        ):
+            for each in fixed:
+                pose = frames.in_link(each.pose, link.name)
+                yield Part(kind, f"{name}{SEPARATOR}{each.name}", name, partial(_same, pose))
+    for inner in model.models:
+        name, inside = f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name)
+        first = next((each.name for each in inner.links), "")
+        if not first:
+            continue
+        deeper = _moving_with(simulation, f"{name}{SEPARATOR}{first}", inside.pose(first))
+        yield Part(PartKind.NESTED_MODEL, name, path, partial(_between, place, deeper))
+        yield from _parts(simulation, inner, name, inside, deeper)
+
+
+def _same(pose: Transform) -> Transform:
+    return pose
+
+
+def _between(outer: Pose, inner: Pose) -> Transform:
+    """The pose of one part in the frame of another."""
+    return compose(invert(outer()), inner())

@@ -1,0 +1,101 @@
+"""Poses of everything in a world: ``gz-sim-scene-broadcaster-system``.
+
+Source: gz-sim (topics, their order and rates, parameters). Entities have their own names, without those of the models
+that they are in, and poses in what they are in. As with a bridge, ``frame_id`` stays empty: a listener to tf that is
+given these topics leaves them out, where frames of links would have two parents otherwise (decision 0096).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.geometry.single import Transform
+from linkwright.messages.tf_message import TFMessage, TransformBatch
+from linkwright.sdf.frames import Frames
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.plugins.node import Output
+from linkwright.simulation.plugins.parts import PartKind, Pose, parts_of
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+_ALL_RATE = 60.0
+"""How often all poses are published, in Hz."""
+_ORDER = (
+    {PartKind.MODEL, PartKind.NESTED_MODEL},
+    {PartKind.LINK},
+    {PartKind.VISUAL},
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneParameters:
+    """Parameters of ``gz-sim-scene-broadcaster-system``."""
+
+    dynamic_pose_hertz: float = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Entities:
+    """Entities whose poses are published together.
+
+    Attributes:
+        names: their names.
+        poses: their poses: those of what stays where it is, and functions for the others.
+    """
+
+    names: tuple[str, ...]
+    poses: Sequence[Transform | Pose]
+
+
+class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
+    """``gz-sim-scene-broadcaster-system``."""
+
+    PARAMETERS = SceneParameters
+    IGNORED = ("state_hertz",)
+
+    def start(self) -> None:
+        """Make the topics of the world."""
+        begin = f"/world/{self.place.world.name}"
+        self._revision = -1
+        self._all = self._dynamic = _Entities((), ())
+        everything = self.node.publisher("tf2_msgs/msg/TFMessage", f"{begin}/pose/info")
+        dynamic = self.node.publisher("tf2_msgs/msg/TFMessage", f"{begin}/dynamic_pose/info")
+        self.every(_ALL_RATE, lambda: self._publish(everything, dynamic=False))
+        self.every(max(self.parameters.dynamic_pose_hertz, 0.0), lambda: self._publish(dynamic, dynamic=True))
+
+    def _publish(self, output: Output, *, dynamic: bool) -> None:
+        if not output.is_wanted:
+            return
+        if self._revision != self.simulation.revision:
+            self._collect()
+        entities = self._dynamic if dynamic else self._all
+        poses = np.array([pose() if callable(pose) else pose for pose in entities.poses], dtype=float).reshape(-1, 7)
+        count = len(entities.names)
+        output.publish(TFMessage(batch=TransformBatch(("",) * count, entities.names, self.simulation.time, poses)))
+
+    def _collect(self) -> None:
+        """Find the entities of the world as it is now; what is static stays where it is."""
+        self.simulation.refresh()
+        self._revision = self.simulation.revision
+        models = self.simulation.scene.models.values()
+        parts = [
+            (part, each.model.static) for each in models for part in parts_of(self.simulation, each.model, each.name)
+        ]
+        ordered = [(part, static) for kinds in _ORDER for part, static in parts if part.kind in kinds]
+        world = self.simulation.world
+        lights = [(each.name, Frames(world).placed(each.pose)) for each in world.lights]
+        self._all = _Entities(
+            (*(_own_name(part.name) for part, _ in ordered), *(name for name, _ in lights)),
+            (
+                *(part.pose() if static or part.kind is PartKind.VISUAL else part.pose for part, static in ordered),
+                *(pose for _, pose in lights),
+            ),
+        )
+        moving = [part for part, static in ordered if not static and part.kind is not PartKind.VISUAL]
+        self._dynamic = _Entities(tuple(_own_name(part.name) for part in moving), [part.pose for part in moving])
+
+
+def _own_name(name: str) -> str:
+    return name.rpartition(SEPARATOR)[2]

@@ -1,0 +1,110 @@
+"""gz's broadcaster of the poses of a world."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.gazebo.bridge import ParameterBridge
+from linkwright.nodes.simulator import GzServer, Simulator
+from linkwright.simulation.plugins.registry import SYSTEMS_OF_GZ
+from linkwright.simulation.server.server import ServerOptions
+from linkwright.testing import Recording
+from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.worlds import GROUND, box, model
+
+BROADCASTER = '<plugin name="gz::sim::systems::SceneBroadcaster" filename="gz-sim-scene-broadcaster-system"/>'
+ALL, DYNAMIC = "/world/test/pose/info", "/world/test/dynamic_pose/info"
+LINKS = ["base_link", "left_wheel", "right_wheel", "front_caster", "back_caster"]
+
+
+def names(message):
+    return [each.child_frame_id for each in message.transforms]
+
+
+def translation(message, name):
+    moved = next(each for each in message.transforms if each.child_frame_id == name).transform.translation
+    return moved.x, moved.y, moved.z
+
+
+async def test_what_moves_is_told_models_first_and_links_in_their_models():
+    async with served(GROUND, robot(), BROADCASTER) as (server, graph, log):
+        recording = Recording(graph, server.node, DYNAMIC)
+        server.advance(SECOND)
+        await graph.settle()
+        assert 59 <= len(recording) <= 61
+        assert names(recording.last) == ["mbot", *LINKS]
+        assert translation(recording.last, "mbot") == pytest.approx((0.0, 0.0, 0.11), abs=2e-3)
+        assert translation(recording.last, "left_wheel") == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
+        assert {each.header.frame_id for each in recording.last.transforms} == {""}
+        assert recording.last.transforms[0].header.stamp.nanosec > 0.9 * SECOND
+        assert not log
+
+
+async def test_everything_is_told_with_visuals_and_lights():
+    light = '<light name="sun" type="directional"><pose>0 0 10 0 0 0</pose></light>'
+    crate = box("crate", "3 0 0.5 0 0 0", "1 1 1")
+    seen = '<visual name="lid"><pose>0 0 0.5 0 0 0</pose><geometry><box><size>1 1 0.1</size></box></geometry></visual>'
+    async with served(GROUND, crate.replace("</link>", f"{seen}</link>"), light, BROADCASTER) as (server, graph, log):
+        recording = Recording(graph, server.node, ALL)
+        server.advance(SECOND // 10)
+        await graph.settle()
+        assert names(recording.last) == ["ground", "crate", "link", "link", "lid", "sun"]
+        assert translation(recording.last, "lid") == (0.0, 0.0, 0.5)
+        assert translation(recording.last, "sun") == (0.0, 0.0, 10.0)
+        assert not log
+
+
+async def test_a_spawned_model_is_told_and_a_deleted_one_no_more():
+    async with served(GROUND, BROADCASTER) as (server, graph, _):
+        recording = Recording(graph, server.node, DYNAMIC)
+        server.spawn(model(box("box", "0 0 0.5 0 0 0", "1 1 1")), "crate")
+        server.advance(SECOND // 10)
+        await graph.settle()
+        assert names(recording.last) == ["crate", "link"]
+        server.delete("crate")
+        server.advance(SECOND // 10)
+        await graph.settle()
+        assert names(recording.last) == []
+
+
+async def test_it_keeps_the_rate_that_it_is_given():
+    slow = BROADCASTER.replace("/>", "><dynamic_pose_hertz>10</dynamic_pose_hertz></plugin>")
+    async with served(GROUND, robot(), slow) as (server, graph, log):
+        recording = Recording(graph, server.node, DYNAMIC)
+        server.advance(SECOND)
+        await graph.settle()
+        assert len(recording) == 10
+        assert not log
+
+
+async def test_a_world_without_plugins_has_those_of_gz_and_another_only_its_own():
+    other = '<plugin name="p" filename="gz-sim-physics-system"/>'
+    for parts, has in (((), True), ((other,), False), ((other, BROADCASTER), True)):
+        async with served(GROUND, *parts, options=ServerOptions(systems=SYSTEMS_OF_GZ)) as (_, graph, log):
+            assert (DYNAMIC in graph.topics()) == has
+            assert not log
+
+
+@pytest.mark.parametrize(("kind", "has"), [(GzServer, True), (Simulator, False)])
+async def test_only_the_server_of_gz_gives_a_world_the_systems_of_gz(kind, has):
+    graph = Graph()
+    running = kind(graph, NodeOptions(parameters={"pause": True}))
+    assert any(each.endswith("/dynamic_pose/info") for each in graph.topics()) == has
+    running.close()
+    await graph.close()
+
+
+@pytest.mark.parametrize("kind", ["tf2_msgs/msg/TFMessage", "geometry_msgs/msg/PoseArray"])
+async def test_a_bridge_hands_the_poses_on(kind):
+    async with served(GROUND, robot(), BROADCASTER) as (server, graph, _):
+        word = f"{DYNAMIC}@{kind}[gz.msgs.Pose_V"
+        bridge = ParameterBridge(graph, NodeOptions(arguments=[word], remappings=[(DYNAMIC, "/truth")]))
+        recording = Recording(graph, server.node, "/truth")
+        for _ in range(10):
+            server.advance(SECOND // 20)
+            await graph.settle()
+        last = recording.last
+        assert len(last.transforms if kind.startswith("tf2") else last.poses) == 1 + len(LINKS)
+        bridge.close()
