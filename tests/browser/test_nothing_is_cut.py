@@ -52,7 +52,7 @@ CUT = """async () => {
       const { left, right } = each.getBoundingClientRect();
       return left < bar.right - 1 && right > bar.right + 1 && each.matches(".dv-active-tab");
     }
-    return each.scrollWidth > each.clientWidth + 1;
+    return each.scrollWidth > each.clientWidth + 1 || each.getBoundingClientRect().right > innerWidth + 1;
   };
   const labels = ".row-title, .toolbar-label, .bar-label, .tick, .check-label, .segmented";
   const controls = `button, select, input[placeholder], [role=tab], ${labels}`;
