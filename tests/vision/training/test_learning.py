@@ -32,6 +32,7 @@ if HERE:
     from linkwright.vision.training.learning.losses import assign, loss, overlaps
     from linkwright.vision.training.learning.network import Network, Shape, cells
     from linkwright.vision.training.learning.optimizer import orthogonal
+    from linkwright.vision.training.learning.starting import load_weights
 
 
 @pytest.fixture(scope="module")
@@ -137,6 +138,89 @@ def test_the_exported_network_says_what_the_network_says():
     metadata = session.get_modelmeta().custom_metadata_map
     assert metadata["names"] == "{0: 'a', 1: 'b', 2: 'c'}"
     assert (metadata["imgsz"], metadata["stride"], metadata["task"]) == ("[96, 64]", "32", "detect")
+
+
+@pytest.fixture
+def exported(tmp_path):
+    """A network of three classes whose normalisations are not those of the beginning, and its file."""
+    torch.manual_seed(3)
+    network = Network(Shape(3, 4))
+    with torch.no_grad():
+        network(torch.rand(8, 3, 64, 64))
+        for each in network.parameters():
+            each.add_(0.1 * torch.randn_like(each)).copy_(each.half().float())
+    file = tmp_path / "shapes.onnx"
+    file.write_bytes(to_onnx(network.eval(), ("disc", "square", "bar"), 64, 64, {}))
+    return network, file
+
+
+def said_by(network, picture):
+    with torch.no_grad():
+        boxes, logits = network.eval()(picture)
+    return boxes[0], logits[0]
+
+
+def test_a_network_that_begins_with_a_file_says_what_the_file_says(exported):
+    other, file = exported
+    network, picture = Network(Shape(3, 4)), torch.rand(1, 3, 64, 64)
+    load_weights(network, ("disc", "square", "bar"), file, [torch.rand(8, 3, 64, 64)])
+    for found, wanted in zip(said_by(network, picture), said_by(other, picture), strict=True):
+        assert torch.allclose(found, wanted, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
+
+
+def test_as_it_learns_it_says_nearly_the_same_because_its_statistics_are_measured(exported):
+    _, file = exported
+    network, pictures = Network(Shape(3, 4)), torch.rand(16, 3, 64, 64)
+    load_weights(network, ("disc", "square", "bar"), file, [pictures])
+    with torch.no_grad():
+        _, wanted = network.eval()(pictures)
+        _, found = network.train()(pictures)
+    assert (found - wanted).abs().mean() < 0.2 * wanted.std()
+
+
+def test_classes_of_a_file_keep_their_weights_by_their_names_and_others_begin_anew(exported):
+    other, file = exported
+    network, picture = Network(Shape(2, 4)), torch.rand(1, 3, 64, 64)
+    load_weights(network, ("ring", "square"), file, [torch.rand(8, 3, 64, 64)])
+    (boxes, logits), (wanted_boxes, wanted) = said_by(network, picture), said_by(other, picture)
+    assert torch.allclose(boxes, wanted_boxes, rtol=0.02, atol=0.1)
+    assert torch.allclose(logits[:, 1], wanted[:, 1], rtol=0.02, atol=0.1)
+    assert network.heads[0].scores[-1].bias[0].item() == pytest.approx(-np.log(99))
+
+
+@pytest.mark.parametrize(
+    ("content", "channels", "reason"),
+    [
+        (None, 4, "does not exist"),
+        (b"none", 4, "not an ONNX file"),
+        (b"", 4, "not a network of"),
+        ("exported", 8, "its first layer has 4 channels, not 8"),
+    ],
+)
+def test_weights_that_cannot_be_begun_with_are_said(exported, tmp_path, content, channels, reason):
+    file = exported[1] if content == "exported" else tmp_path / "other.onnx"
+    if isinstance(content, bytes):
+        file.write_bytes(content)
+    with pytest.raises(LinkwrightError) as caught:
+        load_weights(Network(Shape(3, channels)), ("disc", "square", "bar"), file, [])
+    assert caught.value.diagnostics[0].code == "VISION308"
+    assert reason in str(caught.value.diagnostics[0].message)
+
+
+def test_a_training_begins_with_weights_of_an_earlier_one_and_its_card_says_so(shapes, tmp_path, capsys):
+    words = ["vision", "train", str(shapes), "--size", "96x96", "--channels", "4", "--threads", "1", "--epochs", "1"]
+    assert main([*words, "-o", str(tmp_path / "first"), "--name", "first"]) == 0
+    begun = tmp_path / "first" / "first.onnx"
+    assert main([*words, "-o", str(tmp_path / "second"), "--weights", str(begun), "--rate", "1e-9"]) == 0
+    capsys.readouterr()
+    session = [
+        onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
+        for file in (begun, tmp_path / "second" / "detector.onnx")
+    ]
+    picture = np.random.default_rng(0).random((1, 3, 96, 96), np.float32)
+    first, second = (each.run(None, {"images": picture})[0][0, :4] for each in session)
+    assert np.abs(first - second).max() < 1.0  # pixels
+    assert "| began with | first.onnx, sha256 " in (tmp_path / "second" / "detector.md").read_text(encoding="utf-8")
 
 
 def test_boxes_that_do_not_touch_are_told_apart_by_the_generalised_overlap():

@@ -59,6 +59,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default="auto",
         help="where it learns: auto (default) takes a GPU that PyTorch sees by CUDA",
     )
+    parser.add_argument(
+        "--weights",
+        metavar="FILE",
+        help="begin with this network instead of random weights: things, or an ONNX file that this command wrote",
+    )
     parser.add_argument("--resume", action="store_true", help="go on from the last epoch that is in the folder")
     parser.add_argument(
         "--held-out",
@@ -92,6 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
         threads=arguments.threads,
         precision=arguments.precision,
         device=arguments.device,
+        weights=_weights(arguments.weights),
         resume=arguments.resume,
         held_out=tuple(arguments.held_out),
         command=shlex.join(["linkwright", *(word for word in sys.argv[1:] if word != "--resume")]),
@@ -113,6 +119,12 @@ def _tell(epoch: Epoch, last: int) -> None:
     if epoch.judged is not None:
         line += f"; mAP50 {epoch.judged.map50:.3f}, mAP50-95 {epoch.judged.map:.3f}"
     print(line, file=sys.stderr, flush=True)
+
+
+def _weights(text: str | None) -> Path | None:
+    from linkwright.vision.models.things import FILE
+
+    return FILE if text == FILE.stem else Path(text) if text else None
 
 
 def _size(text: str) -> tuple[int, int]:

@@ -42,6 +42,7 @@ class Options:
         precision: what it computes with while it learns: ``float32``, or ``bfloat16``, where 16 bits are enough;
             weights have 32.
         device: where it learns: ``auto``, the first GPU that PyTorch sees by CUDA, else the processor; ``cpu``.
+        weights: ONNX file of a training, whose network it begins with; None for random weights.
         resume: go on from ``last.pt`` of the folder.
         held_out: folders of datasets that only judge the result, with their split ``test``, or else ``val``.
         command: what the user typed, for the card; without ``--resume``, with which the result is the same.
@@ -61,6 +62,7 @@ class Options:
     threads: int = 2
     precision: str = "float32"
     device: str = "auto"
+    weights: Path | None = None
     resume: bool = False
     held_out: tuple[Path, ...] = ()
     command: str = ""

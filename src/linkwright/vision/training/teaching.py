@@ -48,7 +48,8 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
 
     Raises:
         LinkwrightError: VISION301 PyTorch is not installed, VISION302 to VISION305 see `open_dataset` and
-            `Dataset.read`, VISION306 there is nothing to go on from, VISION307 the folder cannot be written.
+            `Dataset.read`, VISION306 there is nothing to go on from, VISION307 the folder cannot be written,
+            VISION308 the weights to begin with cannot be used.
         KeyboardInterrupt: it was interrupted before anything was learnt that could be kept.
     """
     need_pytorch()
@@ -68,6 +69,8 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
     course = Course(dataset.names, options, read_lesson(lesson, *size), read_lesson(exam, *size))
     if options.resume:
         course.load(options.output / "last.pt")
+    elif options.weights is not None:
+        course.begin_with(options.weights)
     interrupted = False
     try:
         course.run(tell)
@@ -132,12 +135,22 @@ def _facts(
         "taught with": f"{len(lesson)} pictures with {asked} things of the dataset {dataset.folder.name}",
         **made_of(dataset.folder),
         "pictures' sha256": sum_of(lesson),
+        **_beginning(options.weights),
         "input": f"{options.width} x {options.height}, red, green, blue, 0 to 1",
         "output": "YOLOv8's: [1, 4 + classes, cells], middle, width, height in pixels, scores",
         "weights": f"{parameters}",
         "seed": str(options.seed),
         "epochs": f"{epochs} of {options.epochs}; the best, which this is, was {best}",
     }
+
+
+def _beginning(weights: Path | None) -> dict[str, str]:
+    if weights is None:
+        return {}
+    try:
+        return {"began with": f"{weights.name}, sha256 {hashlib.sha256(weights.read_bytes()).hexdigest()}"}
+    except OSError:  # gone before the training was resumed
+        return {"began with": weights.name}
 
 
 def sum_of(lesson: Sequence[Labelled]) -> str:

@@ -24,6 +24,7 @@ from linkwright.vision.evaluation import Evaluation, Things, balanced_score, eva
 from linkwright.vision.training.learning.losses import loss
 from linkwright.vision.training.learning.network import Network, Shape, cells
 from linkwright.vision.training.learning.optimizer import Optimizer
+from linkwright.vision.training.learning.starting import load_weights
 from linkwright.vision.training.measuring import LIMITS
 from linkwright.vision.training.options import Options
 from linkwright.vision.training.pictures import Lesson, changed, repeated, repeats
@@ -31,6 +32,7 @@ from linkwright.vision.training.pictures import Lesson, changed, repeated, repea
 _WARM_UP = 100  # steps in which the rate grows to its highest
 _LEAST_RATE = 0.02  # of the highest, at the end
 _STEEPEST = 10.0  # the norm that gradients are cut to
+_MEASURED = 128  # pictures that the statistics of weights from a file are measured with
 _SMOOTHING = 0.998  # of the copy that is judged, a step, once it has seen enough
 
 
@@ -234,6 +236,13 @@ class Course:
         draft = path.with_suffix(".part")
         torch.save(state, draft)
         draft.replace(path)
+
+    def begin_with(self, path: Path) -> None:
+        """Begin with the weights of an ONNX file, see `load_weights`."""
+        chosen, size = self._lesson.pictures[:_MEASURED], self.options.batch
+        batches = (_tensor(chosen[start : start + size], self._device) for start in range(0, len(chosen), size))
+        load_weights(self.network, self.names, path, batches)
+        self.smooth.load_state_dict(self.network.state_dict())
 
     def load(self, path: Path) -> None:
         """Continue from a checkpoint.

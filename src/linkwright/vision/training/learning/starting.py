@@ -1,0 +1,137 @@
+"""Starting weights: those of a network that `linkwright vision train` exported.
+
+An exported convolution holds its normalisation, too. Here they become two layers again that compute the same: the
+statistics, which the file lacks, are measured with pictures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import onnx
+import torch
+from onnx import numpy_helper
+from torch import Tensor, nn
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, missing_file_hint, phrase
+from linkwright.vision.detectors.class_names import names_in_metadata
+from linkwright.vision.training.learning.network import Convolution, Network
+
+_SHORTEST = 1e-12  # of a kernel, so that one of zeros can be divided by its length
+
+
+def load_weights(network: Network, names: Sequence[str], path: Path, pictures: Iterable[Tensor]) -> None:
+    """Give a network the weights of an ONNX file.
+
+    Classes are matched by their names. What the network knows of a class that the file lacks stays as it is.
+
+    Args:
+        network: the one to change. With the classes of the file it computes the same boxes and the same logits, up to
+            a shift that the export has added. It is in evaluation mode afterwards.
+        names: of its classes.
+        path: of the file.
+        pictures: what the statistics of its layers are measured with, shape (batch, 3, height, width).
+
+    Raises:
+        LinkwrightError: VISION308, the file cannot be read, or holds another network.
+    """
+    known, weights = _read(path)
+    layers = _in_order(network.eval())
+    channels, wanted = len(weights[0][0]), network.shape.channels
+    if len(weights) == len(layers) and channels != wanted:
+        reason = phrase("its first layer has {channels} channels, not {wanted}", channels=channels, wanted=wanted)
+        raise _unusable(path, reason, phrase("train with `--channels {channels}`", channels=channels))
+    scores = [head.scores[-1] for head in network.heads]
+    shapes = [(len(known) if layer in scores else len(layer.weight), *layer.weight.shape[1:]) for layer in layers]
+    if shapes != [tuple(kernel.shape) for kernel, _ in weights]:
+        raise _unusable(path, phrase("it is not a network of `linkwright vision train`"))
+    blocks = {block.convolution: block for block in network.modules() if isinstance(block, Convolution)}
+    with torch.no_grad():
+        for layer, (kernel, bias) in zip(layers, weights, strict=True):
+            if layer in scores:
+                for row, name in enumerate(names):
+                    if name in known:
+                        layer.weight[row], layer.bias[row] = kernel[known.index(name)], bias[known.index(name)]
+            else:
+                layer.weight.copy_(kernel)
+                _offset(blocks[layer].norm if layer in blocks else layer, bias)
+        _normalize(network, list(blocks.values()), pictures)
+
+
+def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
+    """Read the names of the classes, and kernel and bias of each convolution in the order of the computation."""
+    try:
+        model = onnx.load(path, load_external_data=False)
+        stored = {each.name: numpy_helper.to_array(each) for each in model.graph.initializer}
+    except FileNotFoundError:
+        raise _unusable(path, phrase("it does not exist"), missing_file_hint(path)) from None
+    except OSError as error:
+        raise _unusable(path, foreign(error.strerror or error)) from None
+    except Exception:  # noqa: BLE001 - protobuf and ONNX raise many kinds
+        raise _unusable(path, phrase("it is not an ONNX file")) from None
+    stored.update({each.output[0]: stored[each.input[0]] for each in model.graph.node if each.input[:1]
+                   and each.op_type == "Cast" and each.input[0] in stored})  # fmt: skip
+    metadata = {each.key: each.value for each in model.metadata_props}
+    known = names_in_metadata(metadata.get("names", ""))
+    inputs = [each.input[1:] for each in model.graph.node if each.op_type == "Conv"]
+    if known is None or not inputs or not all(len(each) == 2 and set(each) <= stored.keys() for each in inputs):
+        raise _unusable(path, phrase("it is not a network of `linkwright vision train`"))
+    pairs = [(torch.tensor(stored[kernel]).float(), torch.tensor(stored[bias]).float()) for kernel, bias in inputs]
+    return known, pairs
+
+
+def _in_order(network: Network) -> list[nn.Conv2d]:
+    """The convolutions in the order of the computation."""
+    found: list[nn.Conv2d] = []
+    layers = [each for each in network.modules() if isinstance(each, nn.Conv2d)]
+    hooks = [each.register_forward_hook(lambda layer, _, __: found.append(layer)) for each in layers]
+    with torch.no_grad():
+        network(torch.zeros(1, 3, 32, 32, device=layers[0].weight.device))
+    for hook in hooks:
+        hook.remove()
+    return found
+
+
+def _offset(layer: nn.Conv2d | nn.BatchNorm2d, bias: Tensor) -> None:
+    """Make a layer add `bias`; a normalisation does nothing else."""
+    layer.bias.copy_(bias)
+    if isinstance(layer, nn.BatchNorm2d):
+        layer.weight.fill_(1.0)
+        layer.running_mean.zero_()
+        layer.running_var.fill_(1.0 - layer.eps)
+
+
+def _normalize(network: Network, blocks: Sequence[Convolution], pictures: Iterable[Tensor]) -> None:
+    """Move statistics and lengths of the kernels into the normalisations; what is computed stays the same.
+
+    Each output's kernel has the length 1 afterwards, because steps of the optimizer are of one length.
+    """
+    sums = {block.norm: torch.zeros(3, block.norm.num_features, dtype=torch.float64) for block in blocks}
+
+    def measure(layer: nn.BatchNorm2d, given: tuple[Tensor]) -> None:
+        values = given[0].double().transpose(0, 1).flatten(1).cpu()
+        sums[layer] += torch.stack((torch.full((len(values),), values.shape[1]), values.sum(1), (values**2).sum(1)))
+
+    hooks = [block.norm.register_forward_pre_hook(measure) for block in blocks]
+    for each in pictures:
+        network(each)
+    for hook in hooks:
+        hook.remove()
+    for block in blocks:
+        kernel, norm = block.convolution.weight, block.norm
+        length = kernel.flatten(1).norm(dim=1).clamp_min(_SHORTEST)
+        count, total, squares = sums[norm]
+        mean = total / count
+        variance = (squares / count - mean**2).clamp_min(0.0)
+        mean, variance = mean.to(kernel), variance.to(kernel)
+        kernel.div_(length[:, None, None, None])
+        norm.running_mean.copy_(mean / length)
+        norm.running_var.copy_(variance / length**2)
+        norm.weight.copy_((variance + norm.eps * length**2).sqrt())
+        norm.bias.add_(mean)
+
+
+def _unusable(path: Path, reason: Phrase, hint: Phrase | None = None) -> LinkwrightError:
+    message = phrase("cannot begin with the weights of '{path}': {reason}", path=display_path(path), reason=reason)
+    return LinkwrightError(Diagnostic("VISION308", message, hint=hint))
