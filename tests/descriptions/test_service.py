@@ -101,6 +101,9 @@ class TestWhatUrdfdomReadsAllTheSame:
             ('<robot name="r"><!-- a <!-- b --><link name="a"/></robot>', "XML206"),
             ('<robot name="r & d"><link name="a"/></robot>', "XML206"),
             ('<robot name="r&nbsp;d"><link name="a"/></robot>', "XML206"),
+            ('read me\n<robot name="r"><link name="a"/></robot>', "XML206"),
+            ('<?xml version="1.0"?>\n<!-- a --> read me <robot name="r"><link name="a"/></robot>', "XML206"),
+            (f'read me <robot name="r" {PREFIX}><link name="a"/></robot>', "XML206"),
             ('<robot name="r"><sensor:camera/><link name="a"/></robot>', "XML205"),
             (f'<robot name="r" {PREFIX}><link name="a"/><xacro:camera/></robot>', "XAC401"),
             (f'<robot name="r" {PREFIX}><link name="a"/><xacro:include filename="no.xacro"/></robot>', "XML101"),
@@ -111,9 +114,13 @@ class TestWhatUrdfdomReadsAllTheSame:
         path.write_text(written)
         found = examine(path, partly=True)
         assert list(found.robot.links) == ["a"]
-        assert [(each.severity.value, each.code) for each in found.diagnostics if each.code == code] == [
-            ("warning", code)
-        ]
+        assert [(each.severity.value, each.code) for each in found.diagnostics] == [("warning", code)]
+
+    def test_a_declaration_after_text_is_an_error_for_tinyxml2_too(self, tmp_path):
+        path = tmp_path / "r.urdf"
+        path.write_text('read me <?xml version="1.0"?><robot name="r"><link name="a"/></robot>')
+        with pytest.raises(LinkwrightError, match="this is not XML"):
+            examine(path, partly=True)
 
     @pytest.mark.parametrize(
         "written",

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 _URDF = ".urdf"
 """The ending of files that robot_state_publisher may be given as they are, whatever prefixes they declare."""
 
+_LEFT_OVER = "URDF102"
+"""Tags of xacro that nobody evaluated."""
+
 Packages = Union[Mapping[str, str | Path], "PackageFinder", None]
 
 
@@ -93,8 +96,9 @@ def examine(
         if not partly:
             raise
         if not xacro and not arguments and name.endswith(_URDF):
-            unexpanded = tuple(map(_as_warning, error.diagnostics))
-            plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay)
+            told = {each.code for each in forbidden}
+            unexpanded = tuple(_as_warning(each) for each in error.diagnostics if each.code not in told)
+            plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay, is_told=bool(unexpanded))
             if plain.robot is not None:
                 return plain
         from linkwright.xacro.inputs import Inputs
@@ -105,11 +109,17 @@ def examine(
 
 
 def _as_it_stands(
-    name: str, document: Document, remarks: tuple[Diagnostic, ...], overlay: Overlay | None
+    name: str,
+    document: Document,
+    remarks: tuple[Diagnostic, ...],
+    overlay: Overlay | None,
+    *,
+    is_told: bool = False,
 ) -> Description:
-    """The description that urdfdom makes of a document which nobody expands."""
+    """The description that urdfdom makes of a document which nobody expands; `is_told` where the remarks say so."""
     reading = read(document)
-    return Description(name, document, Reading(reading.robot, (*remarks, *reading.diagnostics)), overlay=overlay)
+    said = tuple(each for each in reading.diagnostics if not (is_told and each.code == _LEFT_OVER))
+    return Description(name, document, Reading(reading.robot, (*remarks, *said)), overlay=overlay)
 
 
 def _as_warning(error: Diagnostic) -> Diagnostic:

@@ -13,7 +13,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.xmltree import Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.positions import attribute_value_range
-from linkwright.xmltree.tinyxml import parse_as_tinyxml
+from linkwright.xmltree.tinyxml import blanked, parse_as_tinyxml
 
 _READ_ALL_THE_SAME = phrase("urdfdom reads it all the same; xacro and other XML readers refuse the file")
 _LATE_DECLARATION = re.compile(r"\s+<\?xml\s[^>]*\?>")
@@ -35,7 +35,7 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
         text = decode(text, name)
     late = _LATE_DECLARATION.match(text)
     if late:
-        text = _blanked(late[0]) + text[late.end() :]
+        text = blanked(late[0]) + text[late.end() :]
     warnings: tuple[Diagnostic, ...] = ()
     try:
         document = parse(text, name, blanks=False)
@@ -43,7 +43,7 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
         end = _end_of_root(error)
         if end is not None:
             parse(f"<rest>{text[end:]}</rest>", name)  # tinyxml2 wants it well-formed all the same
-            text = text[:end] + _blanked(text[end:])
+            text = text[:end] + blanked(text[end:])
         try:
             document, warnings = parse_as_tinyxml(text, name, _READ_ALL_THE_SAME)
         except LinkwrightError:
@@ -51,11 +51,6 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
     if any(blank in text and inside.search(text) for blank, inside in _INSIDE_VALUE.items()):
         _restore_blanks(document.root, text)
     return document, warnings
-
-
-def _blanked(text: str) -> str:
-    """As many blanks, in as many lines, so that places stay right."""
-    return re.sub(r"\S", " ", text)
 
 
 def _end_of_root(error: LinkwrightError) -> int | None:

@@ -1,7 +1,7 @@
 """Parsing XML as TinyXML2 does, the parser of urdfdom and the simulators, which accepts more than XML allows.
 
-It knows no namespaces, ends a comment at ``-->`` alone, and an ``&`` that begins no entity does not trouble it. Such
-files work for their users, so they are read, with a warning.
+It knows no namespaces, ends a comment at ``-->`` alone, passes over text before the root element, and an ``&`` that
+begins no entity does not trouble it. Such files work for their users, so they are read, with a warning.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from linkwright.xmltree.reader import parse
 
 _UNDECLARED = "XML205"
 _OUTSIDE_TAGS = re.compile(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
+_BEFORE_ROOT = re.compile(r"\A(?:\s*<\?xml\s[^>]*\?>)?(?:\s|<!--.*?-->)*([^<\s][^<]*)(?=<(?!\?xml\s))", re.DOTALL)
+"""Text before the root element; a declaration that follows it is one mistake too many for TinyXML2, too."""
 _BARE_AMPERSAND = re.compile(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|amp|lt|gt|quot|apos);)")
 _DEFINITION = "<!ENTITY"
 _STAND_IN = "\x7f"
@@ -39,6 +41,13 @@ def parse_as_tinyxml(
     warnings: list[Diagnostic] = []
     source = SourceText(name, text)
     read_as = text if read_as is None else read_as
+    before = _BEFORE_ROOT.match(text)
+    if before:
+        advice = phrase("an XML file holds nothing but comments before its root element")
+        place = source.span(before.start(1), before.start(1) + len(before[1].rstrip()))
+        message = phrase("text stands before the root element")
+        warnings.append(forbidden(message, place, source, advice, readers))
+        read_as = read_as[: before.start(1)] + blanked(before[1]) + read_as[before.end(1) :]
     dashed = [found for found in _OUTSIDE_TAGS.finditer(text) if _has_dashes(found[1])]
     if dashed:
         at = text.index("--", dashed[0].start(1))
@@ -66,6 +75,11 @@ def parse_as_tinyxml(
     for comment in _comments(document) if dashed else ():
         comment.data = text[comment.offset + 4 : text.index("-->", comment.offset + 4)]
     return document, (*warnings, *undeclared)
+
+
+def blanked(text: str) -> str:
+    """As many blanks, in as many lines, so that places stay right."""
+    return re.sub(r"\S", " ", text)
 
 
 def forbidden(message: Phrase, span: Span, source: SourceText, hint: Phrase, readers: Phrase) -> Diagnostic:
