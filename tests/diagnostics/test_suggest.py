@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.diagnostics import did_you_mean, is_misspelt, missing_file_hint, nearest
+from linkwright.diagnostics import as_typed, did_you_mean, is_misspelt, missing_file_hint, nearest
 
 LINKS = ["base_link", "base_footprint", "left_wheel", "right_wheel"]
 
@@ -71,6 +71,12 @@ def test_an_address_is_told_that_nothing_is_fetched(tmp_path, address):
     hint = "files are not fetched from the network: download it, and name the file"
     assert missing_file_hint(Path(address)) == hint
     assert missing_file_hint(tmp_path / address) == hint
+    assert as_typed(Path(address)) == as_typed(tmp_path / address) == as_typed(address) == address
+
+
+@pytest.mark.parametrize("path", ["a/b.urdf", "/a/b.urdf", "//server/b.urdf", "a:/b", "http/b.urdf", "C:\\a\\b.urdf"])
+def test_a_path_is_shown_as_it_is(path):
+    assert as_typed(path) == path
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from linkwright.diagnostics.phrase import (
 from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_colour
 from linkwright.diagnostics.source import SourceText, Span
 from linkwright.diagnostics.suggest import (
+    as_typed,
     did_you_mean,
     is_misspelt,
     missing_file_hint,
@@ -32,6 +33,7 @@ __all__ = [
     "Severity",
     "SourceText",
     "Span",
+    "as_typed",
     "counted",
     "did_you_mean",
     "display_path",

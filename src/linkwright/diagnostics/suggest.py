@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 _LISTED = 8
 _ADDRESSES = ("http:", "https:", "ftp:")
+_ADDRESS = re.compile(r"(?:^|/)((?:https?|ftp):)/+(.+)")
 _MOST_COMPARED = 1_000
 """Of more names than these, only those are compared that begin alike and are about as long."""
 _WORD = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
@@ -136,6 +137,13 @@ def _parts(name: str) -> tuple[str, str]:
     """The name of a file without its ending, and the ending: that of 'robot.urdf.xacro' is '.urdf.xacro'."""
     dot = name.find(".", 1)
     return (name, "") if dot < 0 else (name[:dot], name[dot:])
+
+
+def as_typed(path: str | os.PathLike[str]) -> str:
+    """Return a path as its user typed it: an address of the web that was taken for a path has both slashes again."""
+    shown = os.fspath(path)
+    address = _ADDRESS.search(shown)
+    return shown if address is None else f"{address[1]}//{address[2]}"
 
 
 def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -> Phrase:

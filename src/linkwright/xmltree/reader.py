@@ -9,7 +9,16 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NoReturn
 from xml.parsers.expat import ExpatError, ParserCreate
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, foreign, missing_file_hint, phrase
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    SourceText,
+    as_typed,
+    foreign,
+    missing_file_hint,
+    phrase,
+)
 from linkwright.input_files import LARGEST_TEXT, NoWriterError, read_file
 from linkwright.xmltree.decoding import decoded, unsaved
 from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
@@ -61,7 +70,7 @@ def read_bytes(path: str | Path) -> bytes:
     try:
         data = read_file(path, LARGEST_TEXT)
     except FileNotFoundError:
-        message = phrase("no such file: '{path}'", path=path)
+        message = phrase("no such file: '{path}'", path=as_typed(path))
         raise LinkwrightError(Diagnostic("XML101", message, hint=_missing(path))) from None
     except IsADirectoryError:
         message = phrase("'{path}' is a folder, not a file", path=path)

@@ -13,6 +13,7 @@ from linkwright.diagnostics import (
     Phrase,
     SourceText,
     Span,
+    as_typed,
     did_you_mean,
     display_path,
     foreign,
@@ -118,7 +119,7 @@ def read_launch_file(path: Path) -> SourceText:
         return SourceText(name, read_text(path, "utf-8-sig"))
     except FileNotFoundError as error:
         hint = missing_file_hint(path, is_launch_file_name)
-        message = phrase("launch file '{shown}' does not exist", shown=shown)
+        message = phrase("launch file '{shown}' does not exist", shown=as_typed(shown))
         raise error_at(None, "LAUNCH101", message, hint, ros_error=error) from error
     except IsADirectoryError as error:
         hint = missing_file_hint(path / "_", is_launch_file_name)
