@@ -7,9 +7,26 @@ starts with offsets, is placed by whoever evaluates an element's text, and grows
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
 from linkwright.diagnostics import Note, Phrase, SourceText, Span, phrase, term
 from linkwright.xmltree import Element, Text
+
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_BLOCK = re.compile(r"""<(/?)xacro:(if|unless|macro)\b(?:[^>"'/]|"[^"]*"|'[^']*'|/(?!>))*(/?)>""")
+"""A tag that begins or ends a condition or a macro."""
+
+
+class Elsewhere(NamedTuple):
+    """Where a file defines a name that is not in effect where it is wanted.
+
+    Attributes:
+        note: says so.
+        hint: how to mend it, where that hangs on why it is not in effect.
+    """
+
+    note: Note
+    hint: Phrase | None = None
 
 
 class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no part of the public errors
@@ -64,14 +81,15 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         """The text is none that was written; the element stands for it."""
         self._place(element.source, element.span())
 
-    def elsewhere(self) -> list[Note]:
+    def elsewhere(self) -> Elsewhere | None:
         """Where the missing property is defined in the same file, in vain for this place."""
         if self.missing is None or self.source is None:
-            return []
+            return None
         if self.hint is not None and self.hint.startswith(f"'{self.missing}' is defined"):
-            return []
-        found = definition_elsewhere(self.source, "property", self.missing)
-        if not found and (bare := definition_elsewhere(self.source, "property", self.missing, prefix="")):
+            return None
+        used_at = None if self.span is None else self.source.offset(self.span.line, self.span.column)
+        found = definition_elsewhere(self.source, "property", self.missing, used_at=used_at)
+        if found is None and (bare := definition_elsewhere(self.source, "property", self.missing, prefix="")):
             self.hint = phrase("write <xacro:property where it is defined: without its prefix the tag means nothing")
             return bare
         return found
@@ -84,25 +102,38 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         self.start = self.end = None
 
 
-def definition_elsewhere(source: SourceText, tag: str, name: str, prefix: str = "xacro:") -> list[Note]:
-    """A note on where a file defines a name, when that is not in effect where it is wanted."""
+def definition_elsewhere(
+    source: SourceText, tag: str, name: str, prefix: str = "xacro:", used_at: int | None = None
+) -> Elsewhere | None:
+    """Return where a file defines a name, when that is not in effect where it is wanted, at an offset."""
+    text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     pattern = rf"""<{prefix}{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*["']{re.escape(name)}["']"""
-    match = re.search(pattern, source.text)
+    match = re.search(pattern, text)
     if match is None:
-        return []
-    span = source.span(match.start(), match.start() + len(f"<{prefix}{tag}"))
+        return None
+    told = {"tag": term(tag), "name": name}
+    hint = None
     if not prefix:
-        return [
-            Note(phrase("a {tag} '{name}' is written here without the prefix 'xacro:'", tag=term(tag), name=name), span)
-        ]
-    return [
-        Note(
-            phrase(
-                "a {tag} '{name}' is defined here, which is too late or not in scope there", tag=term(tag), name=name
-            ),
-            span,
-        )
-    ]
+        message = phrase("a {tag} '{name}' is written here without the prefix 'xacro:'", **told)
+    elif used_at is not None and match.start() < used_at and _is_conditional(text[: match.start()]):
+        message = phrase("a {tag} '{name}' is defined here, under a condition that does not hold", **told)
+        hint = phrase("use it under the same condition, or define it for the other case, too")
+    else:
+        message = phrase("a {tag} '{name}' is defined here, which is too late or not in scope there", **told)
+    span = source.span(match.start(), match.start() + len(f"<{prefix}{tag}"))
+    return Elsewhere(Note(message, span), hint)
+
+
+def _is_conditional(before: str) -> bool:
+    """Whether what follows a text stands in a condition, and in no macro, whose definitions are its own."""
+    open_tags: list[str] = []
+    for closing, tag, single in _BLOCK.findall(before):
+        if closing:
+            while open_tags and open_tags.pop() != tag:
+                pass
+        elif not single:
+            open_tags.append(tag)
+    return bool(open_tags) and "macro" not in open_tags
 
 
 def attribute_part(element: Element, name: str, start: int | None, end: int | None) -> Span | None:

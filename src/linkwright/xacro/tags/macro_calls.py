@@ -127,9 +127,10 @@ class _Call:
         elif hint is None:
             hint = phrase("no macro is defined before this; is an include missing?")
         span = node.span() if self._written_in is None else node.attribute_span(self._written_in)
-        notes = definition_elsewhere(node.source, "macro", name) if node.source else []
-        if notes and not known:
-            hint = phrase("move its definition above this call")
+        elsewhere = definition_elsewhere(node.source, "macro", name, used_at=node.offset) if node.source else None
+        notes = () if elsewhere is None else (elsewhere.note,)
+        if elsewhere is not None and not known:
+            hint = elsewhere.hint or phrase("move its definition above this call")
         self._expander.fail_at("XAC401", phrase("there is no macro '{name}'", name=name), node, span, hint, *notes)
 
     # binding the parameters
