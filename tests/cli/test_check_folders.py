@@ -264,6 +264,19 @@ def test_a_missing_file_is_told(here, capsys):
     assert "there are: b.urdf" in capsys.readouterr().err
 
 
+def test_an_address_is_shown_as_it_was_typed(here, capsys):
+    for command in ("check", "xacro", "convert", "launch"):
+        assert main([command, "https://example.org/r.urdf"]) == 1
+        assert "'https://example.org/r.urdf'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("manifest", "is_told"), [("web/package.json", False), ("package.json", True)])
+def test_a_web_page_in_a_package_reads_urdf_in_its_own_way(here, manifest, is_told):
+    write(here, {"package.xml": "<package/>", manifest: "{}", "web/public/robot.urdf": GOOD, "urdf/robot.urdf": GOOD})
+    found = [path.parent.name for path in find_targets([here]).files]
+    assert found == (["urdf", "public"] if is_told else ["urdf"])
+
+
 def test_a_folder_with_nothing_in_it_is_told(here, capsys):
     (here / "empty").mkdir()
     assert main(["check", "empty"]) == 1

@@ -156,7 +156,9 @@ def test_a_visual_without_any_extent_marks_a_place(tmp_path):
 
 
 def test_an_attribute_that_keeps_isaac_gym_from_merging_links_is_known(told):
-    joint = '<joint name="j" type="fixed" dont_collapse="true" keep="1"><parent link="a"/><child link="b"/></joint>'
+    joint = (
+        '<joint name="j" type="fixed" dont_collapse="true" origin="0 0 0"><parent link="a"/><child link="b"/></joint>'
+    )
     assert told(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW108") == ["LW108"]
 
 
@@ -225,3 +227,84 @@ def test_what_git_ignores_is_made_before_it_is_installed(tmp_path, ignored, code
     )
     found = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
     assert [each.code for each in found] == codes
+
+
+@pytest.mark.parametrize(("needs", "codes"), [("q", ["LW724"]), ("p", []), ("helper", [])])
+def test_a_package_that_depends_on_this_one_cannot_be_declared(tmp_path, needs, codes):
+    depend = "<exec_depend>{}</exec_depend>"
+    for name, more in (("p", ""), ("q", depend.format(needs)), ("helper", depend.format("p"))):
+        (tmp_path / name).mkdir()
+        manifest = MANIFEST.format(more=more).replace("<name>p<", f"<name>{name}<")
+        (tmp_path / name / "package.xml").write_text(manifest)
+    (tmp_path / "q/wheel.xacro").write_text("<robot/>")
+    include = '<xacro:include filename="$(find q)/wheel.xacro"/>'
+    (tmp_path / "p/r.urdf.xacro").write_text(robot(f'{include}<link name="a"/>', PREFIX))
+    (tmp_path / "p/launch").mkdir()
+    (tmp_path / "p/launch/a.launch.py").write_text("def generate_launch_description():\n    Node(package='q')\n")
+    packages = {name: tmp_path / name for name in ("p", "q", "helper")}
+    settings = Settings(select=("LW724", "LW848"))
+    found = examine(tmp_path / "p/r.urdf.xacro", packages=packages, settings=settings).diagnostics
+    assert [each.code for each in found] == [*codes, *(["LW848"] if codes else [])]
+
+
+@pytest.mark.parametrize(
+    ("inside", "codes"),
+    [
+        ("<max_contacts>4</max_contacts>", ["LW107"]),
+        ("<weight>3</weight>", ["LW107"]),
+        ("<arm_origin/>", ["LW107"]),
+        ("<acme_controller gain='1'/>", []),
+        ("<visual axis='0 0 1'><geometry><sphere radius='1'/></geometry></visual>", ["LW108"]),
+        ("<visual acme_layer='2'><geometry><sphere radius='1'/></geometry></visual>", []),
+    ],
+)
+def test_names_that_are_of_no_format_are_a_vendors_own(told, inside, codes):
+    assert told(robot(f'<link name="base">{inside}</link>'), "LW107", "LW108") == codes
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "codes"),
+    [(-0.01, 0.088, []), (-0.01, 0.1, ["LW240", "LW240"]), (-0.01, 0.09, ["LW240"]), (-0.05, 0.088, ["LW240"])],
+)
+def test_a_gripper_that_presses_has_no_soft_limit_where_it_is_closed(told, lower, upper, codes):
+    soft = f'soft_lower_limit="{lower}" soft_upper_limit="{upper}"'
+    limits = f'<limit lower="0" upper="0.09" effort="1" velocity="1"/><safety_controller k_velocity="1" {soft}/>'
+    joint = f'<joint name="j" type="prismatic"><parent link="base"/><child link="a"/>{limits}</joint>'
+    assert told(robot(f'<link name="base"/><link name="a"/>{joint}'), "LW240") == codes
+
+
+@pytest.mark.parametrize("big", ["a", "b"])
+def test_of_two_parts_that_are_not_connected_one_is_told(told, big):
+    text = robot(f'<link name="a"/><link name="b"/>{moving("c", "", parent=big)}')
+    assert told(text, "LW103", "URDF152") == ["URDF152"]
+
+
+@pytest.mark.parametrize(
+    ("cmake", "severity"),
+    [
+        ("xacro_add_files(urdf/arm.urdf.xacro TARGET t INSTALL DESTINATION urdf)", "INFO"),
+        ("configure_file(urdf/arm.urdf.in urdf/arm.urdf)", "INFO"),
+        ("add_custom_command(OUTPUT urdf/arm.urdf COMMAND make_arm)", "INFO"),
+        ("xacro_add_files(urdf/base.urdf.xacro TARGET t)", "ERROR"),
+    ],
+)
+def test_a_file_that_the_build_makes_is_not_missing(tmp_path, cmake, severity):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    (tmp_path / "CMakeLists.txt").write_text(f"project(p)\n{cmake}\n")
+    (tmp_path / "urdf").mkdir()
+    include = '<xacro:include filename="$(find p)/urdf/arm.urdf"/>'
+    (tmp_path / "r.urdf.xacro").write_text(robot(f'<link name="a"/>{include}', PREFIX))
+    found = examine(tmp_path / "r.urdf.xacro", packages={"p": tmp_path}).diagnostics
+    assert [each.severity.name for each in found if each.code == "XML101"] == [severity]
+
+
+@pytest.mark.parametrize(("name", "severity"), [("urdf/arm.xacro", "WARNING"), ("urdf/leg.xacro", "ERROR")])
+def test_a_file_that_another_program_finds_from_the_packages_folder(tmp_path, name, severity):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    (tmp_path / "urdf").mkdir()
+    (tmp_path / "urdf/arm.xacro").write_text("<robot/>")
+    text = robot(f'<link name="a"/><xacro:include filename="{name}"/>', PREFIX)
+    (tmp_path / "urdf/r.urdf.xacro").write_text(text)
+    (found,) = (each for each in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if each.code == "XML101")
+    assert found.severity.name == severity
+    assert ("write 'arm.xacro'" in (found.hint or "")) is (severity == "WARNING")

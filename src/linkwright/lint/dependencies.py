@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST
@@ -59,18 +61,36 @@ def brings(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
         package: the name of the other package.
         finder: where packages are.
     """
+    return any(
+        name == package or any(name == one and package.startswith(family) for one, family in _FAMILIES)
+        for name in _everything_below(manifest, finder)
+    )
+
+
+def would_make_a_circle(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
+    """Return whether a package depends on the one of a manifest, so that colcon would refuse the way back.
+
+    Args:
+        manifest: of the package that uses the other.
+        package: the name of the other package.
+        finder: where packages are.
+    """
+    other = _manifest_of(package, finder)
+    return other is not None and manifest.name in _everything_below(other, finder)
+
+
+def _everything_below(manifest: Manifest, finder: PackageFinder) -> Iterator[str]:
+    """The names of all packages that a manifest depends on, directly or through those that are here to be read."""
     waiting, met = [manifest], {manifest.name}
     while waiting and len(met) < _MOST:
         for dependency in waiting.pop().dependencies:
             if dependency.tag in ("test_depend", "doc_depend") or dependency.name in met:
                 continue
             met.add(dependency.name)
-            if any(dependency.name == one and package.startswith(family) for one, family in _FAMILIES):
-                return True
+            yield dependency.name
             read = _manifest_of(dependency.name, finder)
             if read is not None:
                 waiting.append(read)
-    return package in met
 
 
 def _manifest_of(package: str, finder: PackageFinder) -> Manifest | None:

@@ -12,6 +12,7 @@ from linkwright.descriptions import examine as examine_description
 from linkwright.descriptions.description import TRUE_OF_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
 from linkwright.lint.finding import Finding
+from linkwright.lint.missing_files import judged_files
 from linkwright.lint.missing_packages import judged
 from linkwright.lint.registry import all_rules, find_rule, unusable_rules
 from linkwright.lint.rule import Rule, Scope
@@ -205,7 +206,7 @@ def _finder(path: Path, packages: Packages) -> PackageFinder:
 
 def as_set(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Diagnostic]:
     """The diagnostics that the settings let through, as severe as they say."""
-    for diagnostic in judged(diagnostics):
+    for diagnostic in judged_files(judged(diagnostics)):
         if _is_wanted(diagnostic, settings):
             severity = settings.severity_of(diagnostic.code, diagnostic.severity)
             yield diagnostic if severity is diagnostic.severity else replace(diagnostic, severity=severity)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
@@ -23,8 +24,8 @@ _LONGEST = 200_000
 def is_made_later(package: PackageContext, path: str) -> bool:
     """Return whether a file that a package lacks is likely to be made by a program or a user.
 
-    So it is where git ignores it, where it is a map (which mapping saves), and where another file of the package that
-    is no launch file speaks of it: a script that writes it, a README that says how to make it.
+    So it is where git ignores it, where CMake makes it, where it is a map (which mapping saves), and where another file
+    of the package that is no launch file speaks of it: a script that writes it, a README that says how to make it.
 
     Args:
         package: the package.
@@ -33,6 +34,7 @@ def is_made_later(package: PackageContext, path: str) -> bool:
     return (
         not _MAPS.isdisjoint(path.split("/")[:-1])
         or is_ignored_by_git(package.folder / path)
+        or _is_built(package, path.rpartition("/")[2])
         or _is_told_of(package, path.rpartition("/")[2])
     )
 
@@ -82,6 +84,17 @@ def _names(pattern: str, path: str) -> bool:
         return any(fnmatchcase(each.rpartition("/")[2], pattern) for each in above)
     pattern = pattern.lstrip("/").removeprefix("**/")
     return any(fnmatchcase(each, pattern) for each in above)
+
+
+def _is_built(package: PackageContext, name: str) -> bool:
+    """Whether ``CMakeLists.txt`` has xacro expand a file to one of that name, or configures one."""
+    source = package.text("CMakeLists.txt")
+    made = re.escape(name)
+    return source is not None and bool(
+        re.search(rf"\bxacro_add_\w+\s*\([^)]*\b{made}(?:\.xacro)?\b", source.text)
+        or re.search(rf"\bconfigure_file\s*\([^)]*\b{made}(?:\.in)?\b", source.text)
+        or re.search(rf"\bOUTPUT\s[^)]*\b{made}\b", source.text)
+    )
 
 
 def _is_told_of(package: PackageContext, name: str) -> bool:

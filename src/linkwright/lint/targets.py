@@ -19,6 +19,8 @@ _URDF, _XACRO = ".urdf", ".xacro"
 _WHOLE = (_URDF, ".world", ".sdf")
 """Endings of files that describe something by themselves."""
 _EMPTY_FILE = "XML105"
+_WEB_PAGE = "package.json"
+"""What the folder of a program in JavaScript has."""
 _OTHER_FORMATS = (".srdf.xacro", ".sdf.xacro", ".world.xacro", ".launch.xacro")
 _INCLUDED = re.compile(r"""<xacro:include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""")
 _ARGUMENT = re.compile(r"<xacro:arg\b[^>]*>")
@@ -52,7 +54,8 @@ def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
     those below it, what is checked are the packages, that around the folder too, and, of the files that no other there
     includes, the ``.urdf``, ``.sdf`` and ``.world`` files and those ``.xacro`` files that describe a robot by
     themselves: their root is a ``<robot>`` with a name, and they hold more than declarations. Build products and hidden
-    folders are left out, and so are files with nothing in them.
+    folders are left out, and so are files with nothing in them, and web pages inside a package, which read URDF in
+    their own way.
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}
@@ -77,6 +80,9 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
     packages: list[Path] = []
     for place, folders, names in os.walk(folder):
         if not IGNORE_MARKERS.isdisjoint(names):
+            folders.clear()
+            continue
+        if _WEB_PAGE in names and MANIFEST not in names and packages and Path(place).is_relative_to(packages[-1]):
             folders.clear()
             continue
         folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)

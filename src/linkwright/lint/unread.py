@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from linkwright.diagnostics import Span
+from linkwright.diagnostics import Span, words_of
+from linkwright.lint.extension_names import CHILDREN
 from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.structure import EXTENSIONS, Place
 from linkwright.lint.subject import Subject
@@ -12,10 +13,8 @@ from linkwright.xmltree import Element
 
 INNER_EXTENSIONS = frozenset({"contact", "sensor", "verbose", "self_collision_checking", "plugin", "gazebo"})
 """Elements of other tools inside of links and joints."""
-EXTENSION_ATTRIBUTES = frozenset(
-    {"D", "K", "mu_coulomb", "mu_viscous", "type", "id", "reference_position", "unit", "dont_collapse"}
-)
-"""Attributes of other tools, such as those of Franka's ``<dynamics>``, and what keeps Isaac Gym from merging links."""
+_KINDS = frozenset({"type"})
+"""Attributes of URDF that other tools give to more elements, such as Franka's ``<dynamics>``."""
 
 _OTHER_ELEMENTS = {
     "pose": "origin",
@@ -60,6 +59,38 @@ def _homes() -> dict[str, tuple[str, ...]]:
 
 
 HOMES = _homes()
+
+
+def _attributes() -> frozenset[str]:
+    """The attributes that some element of URDF has."""
+    found: set[str] = set()
+    waiting: list[ElementRule] = [schema.ROBOT]
+    while waiting:
+        rule = waiting.pop()
+        found.update(each.name for each in rule.attributes)
+        waiting.extend(rule.children)
+    return frozenset(found)
+
+
+_WORDS_FOR_MASS = frozenset({"weight", "density"})
+_OF_OTHER_FORMATS = frozenset(tag for tags in CHILDREN.values() for tag in tags)
+_TELLING_ELEMENTS = frozenset({*HOMES, *_OTHER_ELEMENTS, *_OF_OTHER_FORMATS, *_WORDS_FOR_MASS})
+_TELLING_ATTRIBUTES = (
+    frozenset({*_attributes(), *HOMES, *_OTHER_ELEMENTS, *_OTHER_ATTRIBUTES, *_WORDS_FOR_MASS}) - _KINDS
+)
+
+
+def is_expected_element(tag: str) -> bool:
+    """Return whether an author expects something of an element here: URDF or a format around it has such words.
+
+    Any other name is somebody's own, such as what a vendor's software reads.
+    """
+    return tag in _TELLING_ELEMENTS or not HOMES.keys().isdisjoint(words_of(tag))
+
+
+def is_expected_attribute(name: str) -> bool:
+    """Return whether an author expects something of an attribute here: some element of URDF is or has one like it."""
+    return name.casefold() in _TELLING_ATTRIBUTES
 
 
 def told_by_reader(subject: Subject) -> dict[Span | None, str]:

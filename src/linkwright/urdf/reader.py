@@ -133,6 +133,8 @@ def _explain_no_links(root: Element, extensions: list[Element], findings: UrdfRe
     macro = re.search(r"<xacro:macro\s[^>]*?name\s*=\s*[\"']([^\"'\s]+)", text)
     if any(element.tag.startswith("xacro:") for element in extensions):
         hint = phrase("expand the file with xacro first")
+    elif any(element.tag == "include" for element in extensions):
+        hint = phrase("write <xacro:{tag} ...>", tag="include")
     elif macro:
         hint = phrase(
             "it only defines macros: include it in another file and call one there, <xacro:{macro} .../>",

@@ -14,6 +14,8 @@ from linkwright.urdf import Joint
 from linkwright.xmltree import Element
 
 _SLACK = 1e-6
+_LITTLE = 0.25
+"""Of the range: so far beyond one end is a choice, to leave that end to the mechanical stop."""
 
 
 class SoftLimitsOutside(Rule):
@@ -22,7 +24,8 @@ class SoftLimitsOutside(Rule):
     ## Why
 
     A safety controller begins to act at the soft limits, to stop the joint before the limits. Outside of them it never
-    acts.
+    acts. A soft limit that lies a little beyond one end and not beyond the other is left alone: grippers that press on
+    what they hold, such as PR2's, leave that end to the mechanical stop.
 
     ## Example
 
@@ -50,9 +53,13 @@ class SoftLimitsOutside(Rule):
             lower, upper = joint.limit.lower, joint.limit.upper
             if not lower < upper:
                 continue
-            if "soft_lower_limit" in safety.attributes and joint.safety.soft_lower_limit < lower - _SLACK:
+            below = lower - joint.safety.soft_lower_limit if "soft_lower_limit" in safety.attributes else 0
+            above = joint.safety.soft_upper_limit - upper if "soft_upper_limit" in safety.attributes else 0
+            if min(below, above) < -_SLACK and max(below, above) <= _LITTLE * (upper - lower):
+                continue
+            if below > _SLACK:
                 yield self._outside(joint, safety, "soft_lower_limit", joint.safety.soft_lower_limit, "lower", lower)
-            if "soft_upper_limit" in safety.attributes and joint.safety.soft_upper_limit > upper + _SLACK:
+            if above > _SLACK:
                 yield self._outside(joint, safety, "soft_upper_limit", joint.safety.soft_upper_limit, "upper", upper)
 
     def _outside(self, joint: Joint, safety: Element, name: str, soft: float, end: str, limit: float) -> Diagnostic:

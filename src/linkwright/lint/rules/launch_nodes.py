@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
 from linkwright.extensions import extensions
-from linkwright.lint.dependencies import brings, is_always_installed
+from linkwright.lint.dependencies import brings, is_always_installed, would_make_a_circle
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
@@ -144,7 +144,8 @@ class UndeclaredLaunchDependency(Rule):
     ## Why
 
     rosdep installs what `package.xml` names. On a machine where nobody installed the others by hand, the launch fails.
-    Left out are the packages of every ROS installation, such as `launch_ros`, and those that declared packages bring.
+    Left out are the packages of every ROS installation, such as `launch_ros`, those that declared packages bring, and
+    those that depend on this package themselves, which cannot be declared.
 
     ## Example
 
@@ -178,6 +179,7 @@ class UndeclaredLaunchDependency(Rule):
             for name, note in _used_packages(package).items()
             if not (is_always_installed(name) or manifest.declares(name) or brings(manifest, name, subject.finder))
             and _meant(name, package, subject) is None
+            and not would_make_a_circle(manifest, name, subject.finder)
         }
         if not missing:
             return

@@ -9,8 +9,8 @@ from linkwright.lint.fix import rename_attribute
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.unread import (
-    EXTENSION_ATTRIBUTES,
     attribute_name_span,
+    is_expected_attribute,
     is_misspelt,
     meant_attribute,
     told_by_reader,
@@ -62,12 +62,12 @@ class MisspeltAttribute(Rule):
 
 
 class UnknownAttribute(Rule):
-    """An attribute that URDF does not know.
+    """An attribute on an element of URDF that does not have it.
 
     ## Why
 
-    urdfdom passes over it. Either it is meant for another tool, or the author expects something that does not happen.
-    Attributes with a prefix and well-known ones of other tools are left alone.
+    urdfdom passes over it, and what its author expects does not happen. Attributes with a prefix, and names that URDF
+    has nowhere, such as those that a vendor's software reads, are left alone.
 
     ## Example
 
@@ -89,7 +89,9 @@ class UnknownAttribute(Rule):
         """Every attribute nobody reads that is like nothing the element has."""
         told = told_by_reader(subject)
         for place, attribute in subject.structure.unknown_attributes:
-            if attribute in EXTENSION_ATTRIBUTES or meant_attribute(place, attribute) is not None:
+            if not is_expected_attribute(attribute):
+                continue
+            if meant_attribute(place, attribute) is not None:
                 continue
             if f"'{attribute}'" in told.get(place.element.span(), ""):
                 continue

@@ -12,6 +12,7 @@ from linkwright.lint.unread import (
     HOMES,
     INNER_EXTENSIONS,
     inside,
+    is_expected_element,
     is_misspelt,
     meant_element,
     told_by_reader,
@@ -110,12 +111,13 @@ class MisplacedElement(Rule):
 
 
 class UnknownElement(Rule):
-    """An element inside a link or joint that URDF does not know.
+    """An element of another format inside a link or joint, where URDF has none.
 
     ## Why
 
-    urdfdom passes over it. Either it is meant for another tool, or the author expects something that does not happen.
-    Elements directly in `<robot>` and well-known ones of other tools are left alone.
+    urdfdom passes over it, and what its author expects does not happen: SDF's `<max_contacts>` has no effect in a
+    `<collision>`. Elements directly in `<robot>`, and names that are of no format around URDF, such as those that a
+    vendor's software reads, are left alone.
 
     ## Example
 
@@ -140,6 +142,8 @@ class UnknownElement(Rule):
         told = told_by_reader(subject)
         for place, child in subject.structure.unknown_elements:
             if place.rule is schema.ROBOT or child.tag in INNER_EXTENSIONS or child.tag in HOMES:
+                continue
+            if not is_expected_element(child.tag):
                 continue
             if meant_element(place.rule, child) is None and child.span() not in told:
                 known = ", ".join(f"<{rule.tag}>" for rule in place.rule.children)

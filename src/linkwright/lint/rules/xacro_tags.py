@@ -9,6 +9,7 @@ from itertools import product
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
+from linkwright.lint.dependencies import would_make_a_circle
 from linkwright.lint.fix import Fix, add_attribute, rename_element, replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.xacro_rule import XacroRule
@@ -269,14 +270,14 @@ class IncludeOutsidePackage(XacroRule):
                         yield self.report(message, include.element, "filename", hint=hint)
 
 
-class UndeclaredPackage(XacroRule):
+class UndeclaredPackage(Rule):
     """``$(find ...)`` names a package that ``package.xml`` does not depend on.
 
     ## Why
 
     rosdep and colcon know of dependencies from `package.xml` alone: on a fresh machine the package is not installed,
     and the expansion fails. Where a condition stands around every use, the package may be an extra, and the finding is
-    an information.
+    an information. A package that depends on this one itself cannot be declared and is left out.
 
     ## Example
 
@@ -295,8 +296,12 @@ class UndeclaredPackage(XacroRule):
 
     code = "LW724"
     name = "undeclared-package"
+    holds_for_libraries = True
 
-    def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+    def check(self, subject: Subject) -> Iterator[Diagnostic]:
+        if subject.expansion is None:
+            return
+        facts = subject.xacro
         package = facts.package
         if package is None or package.manifest is None:
             return
@@ -309,6 +314,8 @@ class UndeclaredPackage(XacroRule):
                     if name in said or package.manifest.declares(name) or use.attribute is None:
                         continue
                     said.add(name)
+                    if would_make_a_circle(package.manifest, name, subject.finder):
+                        continue
                     span = attribute_part(use.element, use.attribute, at, at + len(name))
                     message = phrase(
                         "the package '{name}' is used here, and the package.xml of '{package_name}' does not name it",

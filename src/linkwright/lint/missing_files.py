@@ -1,0 +1,52 @@
+"""Included files that are not here although nobody made a mistake: the build makes them, or another program looks."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, Severity, phrase
+from linkwright.diagnostics.phrase import as_phrase
+from linkwright.lint.made_files import is_made_later
+from linkwright.lint.package import find_package
+
+_MISSING = "XML101"
+
+
+def judged_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The diagnostics; a missing file that the build makes is an information.
+
+    One that is found from the folder of the package, where a program of its own may look, is a warning.
+    """
+    for each in diagnostics:
+        if each.code != _MISSING or each.span is None or each.severity is not Severity.ERROR:
+            yield each
+        else:
+            yield _of_built(each) or _of_package_folder(each) or each
+
+
+def _of_built(diagnostic: Diagnostic) -> Diagnostic | None:
+    path = _path(diagnostic)
+    package = find_package(path.parent)
+    if package is None or not is_made_later(package, path.relative_to(package.folder).as_posix()):
+        return None
+    hint = phrase("the build or a program makes it; what needs it is left out until then")
+    return replace(diagnostic, severity=Severity.INFO, hint=hint)
+
+
+def _of_package_folder(diagnostic: Diagnostic) -> Diagnostic | None:
+    assert diagnostic.span is not None
+    folder = Path(diagnostic.span.file).absolute().parent
+    package = find_package(folder)
+    written = os.path.relpath(_path(diagnostic), folder)
+    if package is None or not (package.folder / written).is_file():
+        return None
+    beside = Path(os.path.relpath(package.folder / written, folder)).as_posix()
+    hint = phrase("xacro looks from the folder of this file: write '{path}'", path=beside)
+    return replace(diagnostic, severity=Severity.WARNING, hint=hint)
+
+
+def _path(diagnostic: Diagnostic) -> Path:
+    return Path(os.path.abspath(str(as_phrase(diagnostic.message).arguments.get("path", ""))))  # noqa: PTH100 - no links
