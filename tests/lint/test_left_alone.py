@@ -44,7 +44,9 @@ def test_a_model_for_dynamics_needs_no_shapes(told, inside, codes):
     assert told(robot(f'<link name="base"/>{moving("a", inside)}'), "LW102") == codes
 
 
-@pytest.mark.parametrize(("axis", "codes"), [("1.2e-16 0 -1", []), ("0.0001 0 -1", ["LW224"])])
+@pytest.mark.parametrize(
+    ("axis", "codes"), [("1.2e-16 0 -1", []), ("1.2e-7 0 -1.0000002", []), ("0.0001 0 -1", ["LW224"])]
+)
 def test_an_axis_that_only_doubles_tilt(told, axis, codes):
     assert told(robot(f'<link name="base"/>{moving("a", "", axis=axis)}'), "LW224") == codes
 
@@ -308,3 +310,62 @@ def test_a_file_that_another_program_finds_from_the_packages_folder(tmp_path, na
     (found,) = (each for each in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if each.code == "XML101")
     assert found.severity.name == severity
     assert ("write 'arm.xacro'" in (found.hint or "")) is (severity == "WARNING")
+
+
+@pytest.mark.parametrize(("more", "codes"), [("", ["LW102"]), ('<ros2_control name="c" type="system"/>', [])])
+def test_hardware_on_a_bench_has_no_shapes(told, more, codes):
+    assert told(robot(f'<link name="base"/>{moving("a", "")}{more}'), "LW102") == codes
+
+
+@pytest.mark.parametrize(("xyz", "codes"), [("0 0 0", []), ("0 0 1", ["LW105"])])
+def test_an_origin_that_would_move_nothing(told, xyz, codes):
+    assert told(robot(f'<link name="base"><origin xyz="{xyz}" rpy="0 0 0"/></link>'), "LW105") == codes
+
+
+def test_a_misplaced_element_belongs_where_it_stands_nearly(tmp_path):
+    (tmp_path / "r.urdf").write_text(robot('<link name="base"><material name="red"/></link>'))
+    (found,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW105",))).diagnostics
+    assert found.hint == "it belongs directly in <visual>"
+
+
+@pytest.mark.parametrize(
+    ("text", "codes"),
+    [
+        (f'<link name="rock">{BOX.format(1)}{inertial(0, 0)}</link>', []),
+        (f'<link name="rock">{BOX.format(1)}{inertial(0, 1)}</link>', ["LW302"]),
+        (f'<link name="base"/>{moving("rock", BOX.format(1) + inertial(0, 0))}', ["LW302"]),
+    ],
+)
+def test_scenery_of_one_link_never_moves(told, text, codes):
+    assert told(robot(text), "LW302") == codes
+
+
+@pytest.mark.parametrize(("second", "count"), [(1.0, 1), (2.0, 2)])
+def test_an_inertia_that_is_too_large_on_many_links_is_told_of_once(told, second, count):
+    fingers = moving("a", BOX.format(0.01) + inertial(0.01, 1.0)) + moving(
+        "b", BOX.format(0.02) + inertial(0.01, second)
+    )
+    assert told(robot(f'<link name="base">{BOX.format(1)}</link>{fingers}'), "LW324") == ["LW324"] * count
+
+
+@pytest.mark.parametrize(("call", "codes"), [("<!-- <xacro:m/> -->", []), ("<!-- <xacro:n/> -->", ["LW704"])])
+def test_an_include_whose_call_is_switched_off(told, call, codes):
+    part = f'<robot {PREFIX}><xacro:macro name="m"><link name="m"/></xacro:macro></robot>'
+    text = robot(f'<link name="base"/><xacro:include filename="part.xacro"/>{call}', PREFIX)
+    assert told(text, "LW704", name="r.urdf.xacro", part_dot_xacro=part) == codes
+
+
+@pytest.mark.parametrize(("body", "codes"), [("", []), ('<link name="m"/>', ["LW705"])])
+def test_an_empty_macro_takes_what_those_take_that_it_stands_for(told, body, codes):
+    macro = f'<xacro:macro name="m" params="sim">{body}</xacro:macro><xacro:m sim="1"/>'
+    assert told(robot(f'<link name="base"/>{macro}', PREFIX), "LW705", name="r.urdf.xacro") == codes
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"), [("robot_description", False), ("my_robot_descripton", True)], ids=["another", "misspelt"]
+)
+def test_a_package_of_ours_is_proposed_for_its_own_name_alone(tmp_path, name, hint):
+    mesh = f'<link name="l"><visual><geometry><mesh filename="package://{name}/a.stl"/></geometry></visual></link>'
+    (tmp_path / "r.urdf").write_text(robot(mesh))
+    (found,) = (each for each in examine(tmp_path / "r.urdf").diagnostics if each.code == "LW423")
+    assert ("my_robot_description" in (found.hint or "")) is hint

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from typing import TYPE_CHECKING
 
+from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.urdf import Inertial
 
 if TYPE_CHECKING:
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
 
 DIAGONAL = ("ixx", "iyy", "izz")
 PRODUCTS = ("ixy", "ixz", "iyz")
+_NAMED = 4
+"""So many other links are named."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,3 +83,9 @@ def flaw_of(inertial: Inertial) -> Flaw | None:
     if excess > validity.TOLERANCE:
         return Flaw("triangle", DIAGONAL[moments.index(max(moments))], excess)
     return None
+
+
+def name_others(names: Sequence[str]) -> Phrase:
+    """Name the other links that have the same tensor, a few of them."""
+    others = phrase("the others are {names}", names=quoted_names(names[:_NAMED]))
+    return phrase("{list}, ...", list=others) if len(names) > _NAMED else others

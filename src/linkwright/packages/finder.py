@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from pathlib import Path
 
 import linkwright
-from linkwright.diagnostics import Phrase, display_path, joined, phrase
+from linkwright.diagnostics import Phrase, display_path, is_misspelt, joined, phrase
 from linkwright.packages import ament, uri
 from linkwright.packages.ament import install_prefix
 from linkwright.packages.errors import PackageNotFoundError
@@ -84,7 +84,9 @@ class PackageFinder:
         """
         share = self.find(name)
         if share is None:
-            raise PackageNotFoundError(name, self._searched(), self.packages())
+            ours = self._shipped()
+            known = [each for each in self.packages() if each not in ours or is_misspelt(name, [each])]
+            raise PackageNotFoundError(name, self._searched(), known)
         return share
 
     def packages(self) -> dict[str, Path]:

@@ -9,6 +9,7 @@ from linkwright.lint.finding import Finding
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
+from linkwright.lint.tensors import DIAGONAL, PRODUCTS
 from linkwright.lint.walk import is_for_simulation
 from linkwright.urdf import Inertial, Link
 from linkwright.xmltree import Element
@@ -117,7 +118,7 @@ class ZeroMass(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, inertial in links_with_inertial(subject):
-            if inertial.mass == 0 and not _is_frame(subject, link):
+            if inertial.mass == 0 and not _is_frame(subject, link) and not _is_scenery(subject, inertial):
                 yield self.finding(link.name, inertial)
 
     def finding(self, name: str, inertial: Inertial) -> Finding:
@@ -300,6 +301,11 @@ def _is_frame(subject: Subject, link: Link) -> bool:
     if any(member.inertial is not None and member.inertial.mass > 0 for member in members):
         return True
     return body.joint is None and not any(member.visuals or member.collisions for member in members)
+
+
+def _is_scenery(subject: Subject, inertial: Inertial) -> bool:
+    """Whether a single link says by nothing but zeros that it never moves, as Bullet takes it."""
+    return len(subject.links) == 1 and not any(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
 
 
 def _is_broken(link: Link) -> bool:

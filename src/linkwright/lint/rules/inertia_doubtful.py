@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkwright.diagnostics import Diagnostic, Note, Severity, phrase, quoted_names
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.explanations import is_explained
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
 from linkwright.lint.subject import Subject
-from linkwright.lint.tensors import DIAGONAL, PRODUCTS
+from linkwright.lint.tensors import DIAGONAL, PRODUCTS, name_others
 from linkwright.urdf import Inertial, Link
 
 
@@ -57,9 +57,7 @@ class PlaceholderInertia(Rule):
             if not values[0] == values[1] == values[2]:
                 continue
             link, inertial = sharing[0]
-            others = phrase("the others are {names}", names=quoted_names(other.name for other, _ in sharing[1:5]))
-            if len(sharing) > 5:
-                others = phrase("{list}, ...", list=others)
+            others = name_others([other.name for other, _ in sharing[1:]])
             yield self.report(
                 phrase(
                     "link '{name}' has the same inertia as {count} links of other shapes",

@@ -5,7 +5,7 @@ A link's body may be larger than the link: what is fixed to it counts. Where a m
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import prod
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,7 @@ from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
 from linkwright.lint.subject import Subject
-from linkwright.lint.tensors import flaw_of
+from linkwright.lint.tensors import DIAGONAL, PRODUCTS, flaw_of, name_others
 from linkwright.urdf import Inertial, Link, Mesh
 
 if TYPE_CHECKING:
@@ -296,31 +296,33 @@ class InertiaTooLarge(Rule):
         from linkwright.geometry.validity import largest_moment_within
 
         factor = self.option(subject, "factor", float)
+        too_large: dict[tuple[float, ...], list[tuple[Link, Inertial, Bounds, float]]] = {}
         for link, inertial, bounds in subject.extents.measured:
-            largest = max(inertial.ixx, inertial.iyy, inertial.izz)
             limit = largest_moment_within(bounds.nearest(inertial.origin.xyz), bounds, inertial.mass)
-            if largest > factor * limit:
-                usual = _uniform(bounds, inertial.mass)
-                name = max(("ixx", "iyy", "izz"), key=lambda each: getattr(inertial, each))
-                yield self.report(
-                    phrase(
-                        "the inertia of link '{name}' is too large for its shapes: {largest:g} kg m2",
-                        name=link.name,
-                        largest=largest,
-                    ),
-                    part(inertial, "inertia"),
-                    name,
-                    notes=[
-                        Note(
-                            phrase(
-                                "{mass:g} kg within them have at most {limit:.2g} kg m2",
-                                mass=inertial.mass,
-                                limit=limit,
-                            )
-                        )
-                    ],
-                    hint=_COMPUTE if usual <= 0 or _is_made_up(inertial) else _unit_hint(largest / usual) or _COMPUTE,
-                )
+            if max(inertial.ixx, inertial.iyy, inertial.izz) > factor * limit:
+                alike = (inertial.mass, *(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS)))
+                too_large.setdefault(alike, []).append((link, inertial, bounds, limit))
+        for (link, inertial, bounds, limit), *others in too_large.values():
+            yield self._finding(link, inertial, bounds, limit, [other.name for other, *_ in others])
+
+    def _finding(
+        self, link: Link, inertial: Inertial, bounds: Bounds, limit: float, others: Sequence[str]
+    ) -> Diagnostic:
+        name = max(DIAGONAL, key=lambda each: getattr(inertial, each))
+        largest = getattr(inertial, name)
+        usual = _uniform(bounds, inertial.mass)
+        possible = phrase("{mass:g} kg within them have at most {limit:.2g} kg m2", mass=inertial.mass, limit=limit)
+        return self.report(
+            phrase(
+                "the inertia of link '{name}' is too large for its shapes: {largest:g} kg m2",
+                name=link.name,
+                largest=largest,
+            ),
+            part(inertial, "inertia"),
+            name,
+            notes=[Note(possible), *([Note(name_others(others))] if others else [])],
+            hint=_COMPUTE if usual <= 0 or _is_made_up(inertial) else _unit_hint(largest / usual) or _COMPUTE,
+        )
 
 
 class InertiaTooSmall(Rule):

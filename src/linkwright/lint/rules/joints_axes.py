@@ -14,8 +14,8 @@ from linkwright.lint.walk import joints, parts, shown, values
 from linkwright.urdf import Joint
 from linkwright.urdf.values import plain
 
-_NO_TILT = 1e-9
-"""Tilts up to this one, in rad, are what computing in doubles leaves; nothing can tell them from none."""
+_NO_TILT = 1e-6
+"""Tilts up to this one, in rad, are what a program's arithmetic leaves: a thousandth of a millimetre in a metre."""
 _MOVING = ("revolute", "continuous", "prismatic", "planar")
 _TOLERANCE = 1e-3
 

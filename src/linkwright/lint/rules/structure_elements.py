@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import rename_element
 from linkwright.lint.rule import Rule
+from linkwright.lint.structure import Place
 from linkwright.lint.subject import Subject
 from linkwright.lint.unread import (
     HOMES,
@@ -17,7 +18,9 @@ from linkwright.lint.unread import (
     meant_element,
     told_by_reader,
 )
+from linkwright.lint.walk import values
 from linkwright.urdf import schema
+from linkwright.xmltree import Element
 
 
 class MisspeltElement(Rule):
@@ -101,13 +104,26 @@ class MisplacedElement(Rule):
             homes = HOMES.get(child.tag, ())
             if not homes or child.span() in told or (place.rule.tag, child.tag) == ("collision", "material"):
                 continue
-            around = place.parent.tag if place.parent is not None else ""
-            listed = " or ".join(f"<{home}>" for home in ((around,) if around in homes else homes))
+            if child.tag == "origin" and _is_no_offset(child):
+                continue
+            listed = " or ".join(f"<{home}>" for home in _nearest_homes(homes, place))
             yield self.report(
                 phrase("<{tag}> in {place} is not read", tag=child.tag, place=inside(place)),
                 child,
                 hint=phrase("it belongs directly in {listed}", listed=listed),
             )
+
+
+def _is_no_offset(origin: Element) -> bool:
+    """Whether an origin would move nothing where it is read either."""
+    return not any(float(each) for name in ("xyz", "rpy") for each in values(origin, name))
+
+
+def _nearest_homes(homes: Sequence[str], place: Place) -> Sequence[str]:
+    """Those of the elements in which another is read that lie in the one where it stands, else the one around it."""
+    around = place.parent.tag if place.parent is not None else ""
+    inside = [home for home in homes if home in place.rule.child_rules]
+    return inside or ((around,) if around in homes else homes)
 
 
 class UnknownElement(Rule):

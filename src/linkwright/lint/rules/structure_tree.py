@@ -41,6 +41,8 @@ class NothingToSee(Rule):
         robot = subject.robot
         if robot is None or len(robot.links) < 2 or any(link.inertial for link in robot.links.values()):
             return  # one link, or a model for dynamics, which needs no shapes
+        if any(subject.elements("ros2_control")):
+            return  # hardware on a bench
         if not any(link.visuals or link.collisions for link in robot.links.values()) and not any(
             link.element is not None and (link.element.first("visual") or link.element.first("collision"))
             for link in robot.links.values()

@@ -22,6 +22,9 @@ from linkwright.xmltree import Element
 _SPEAKING = re.compile(r"\b(?:fatal|error|warning|message)\s*\(")
 """Functions that are called for what they do."""
 
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_CALL = re.compile(r"<xacro:([\w.-]+)")
+
 
 class UnusedProperty(XacroRule):
     """A property that nothing uses.
@@ -195,7 +198,7 @@ class UnusedInclude(XacroRule):
         for file in facts.own.values():
             for include in file.includes:
                 path = paths.get(id(include.element))
-                if path is not None and not _contributes(path, facts, paths):
+                if path is not None and not (_contributes(path, facts, paths) or _is_switched_off(path, facts)):
                     yield self.report(
                         phrase("nothing in '{name}' is used", name=Path(path).name),
                         include.element,
@@ -242,6 +245,8 @@ class UnusedMacroParameter(XacroRule):
             if file.has_bare_tags:
                 continue
             for macro in file.macros:
+                if next(macro.element.elements(), None) is None:
+                    continue  # an empty one that others of its name stand in for
                 yield from (each for name, each in self._of_macro(macro, file, facts) if name not in shared)
 
     def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
@@ -330,6 +335,14 @@ def _included_paths(facts: XacroFacts) -> dict[int, Path]:
             if len(matching) == 1 and "ns" not in include.element.attributes:
                 found[id(include.element)] = matching[0]
     return found
+
+
+def _is_switched_off(path: Path, facts: XacroFacts) -> bool:
+    """Whether a comment calls a macro of an included file, which its author can so switch on again."""
+    defined = {macro.name for macro in facts.files[path].macros} if path in facts.files else set()
+    texts = (file.document.source.text for file in facts.own.values() if file.document.source is not None)
+    comments = (comment for text in texts for comment in _COMMENT.findall(text))
+    return any(called in defined for comment in comments for called in _CALL.findall(comment))
 
 
 def _contributes(path: Path, facts: XacroFacts, paths: dict[int, Path]) -> bool:
