@@ -76,7 +76,7 @@ def would_make_a_circle(manifest: Manifest, package: str, finder: PackageFinder)
         finder: where packages are.
     """
     other = _manifest_of(package, finder)
-    return other is not None and manifest.name in _everything_below(other, finder)
+    return other is not None and any(name == manifest.name for name in _everything_below(other, finder))
 
 
 def _everything_below(manifest: Manifest, finder: PackageFinder) -> Iterator[str]:
