@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from launch.actions import GroupAction, OpaqueFunction
+from launch.actions import GroupAction, OpaqueFunction, SetEnvironmentVariable
+from launch.substitutions import FindExecutable
 
 from launch import LaunchContext, LaunchDescriptionEntity
 from linkwright.graph import Graph
@@ -54,16 +55,19 @@ class Simulators:
 
     Attributes:
         started: package, parameters and command line of each.
+        environments: the variables of each.
         spawned: what they were asked to spawn; None to end at once.
     """
 
     def __init__(self) -> None:
         self.started: list[tuple[str, dict[str, Any], list[str]]] = []
+        self.environments: list[dict[str, str]] = []
         self.spawned: list[Any] | None = None
 
     def entry_point(self, package: str) -> Any:
         def start(graph: Graph, options: NodeOptions) -> Server:
             self.started.append((package, options.parameters, options.arguments))
+            self.environments.append(dict(options.environment))
             return Server(graph, options, self.spawned)
 
         start.DEFAULT_NAME = Server.DEFAULT_NAME  # type: ignore[attr-defined]
@@ -223,8 +227,11 @@ async def test_commands_of_gazebo(
     assert action.return_code == 0
 
 
-async def test_gz_sim_as_a_command(launch: Callable[..., Any], simulators: Simulators) -> None:
-    await launch(ExecuteProcess(cmd=["gz", "sim", "-r", "-s", str(WORLD)]))
+@pytest.mark.parametrize(
+    "command", [["gz", "sim"], ["ruby", "/usr/bin/ign", "gazebo"], ["ruby", FindExecutable(name="ign"), "gazebo"]]
+)
+async def test_gz_sim_as_a_command(launch: Callable[..., Any], simulators: Simulators, command: list[Any]) -> None:
+    await launch(ExecuteProcess(cmd=[*command, "-r", "-s", str(WORLD)]))
     assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False, "gui": False}, [])]
 
 
@@ -272,6 +279,12 @@ async def test_a_page_whose_port_is_taken_ends_a_launch_of_gazebo_with_one_error
     assert [line for line in launched.err.splitlines() if line.startswith("error")] == [
         f"error[VIEW101]: port {options['port']} of '127.0.0.1' is in use"
     ]
+
+
+async def test_a_simulation_has_the_variables_of_its_group(launch: Callable[..., Any], simulators: Simulators) -> None:
+    server = include("ros_gz_sim", "gz_sim.launch.py", gz_args="-r -s a.sdf")
+    await launch(GroupAction([SetEnvironmentVariable("GZ_SIM_RESOURCE_PATH", "/worlds"), server]))
+    assert [each["GZ_SIM_RESOURCE_PATH"] for each in simulators.environments] == ["/worlds"]
 
 
 async def test_other_commands_of_gz_are_processes(launch: Callable[..., Any], simulators: Simulators) -> None:

@@ -47,6 +47,7 @@ class HostedPlan:
         respawns: how often it is started again when it has done its work; without end if negative.
         respawn_delay: seconds to wait before that.
         for_others: parameters for further nodes that it makes, by their names.
+        environment: the environment variables that it has, those of the moment when the plan was made.
         waits: whether, if it cannot start with its model, it starts as soon as the model file is repaired.
     """
 
@@ -66,6 +67,7 @@ class HostedPlan:
     respawn_delay: float = 0.0
     waits: bool = True
     for_others: ParameterRules = field(default_factory=ParameterRules)
+    environment: Mapping[str, str] = field(default_factory=lambda: dict(os.environ))
 
     @property
     def is_viewer(self) -> bool:
@@ -104,6 +106,7 @@ class HostedPlan:
             arguments=self.arguments,
             library=library,
             for_others=self.for_others,
+            environment=self.environment,
         )
 
     @property

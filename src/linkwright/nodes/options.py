@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, runtime_checkable
@@ -44,6 +45,7 @@ class NodeOptions:
         arguments: its command line without the program's name; ``--ros-args`` sections count.
         library: the readings of robot descriptions that the process shares.
         for_others: parameters for further nodes that it makes, by their names, as files of its process have them.
+        environment: the environment variables by which it looks for files; those of the process unless it is said.
         output: takes the lines that a node prints as its result; standard output unless it is said.
         terminal: file descriptor of the terminal that is the node's alone; None where it shares its process.
     """
@@ -55,6 +57,7 @@ class NodeOptions:
     arguments: list[str] = field(default_factory=list)
     library: DescriptionLibrary = field(default_factory=_library)
     for_others: ParameterRules = field(default_factory=ParameterRules)
+    environment: Mapping[str, str] = field(default_factory=lambda: os.environ)
     output: Callable[[str], None] = _print
     terminal: int | None = None
 

@@ -101,7 +101,11 @@ class Simulator(SingleNode):
             said = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
             text = said["world_sdf_string"] or None
             file = "world_sdf_string" if text else said["world_sdf_file"] or said["world"]
-            loaded = load_world(words[0], None) if words else load_world(file, text)
+            loaded = (
+                load_world(words[0], environment=options.environment)
+                if words
+                else load_world(file, text, options.environment)
+            )
             remarkable = (
                 each for each in loaded.diagnostics if each.severity is Severity.ERROR or each.code in _LEFT_OUT
             )

@@ -79,10 +79,11 @@ class Arm:
     def __init__(self, server: Any, graph: Any) -> None:
         self.server, self.graph, self.node = server, graph, graph.create_node("audience")
 
-    async def begin(self, kind: str) -> None:
+    async def begin(self, kind: str, wait: float = 0.02) -> None:
+        """Start the controller; ``wait`` is what passes in the world after each call, in s."""
         node = self.graph.create_node("robot_state_publisher")
         node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=description(kind)))
-        await self.go_on(0.01)
+        await self.go_on(wait / 2)
         for service, fields in (
             ("LoadController", {"name": "arm"}),
             ("ConfigureController", {"name": "arm"}),
@@ -91,16 +92,18 @@ class Arm:
             asked = get_service(f"controller_manager_msgs/srv/{service}")
             name = service.replace("Controller", "_controller").lower()
             future = self.node.create_client(asked, f"/controller_manager/{name}").call_async(asked.Request(**fields))
-            await self.go_on(0.02)
+            await self.go_on(wait)
             assert future.result().ok, service
 
     async def go_on(self, seconds: float) -> None:
         """Let time pass in chunks, between which messages are handed over."""
         left = round(seconds * SECOND)
-        while left > 0:
+        while True:
             await self.graph.settle()
             self.server.advance(min(left, SECOND // 100))
             left -= SECOND // 100
+            if left <= 0:
+                break
         await self.graph.settle()
 
     def positions(self) -> list[float]:
@@ -109,6 +112,13 @@ class Arm:
     def ask(self, *points: Any) -> Asked:
         goal = get_action(ACTION).Goal(trajectory=trajectory(*points))
         return Asked(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
+
+
+async def test_a_controller_can_start_before_the_first_update(tmp_path):
+    async with served(model(parameters("position", tmp_path))) as (server, graph, log):
+        await Arm(server, graph).begin("position", wait=0.0)
+        assert server.simulation.time == 0
+        assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
 
 
 STATE = "control_msgs/msg/JointTrajectoryControllerState"

@@ -117,9 +117,12 @@ def test_find_executable(context: LaunchContext) -> None:
         text(FindExecutable(name="no-such-program"), context)
 
 
-def test_xacro_is_found_though_it_is_not_installed(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("program", ["xacro", "gz", "ign", "gazebo", "gzserver"])
+def test_what_runs_in_this_process_is_found_though_it_is_not_installed(
+    context: LaunchContext, monkeypatch: pytest.MonkeyPatch, program: str
+) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
-    assert text(FindExecutable(name="xacro"), context) == "xacro"
+    assert text(FindExecutable(name=program), context) == program
 
 
 def test_file_content(context: LaunchContext, tmp_path: Path) -> None:

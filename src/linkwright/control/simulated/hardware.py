@@ -125,6 +125,11 @@ class SimulatedSystem(Hardware):
             joint.begin()
             joint.set_mode(mode)
 
+    def on_activate(self) -> None:
+        """Read the joints, so that controllers which start before the first update find them where they are."""
+        for joint in self._joints.values():
+            joint.read()
+
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
         """Switch the interfaces that command the joints."""
         for name, joint in self._joints.items():

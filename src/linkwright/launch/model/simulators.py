@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from linkwright.nodes.gazebo.command_line import SimulatorCommand
 
-_PROGRAMS = frozenset({"gazebo", "gzserver", "gzclient", "gz", "ign"})
-"""Most commands are none of these, and are told from them without further ado."""
+PROGRAMS = frozenset({"gazebo", "gzserver", "gzclient", "gz", "ign"})
+"""The programs of Gazebo; most commands are none of these, and are told from them without further ado."""
+_RUBY = "ruby"
+"""What the commands of gz are written in, and some launch files run them with."""
 
 
 def simulator_of(words: Sequence[str], environment: Mapping[str, str]) -> SimulatorCommand | None:
@@ -21,7 +23,9 @@ def simulator_of(words: Sequence[str], environment: Mapping[str, str]) -> Simula
         words: of the command line.
         environment: in which ``PATH`` is looked through.
     """
-    if not words or PurePath(words[0]).name not in _PROGRAMS or shutil.which(words[0], path=environment.get("PATH")):
+    if words and PurePath(words[0]).name == _RUBY:
+        words = words[1:]
+    if not words or PurePath(words[0]).name not in PROGRAMS or shutil.which(words[0], path=environment.get("PATH")):
         return None
     from linkwright.nodes.gazebo.command_line import simulator_command
 

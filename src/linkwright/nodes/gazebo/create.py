@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
@@ -34,7 +34,7 @@ class Create(EntitySpawner):
             entity = Entity(name, (number["x"], number["y"], number["z"]), (number["R"], number["P"], number["Y"]))
             self._renames = str(given.get("allow_renaming", "false")).lower() in _TRUE
             self._prepare(self._node, entity)
-            self._begin({source: str(given[source]) for source in _TEXTS if given.get(source)})
+            self._begin({source: str(given[source]) for source in _TEXTS if given.get(source)}, options.environment)
 
     def _given(self, parameters: dict[str, Any]) -> dict[str, Any]:
         """The options that are given as parameters."""
@@ -43,13 +43,13 @@ class Create(EntitySpawner):
             self._node.declare_parameter(name, parameters[name])
         return {name: self._node.get_parameter(name).value for name in known}
 
-    def _begin(self, source: dict[str, str]) -> None:
+    def _begin(self, source: dict[str, str], environment: Mapping[str, str]) -> None:
         if "topic" in source:
             self._wait_for(source["topic"])
         elif "string" in source:
             self._spawn(source["string"])
         elif "file" in source:
-            self._spawn(text_at(source["file"]))
+            self._spawn(text_at(source["file"], environment))
         elif "param" in source:
             self._spawn(self._parameter(source["param"]))
         else:

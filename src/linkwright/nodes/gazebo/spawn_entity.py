@@ -26,6 +26,7 @@ class SpawnEntity(EntitySpawner):
         self._node, words = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
             wanted = self._wanted = parse(words)
+            self._environment = options.environment
             namespace = self._node.get_namespace() if wanted.robot_namespace is None else wanted.robot_namespace
             entity = Entity(
                 wanted.entity,
@@ -54,9 +55,9 @@ class SpawnEntity(EntitySpawner):
         if wanted.topic is not None:
             self._wait_for(wanted.topic)
         elif wanted.file is not None:
-            self._spawn(text_at(wanted.file))
+            self._spawn(text_at(wanted.file, self._environment))
         elif wanted.database is not None:
-            self._spawn(text_at(f"model://{wanted.database}"))
+            self._spawn(text_at(f"model://{wanted.database}", self._environment))
         else:
             self._spawn(text_of_stdin())
 

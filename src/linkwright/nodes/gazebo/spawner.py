@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -156,13 +156,17 @@ class EntitySpawner(SimulatorClient):
         self._end(0)
 
 
-def text_at(address: str) -> str:
+def text_at(address: str, environment: Mapping[str, str]) -> str:
     """Read the description at a path or URI: ``file://``, ``package://``, ``model://``, or of a model on Fuel.
+
+    Args:
+        address: as written.
+        environment: the variables that say where files are.
 
     Raises:
         LinkwrightError: NODE811, there is none, or it cannot be read.
     """
-    found = ResourceFinder(current_finder()).model(address, Path.cwd())
+    found = ResourceFinder(current_finder(), environment).model(address, Path.cwd())
     if isinstance(found, Missing):
         raise LinkwrightError(Diagnostic("NODE811", found.reason, hint=found.hint))
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -37,12 +38,13 @@ class LoadedWorld(NamedTuple):
     read_ns: int
 
 
-def load_world(name: str, text: str | None = None) -> LoadedWorld:
+def load_world(name: str, text: str | None = None, environment: Mapping[str, str] | None = None) -> LoadedWorld:
     """Read the first world of a file.
 
     Args:
         name: the file or its address, or the name of a world on the search path: ``empty``.
         text: what is taken for the text of the file, which need not be there.
+        environment: the variables that say where files are; those of the process by default.
 
     Raises:
         LinkwrightError: SIM150 there is no such world; SIM151 the file has none; SIM105 it has too many
@@ -51,12 +53,14 @@ def load_world(name: str, text: str | None = None) -> LoadedWorld:
     read_ns = time.time_ns()
     path = Path(name.removeprefix("file://")).expanduser()
     finder = PackageFinder(start=[path.absolute().parent, Path.cwd()])
-    resources = ResourceFinder(finder)
+    resources = ResourceFinder(finder, environment)
     if text is None:
         path = _found(name, resources)
     if path.suffix != ".xacro" and (text is not None or path.is_file()):
         _refuse_crowd(read_bytes(path) if text is None else text)
-    description = examine_world(path, packages=finder, overlay=None if text is None else Overlay({path: text}))
+    description = examine_world(
+        path, packages=finder, environment=environment, overlay=None if text is None else Overlay({path: text})
+    )
     if description.sdf is None:
         raise LinkwrightError(*description.diagnostics)
     if not description.sdf.worlds:

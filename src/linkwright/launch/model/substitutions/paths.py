@@ -18,6 +18,7 @@ from linkwright.launch.model.declared_substitution import (
     TextLists,
     Texts,
 )
+from linkwright.launch.model.simulators import PROGRAMS
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -76,8 +77,8 @@ class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoi
 class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({name})"):
     """The path of a program on ``PATH``.
 
-    A program that `Command` runs inside this process is found even where it is not installed: then its bare
-    name is given.
+    A program that `Command` runs inside this process, or that our simulation stands in for, is found even where it
+    is not installed: then its bare name is given.
     """
 
     name: Texts = Texts(kw_only=True)
@@ -92,7 +93,7 @@ class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({nam
         path = shutil.which(name, path=context.environment.get("PATH"))
         if path is not None:
             return path
-        if name in IN_PROCESS_PROGRAMS:
+        if name in IN_PROCESS_PROGRAMS or name in PROGRAMS:
             return name
         hint = did_you_mean(name, IN_PROCESS_PROGRAMS) or phrase("install it, or add its folder to PATH")
         ros_error = SubstitutionFailure(f"executable '{name}' not found on the PATH")
