@@ -369,3 +369,23 @@ def test_a_package_of_ours_is_proposed_for_its_own_name_alone(tmp_path, name, hi
     (tmp_path / "r.urdf").write_text(robot(mesh))
     (found,) = (each for each in examine(tmp_path / "r.urdf").diagnostics if each.code == "LW423")
     assert ("my_robot_description" in (found.hint or "")) is hint
+
+
+@pytest.mark.parametrize(("there", "codes"), [("launch/sensors.launch.py", []), ("launch/other.launch.py", ["LW842"])])
+def test_a_file_that_is_in_the_sources_but_not_in_an_old_build(tmp_path, there, codes):
+    for name in ("p", "q"):
+        (tmp_path / "src" / name / "launch").mkdir(parents=True)
+        manifest = MANIFEST.format(more="").replace("<name>p<", f"<name>{name}<")
+        (tmp_path / "src" / name / "package.xml").write_text(manifest)
+    built = tmp_path / "install/q/share/q"
+    built.mkdir(parents=True)
+    (built / "package.xml").write_text(manifest)
+    (tmp_path / "install/.colcon_install_layout").write_text("isolated\n")
+    (tmp_path / "install/q/share/colcon-core/packages").mkdir(parents=True)
+    (tmp_path / "install/q/share/colcon-core/packages/q").write_text("")
+    (tmp_path / "src/q" / there).write_text("def generate_launch_description():\n    pass\n")
+    launch = "import os\n\n\ndef generate_launch_description():\n    share = get_package_share_directory('q')\n"
+    launch += "    return os.path.join(share, 'launch', 'sensors.launch.py')\n"
+    (tmp_path / "src/p/launch/a.launch.py").write_text(launch)
+    found = examine_package(tmp_path / "src/p", Settings(select=("LW842",))).diagnostics
+    assert [each.code for each in found] == codes

@@ -76,6 +76,11 @@ class PackageFinder:
                 self._known[name] = share
         return share
 
+    def find_in_sources(self, name: str) -> Path | None:
+        """Return the share folder that the sources of a package make, whatever an earlier build installed of it."""
+        found = (_share_of(name, self._scan(root).find(name)) for root in self._source_roots())
+        return next(filter(None, found), None)
+
     def share(self, name: str) -> Path:
         """The share folder of a package; where it is not installed, see `share_of_sources`.
 

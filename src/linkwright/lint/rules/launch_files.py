@@ -172,6 +172,9 @@ class LaunchedFileMissing(Rule):
         name = shared.path.rpartition("/")[2]
         if not own and (share.parent.name != "share" or is_substitute(share)):
             return  # the sources of another package, which may install its files elsewhere, or only a part of it
+        sources = None if own else subject.finder.find_in_sources(shared.package)
+        if sources is not None and (sources / shared.path).exists():
+            return  # an earlier build lacks it
         if own and any(other.rpartition("/")[2] == name for other in package.files) and _may_move(package):
             return
         if own and is_made_later(package, shared.path):
