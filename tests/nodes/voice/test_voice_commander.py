@@ -10,6 +10,7 @@ import pytest
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import ActionServer
 from linkwright.graph.actions.goal import CancelResponse, GoalEvent
+from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.messages import get_action, get_message, get_service
 from linkwright.nodes.voice.audio_messages import audio_stamped
 from tests.nodes.voice.fakes import STRING, final, partial
@@ -447,6 +448,27 @@ async def test_what_a_service_answers_is_said(stage, talk):
     await stage.graph.settle()
     await robot.type("what do you see")
     await eventually(lambda: robot.said["response"][-1] == "a red ball")
+
+
+def clients(stage):
+    return [each.name for each in stage.graph.endpoints() if each.kind is EndpointKind.CLIENT]
+
+
+async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, talk):
+    robot = talk()
+    await stage.graph.settle()
+    assert [each for each in clients(stage) if "/_action/" not in each] == []
+    assert await robot.type("what do you see") == "I cannot: nobody serves '/vision/describe/en'"
+    kind = get_service("std_srvs/srv/Trigger")
+    stage.node.create_service(kind, "/vision/describe/en", lambda request, response: kind.Response(True, "a red ball"))
+    await robot.type("what do you see")
+    await eventually(lambda: robot.said["response"][-1] == "a red ball")
+    assert "/vision/describe/en" not in clients(stage)
+
+
+async def test_a_service_of_another_type_is_not_called(stage, talk):
+    stage.node.create_service("std_srvs/srv/Empty", "/vision/describe/en", lambda request, response: response)
+    assert await talk().type("what do you see") == "I cannot: nobody serves '/vision/describe/en'"
 
 
 LAUNCH = """

@@ -9,8 +9,9 @@ from functools import partial
 from math import cos, sin
 from typing import Any
 
-from linkwright.graph import ActionClient, Node, Publisher
+from linkwright.graph import ActionClient, Client, Node, Publisher
 from linkwright.graph.actions.goal import GoalStatus
+from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.interruption import interrupt
 from linkwright.messages import get_action, get_message, get_service, set_fields
 from linkwright.packages.programs.child_python import python_command
@@ -110,7 +111,6 @@ class Requests:
     def __init__(self, node: Node, ended: Callable[[bool, str], None], said: Callable[[str], None]) -> None:
         self._node, self._ended, self._said = node, ended, said
         self._goals: dict[str, Goals] = {}
-        self._clients: dict[str, Any] = {}
         self._publishers: dict[str, Publisher[Any]] = {}
         self._launched: subprocess.Popen[bytes] | None = None
         self._ending: threading.Thread | None = None
@@ -121,13 +121,15 @@ class Requests:
         return self._is_launched or any(goals.is_active for goals in self._goals.values())
 
     def prepare(self, action: object) -> None:
-        """Make the clients and publishers of an action, so that they are connected when they are needed."""
+        """Make what an action needs that takes a while to connect.
+
+        A service is called by a client that is made for the call: until then nobody waits for a service that only some
+        commands need.
+        """
         if isinstance(action, GoTo):
             self._goals.setdefault(action.action, Goals(self._node, NAVIGATE, action.action, self._ended))
         elif isinstance(action, SendGoal) and action.action not in self._goals:
             self._goals[action.action] = Goals(self._node, action.type_name, action.action, self._ended)
-        elif isinstance(action, CallService) and action.name not in self._clients:
-            self._clients[action.name] = self._node.create_client(get_service(action.type_name), action.name)
         elif isinstance(action, Publish) and action.topic not in self._publishers:
             kind = get_message(action.type_name)
             self._publishers[action.topic] = self._node.create_publisher(kind, action.topic, _DEPTH)
@@ -152,12 +154,12 @@ class Requests:
 
     def call(self, action: CallService, values: Values) -> bool:
         """Call a service; whether there is a server."""
-        client = self._clients[action.name]
-        if not client.service_is_ready():
+        if not self._is_served(action):
             return False
+        client = self._node.create_client(get_service(action.type_name), action.name)
         request = client.srv_type.Request()
         self._fill(request, filled(action.request, values))
-        client.call_async(request).add_done_callback(self._answered)
+        client.call_async(request).add_done_callback(partial(self._answered, client))
         return True
 
     def publish(self, action: Publish, values: Values) -> None:
@@ -211,7 +213,12 @@ class Requests:
         for set_stamp in set_fields(message, values, expand_header_auto=True, expand_time_now=True):
             set_stamp(stamp)
 
-    def _answered(self, future: Any) -> None:
+    def _is_served(self, action: CallService) -> bool:
+        wanted = (EndpointKind.SERVICE, self._node.resolve_service_name(action.name), action.type_name)
+        return any((each.kind, each.name, each.type_name) == wanted for each in self._node.graph.endpoints())
+
+    def _answered(self, client: Client[Any, Any], future: Any) -> None:
+        self._node.destroy_client(client)
         text = getattr(future.result(), "message", "")
         if text and isinstance(text, str):
             self._said(text)
