@@ -107,6 +107,7 @@ function start(app: HTMLElement): void {
   const dockBox = h("main", { class: "dock" });
   app.append(dockBox);
   const [source, diagram] = [new SourcePanel(session), new DiagramPanel(session)];
+  const voice = new VoicePanel(session.voice, session.words);
   const panels = [
     scene,
     new DisplaysPanel(session),
@@ -124,7 +125,7 @@ function start(app: HTMLElement): void {
     new WorldPanel(session.modelling, session.angles, commands),
     new ComparisonPanel(session, () => stage?.fit()),
     new EditingPanel(session),
-    new VoicePanel(session.voice, session.words),
+    voice,
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
   keepSearches(panels, session.kept);
@@ -135,6 +136,11 @@ function start(app: HTMLElement): void {
   session.description.placeAsked.on(({ file, line, display, name }) => {
     dock.open("source");
     source.reveal(file, line, { display, name });
+  });
+
+  session.words.enrolWanted.on(() => {
+    dock.open("voice");
+    voice.enrolHere();
   });
 
   session.editing.wanted.on(() => dock.open("editing"));

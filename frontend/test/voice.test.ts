@@ -7,6 +7,7 @@ import { meterPart } from "../src/state/voice/level";
 import { Microphone, type OpenCapture } from "../src/state/voice/microphone";
 import { pcm, Resampler } from "../src/state/voice/resampler";
 import { soundFrame, VoiceState } from "../src/state/voice/voice";
+import { WordsState } from "../src/state/voice/words";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
@@ -266,5 +267,19 @@ describe("talking", () => {
       { type: "watch_voice", watched: true },
       { type: "watch_voice", watched: false },
     ]);
+  });
+
+  it("of the words that are enrolled here only good takes count, and only those said since", () => {
+    const words = new WordsState(connection, new VoiceState(connection, storage, new Microphone(openFake)));
+    const told = [{ name: "stop", takes: 3 }, { name: "forward", takes: 3 }];
+    connection.message.emit({ type: "voice_words", words: told, enough: 3, file: "words.json", problem: null });
+    const judge = (name: string, code: string | null): void =>
+      connection.message.emit({ type: "take_judged", number: 1, name, code, text: "", peak: 0.5, seconds: 0.5 });
+    judge("stop", null);
+    words.enrolHere(true);
+    for (const code of [null, "VOICE205", null]) judge("stop", code);
+    expect(words.missingHere.map(({ name }) => name)).toEqual(["stop", "forward"]);
+    judge("stop", null);
+    expect(words.missingHere.map(({ name }) => name)).toEqual(["forward"]);
   });
 });

@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, Playwright
+from playwright.sync_api import Browser, Page, Playwright, expect
 
 from linkwright.messages import get_message
+from linkwright.speech.enrolled.words import TAKES, Take, Words, words_path
+from linkwright.speech.sound.spectra import BANDS
 from tests.browser.conftest import launched, until
 from tests.browser.live import LiveViewer, configuration
 from tests.waiting import SECONDS, wait_until
@@ -186,3 +188,32 @@ def test_a_word_is_recorded_while_its_button_is_held(talking: tuple[Robot, Page]
     # A tone without an end is no word; what matters here is that it is judged, and published to nobody.
     page.wait_for_selector(".word-judged:has-text(' dB, ')")
     assert robot.samples == []
+
+
+def test_who_is_not_understood_enrols_words_where_they_stand(
+    talking: tuple[Robot, Page], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    robot, page = talking
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    rng = np.random.default_rng(1)
+    words = Words()
+    for name in ("stop", "forward"):
+        for _ in range(TAKES):
+            words.add(name, Take(rng.uniform(1e3, 1e6, (40, BANDS)), np.ones(BANDS)))
+    words.write(words_path())
+    page.keyboard.down("v")
+    wait_until(lambda: robot.held == [True], SECONDS)
+    page.keyboard.up("v")
+    until(page, "lw.panels.voice.told !== null")
+    robot.viewer.publish("/voice/propose_enrolling", get_message("std_msgs/msg/Bool")(data=True))
+    robot.says("response", "I know none of what you say")
+    page.locator(".voice-notice").get_by_role("button", name="Enrol here").click()
+    page.get_by_text("0 of 2 words are enrolled here.").wait_for()
+    # What was said elsewhere does not count, and the first word can be said at once.
+    expect(page.get_by_role("button", name="Hold and say: stop")).to_be_focused()
+    assert page.locator(".word-takes").all_text_contents() == ["0/3", "0/3"]
+    for shown in (page.locator(".voice-notice button"), page.locator(".voice-proposal")):
+        expect(shown).to_be_hidden()
+    page.get_by_role("button", name="Done").click()
+    expect(page.locator(".word-here")).to_be_hidden()
+    assert page.locator(".word-takes").all_text_contents() == ["3/3", "3/3"]

@@ -42,6 +42,7 @@ export interface VoiceState {
   sound_listeners: number;
   text_listeners: number;
   cut: boolean;
+  proposes_enrolling: boolean;
   type: "voice_state";
 }
 

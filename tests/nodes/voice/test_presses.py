@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.nodes.voice.presses import Presses
-from tests.nodes.voice.fakes import final, partial
+from tests.nodes.voice.fakes import BOOL, ENTRY, final, partial
 from tests.waiting import eventually
 
 
@@ -91,14 +91,47 @@ def missed(presses, times):
 
 
 def test_after_three_presses_without_a_command_enrolling_is_proposed():
-    assert missed(Presses(is_enrolled=True), 7) == [False, False, True, False, False, True, False]
+    assert missed(Presses(can_enrol=True), 7) == [False, False, True, False, False, True, False]
     assert missed(Presses(), 6) == [False] * 6
 
 
 def test_a_command_between_them_begins_the_count_anew():
-    presses = Presses(is_enrolled=True)
+    presses = Presses(can_enrol=True)
     missed(presses, 2)
     presses.begin()
     presses.settle()
     presses.end()
     assert missed(presses, 3) == [False, False, True]
+
+
+def test_the_proposal_stands_until_the_next_press_or_command():
+    presses = Presses(can_enrol=True)
+    missed(presses, 3)
+    assert presses.proposes_enrolling
+    presses.begin()
+    assert not presses.proposes_enrolling
+    presses.end()
+    missed(presses, 3)
+    presses.settle()
+    assert not presses.proposes_enrolling
+
+
+@pytest.mark.parametrize(
+    ("parameters", "proposed"),
+    [({}, [True, False]), ({"words_file": "/words.json"}, []), ({"open_listening": True}, [])],
+    ids=["usual file", "a file that pages do not write", "listens to all"],
+)
+async def test_pages_are_told_when_enrolling_is_proposed_and_when_no_longer(
+    engine, talk, stage, monkeypatch, parameters, proposed
+):
+    monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"enrolled": ENTRY})
+    told = []
+    stage.node.create_subscription(BOOL, "/voice/propose_enrolling", lambda message: told.append(message.data), 10)
+    robot = talk(engine="enrolled", **parameters)
+    engine.says_at_end.append(final(""))
+    for _ in range(3):
+        await robot.hold(True)
+        await robot.hold(False)
+    await eventually(lambda: len(engine.finished) == 3)
+    await robot.say_nothing_more()
+    assert told == proposed

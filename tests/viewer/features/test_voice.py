@@ -242,6 +242,17 @@ async def test_commands_are_sent_as_text_and_pages_know_whether_anybody_takes_th
         await eventually(lambda: made.graph.count_publishers("/voice/text_input") == 0)
 
 
+async def test_pages_know_whether_enrolling_is_proposed_until_who_proposed_it_is_gone():
+    async with heard() as (_, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.until("voice_state", proposes_enrolling=False)
+        proposal = ears.node.create_publisher("std_msgs/msg/Bool", "/voice/propose_enrolling", 10)
+        proposal.publish(proposal.msg_type(data=True))
+        await client.until("voice_state", proposes_enrolling=True)
+        ears.node.destroy_node()
+        await client.until("voice_state", proposes_enrolling=False)
+
+
 @pytest.mark.parametrize(
     "bad",
     [

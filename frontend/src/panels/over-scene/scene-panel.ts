@@ -52,7 +52,7 @@ export class ScenePanel implements Panel {
       new LineNotice(session),
       new OwnerNotice(session),
       new MeshNotice(session.meshProgress),
-      new VoiceNotice(session.voice),
+      new VoiceNotice(session.voice, session.words),
     ];
     this.column.element.append(inspect.element, card.element, ...told.map((each) => each.element));
     this.box = h(

@@ -1,6 +1,8 @@
 import { h } from "../../dom";
 import { icon } from "../../icons";
 import type { VoiceState } from "../../state/voice/voice";
+import type { WordsState } from "../../state/voice/words";
+import { enrolHereButton, proposesEnrolling } from "./enrol-here";
 import { activity, obstacle } from "./voice-words";
 
 const SHOWN_MS = 7000;
@@ -9,14 +11,20 @@ const SHOWN_MS = 7000;
 export class VoiceNotice {
   readonly element = h("div", { class: "voice-notice", role: "status" });
   private readonly text = h("span");
+  private readonly enrol: HTMLButtonElement;
   private timer = 0;
   private shown = "";
 
-  constructor(private readonly voice: VoiceState) {
-    this.element.append(icon("microphone"), this.text);
+  constructor(
+    private readonly voice: VoiceState,
+    private readonly words: WordsState,
+  ) {
+    this.enrol = enrolHereButton(words);
+    this.element.append(icon("microphone"), this.text, this.enrol);
     this.element.hidden = true;
     voice.changed.on(() => this.show());
     voice.conversed.on(() => this.show());
+    words.changed.on(() => this.show());
   }
 
   private show(): void {
@@ -25,14 +33,16 @@ export class VoiceNotice {
     const busy = voice.held || voice.open;
     const last = voice.history.at(-1)?.text ?? "";
     const text = wrong ?? (voice.partial || (busy ? activity(voice) : last));
-    const key = `${String(busy)}${String(wrong !== null)}${text}`;
+    const proposes = !busy && wrong === null && proposesEnrolling(voice, this.words);
+    const key = `${String(busy)}${String(wrong !== null)}${String(proposes)}${text}`;
     if (key === this.shown) return;
     this.shown = key;
     this.text.textContent = text;
     this.element.classList.toggle("wrong", wrong !== null);
     this.element.classList.toggle("talking", busy && wrong === null);
+    this.enrol.hidden = !proposes;
     this.element.hidden = text === "";
     clearTimeout(this.timer);
-    if (!busy) this.timer = window.setTimeout(() => (this.element.hidden = true), SHOWN_MS);
+    if (!busy && !proposes) this.timer = window.setTimeout(() => (this.element.hidden = true), SHOWN_MS);
   }
 }

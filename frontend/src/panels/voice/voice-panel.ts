@@ -7,6 +7,7 @@ import { strings } from "../../strings";
 import { choice, textField, tickBox } from "../../widgets/controls";
 import { whenSeen } from "../../widgets/when-seen";
 import type { Panel } from "../panel";
+import { enrolHereButton, proposesEnrolling } from "./enrol-here";
 import { LevelMeter } from "./level-meter";
 import { talkButton } from "./talk-button";
 import { activity, obstacle } from "./voice-words";
@@ -23,6 +24,8 @@ export class VoicePanel implements Panel {
   private readonly state = h("div", { class: "voice-state", role: "status" });
   private readonly history = h("div", { class: "voice-history", role: "log", tabIndex: 0, aria: { label: strings.voice.history } });
   private readonly open: ReturnType<typeof tickBox>;
+  private readonly proposal: HTMLElement;
+  private readonly box: WordsBox;
   private readonly textNote = h("p", { class: "note" }, strings.voice.noTextListener);
   private readonly speak: ReturnType<typeof tickBox>;
   private readonly voices: HTMLSelectElement;
@@ -30,14 +33,15 @@ export class VoicePanel implements Panel {
 
   constructor(
     private readonly voice: VoiceState,
-    enrolled: WordsState,
+    private readonly enrolled: WordsState,
   ) {
     const words = strings.voice;
     const { speaker } = voice;
     this.open = tickBox(words.open, words.openHint, (ticked) => voice.setOpen(ticked));
     this.speak = tickBox(words.speak, words.speakHint, (on) => speaker.configure({ on }));
     this.voices = choice(words.voice, [], (chosen) => speaker.configure({ voice: chosen }));
-    const box = new WordsBox(enrolled);
+    const box = (this.box = new WordsBox(enrolled, voice));
+    this.proposal = h("div", { class: "voice-proposal", role: "status" }, h("span", {}, words.words.proposal), enrolHereButton(enrolled));
     const clear = button(words.clearHint, () => voice.clear(), "tool bare", icon("clear"));
     this.element = h(
       "div",
@@ -48,6 +52,7 @@ export class VoicePanel implements Panel {
         h("div", { class: "voice-main" }, talkButton(voice, "tool framed voice-talk", words.talkWithKey), this.meter.element),
         h("div", { class: "voice-row" }, this.open, h("span", { class: "spacer" }), clear),
         this.state,
+        this.proposal,
         this.history,
         this.commandForm(),
         h("div", { class: "voice-row" }, this.speak, this.voices),
@@ -56,6 +61,7 @@ export class VoicePanel implements Panel {
       ),
     );
     voice.changed.on(() => this.show());
+    enrolled.changed.on(() => this.show());
     voice.conversed.on(() => this.showHistory());
     whenSeen(this.element, (seen) => {
       voice.watch(this, seen);
@@ -63,6 +69,11 @@ export class VoicePanel implements Panel {
     });
     this.show();
     this.showHistory();
+  }
+
+  /** Has the user say the words where they stand. */
+  enrolHere(): void {
+    this.box.enrolHere();
   }
 
   private commandForm(): HTMLElement {
@@ -92,6 +103,7 @@ export class VoicePanel implements Panel {
     this.state.classList.toggle("wrong", wrong !== null);
     this.meter.show(microphone.isOpen ? microphone.peak : null);
     this.open.box.checked = voice.open;
+    this.proposal.hidden = !proposesEnrolling(voice, this.enrolled);
     this.textNote.hidden = told?.text_listeners !== 0;
     this.speak.box.checked = speaker.settings.on;
     this.showVoices();

@@ -1,11 +1,13 @@
 import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { EnrolledWord, TakeJudged } from "../../protocol";
+import type { VoiceState } from "../../state/voice/voice";
 import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
 import { textField } from "../../widgets/controls";
 import { askName } from "../../widgets/dialog";
 import { saveText } from "../../widgets/save-file";
+import { obstacle } from "./voice-words";
 
 /** Below this the loudest sample of a recording is rather quiet: -24 dB. */
 const QUIET = 0.06;
@@ -16,15 +18,24 @@ export class WordsBox {
   private readonly list = h("div", { class: "word-list", role: "list" });
   private readonly problem = h("p", { class: "note wrong", role: "status" });
   private readonly file = h("p", { class: "note" });
+  private readonly field: HTMLInputElement;
+  private readonly here: HTMLElement;
+  private readonly hereNote = h("span", { class: "note" });
+  private readonly hereDone = h("strong", { role: "status" });
   private shown = "";
+  /** What is to be said next takes the focus as soon as the words are known. */
+  private focusDue = false;
 
-  constructor(private readonly words: WordsState) {
+  constructor(
+    private readonly words: WordsState,
+    private readonly voice: VoiceState,
+  ) {
     const texts = strings.voice.words;
     const add = (): void => {
       words.name(field.value);
       field.value = "";
     };
-    const field = textField(texts.choose, () => undefined);
+    const field = (this.field = textField(texts.choose, () => undefined));
     field.maxLength = 100;
     const suggestions = h("datalist", {}, ...texts.suggestions.map((each) => new Option(each)));
     suggestions.id = "voice-word-suggestions";
@@ -41,10 +52,13 @@ export class WordsBox {
       picker.value = "";
       void chosen?.text().then((text) => words.importFile(text));
     });
+    const done = button(texts.endHereHint, () => words.enrolHere(false), "tool framed", texts.endHere);
+    this.here = h("div", { class: "word-here" }, this.hereDone, this.hereNote, done);
     this.element = h(
       "details",
       { class: "word-box" },
       h("summary", {}, texts.title),
+      this.here,
       h("p", { class: "note" }, texts.hint),
       h("div", { class: "voice-row" }, field, suggestions, button(texts.addHint, add, "tool framed", texts.add)),
       this.list,
@@ -60,6 +74,7 @@ export class WordsBox {
     );
     this.element.addEventListener("toggle", () => this.watch(true));
     words.changed.on(() => this.show());
+    voice.changed.on(() => this.showProblem());
     words.fileCame.on((text) => saveText("words.json", text, "application/json"));
     this.show();
   }
@@ -67,6 +82,14 @@ export class WordsBox {
   /** Whether the panel can be seen. */
   watch(seen: boolean): void {
     this.words.watch(seen && this.element.open);
+  }
+
+  /** Has the user say the words where they stand. The panel must be in front. */
+  enrolHere(): void {
+    this.element.open = true;
+    this.focusDue = true;
+    this.words.enrolHere(true);
+    this.here.scrollIntoView({ block: "nearest" });
   }
 
   private show(): void {
@@ -79,9 +102,31 @@ export class WordsBox {
       this.list.replaceChildren(...all.map((word) => this.row(word)));
     }
     all.forEach((word, index) => this.update(this.list.children[index], word));
-    this.problem.textContent = words.problem ?? "";
-    this.problem.hidden = words.problem === null;
+    this.showProblem();
+    this.showHere();
     this.file.textContent = words.file === "" ? "" : strings.voice.words.keptIn(words.file);
+  }
+
+  private showProblem(): void {
+    const problem = this.words.problem ?? (this.voice.microphone.problem === null ? null : obstacle(this.voice));
+    if (this.problem.textContent !== problem) this.problem.textContent = problem;
+    this.problem.hidden = problem === null;
+  }
+
+  private showHere(): void {
+    const { all, here, missingHere, enough, file } = this.words;
+    const texts = strings.voice.words;
+    this.here.hidden = here === null;
+    if (here === null) return;
+    const [next] = missingHere;
+    const said = all.length - missingHere.length;
+    const progress = all.length === 0 ? texts.hereNone : next ? texts.hereDone(said, all.length) : texts.hereAll;
+    if (this.hereDone.textContent !== progress) this.hereDone.textContent = progress;
+    this.hereNote.textContent = texts.here(enough);
+    if (!this.focusDue || file === "") return;
+    this.focusDue = false;
+    const row = next && this.list.children[all.indexOf(next)];
+    (row?.querySelector<HTMLElement>(".word-say") ?? this.field).focus();
   }
 
   private row({ name }: EnrolledWord): HTMLElement {
@@ -113,12 +158,13 @@ export class WordsBox {
   }
 
   private update(row: Element | undefined, { name, takes }: EnrolledWord): void {
-    const { recording, isHearing, enough, judged } = this.words;
+    const { recording, isHearing, enough, judged, here } = this.words;
     const texts = strings.voice.words;
     const find = (part: string): Element | null => row?.querySelector(part) ?? null;
     const count = find(".word-takes");
-    if (count) count.textContent = texts.takes(takes, enough);
-    row?.classList.toggle("enough", takes >= enough);
+    const counted = here === null ? takes : Math.min(here.get(name) ?? 0, enough);
+    if (count) count.textContent = texts.takes(counted, enough);
+    row?.classList.toggle("enough", counted >= enough);
     find(".word-say")?.classList.toggle("talking", recording === name && isHearing);
     const last = judged.get(name);
     const line = find(".word-judged");

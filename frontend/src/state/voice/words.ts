@@ -11,6 +11,8 @@ export class WordsState {
   readonly changed = new Signal();
   /** The text of the file came. */
   readonly fileCame = new Signal<string>();
+  /** The user wants to say the words where they stand. */
+  readonly enrolWanted = new Signal();
   words: readonly EnrolledWord[] = [];
   /** How often each is to be said. */
   enough = 3;
@@ -20,6 +22,8 @@ export class WordsState {
   readonly judged = new Map<string, TakeJudged>();
   /** The word that is being said. */
   recording: string | null = null;
+  /** How often each word was said since the user began to enrol where they stand; null while they do not. */
+  here: Map<string, number> | null = null;
   /** Words that have a name and were not said yet. */
   private readonly named = new Set<string>();
   private watched = false;
@@ -35,6 +39,7 @@ export class WordsState {
     });
     connection.on("take_judged", (judged) => {
       this.judged.set(judged.name, judged);
+      if (judged.code === null) this.here?.set(judged.name, (this.here.get(judged.name) ?? 0) + 1);
       this.changed.emit();
     });
     connection.on("voice_words_file", ({ text }) => this.fileCame.emit(text));
@@ -46,6 +51,17 @@ export class WordsState {
   /** All words, those too that were not said yet. */
   get all(): readonly EnrolledWord[] {
     return [...this.words, ...[...this.named].map((name) => ({ name, takes: 0 }))];
+  }
+
+  /** The words that are still to be said where the user stands. */
+  get missingHere(): readonly EnrolledWord[] {
+    return this.all.filter(({ name }) => (this.here?.get(name) ?? 0) < this.enough);
+  }
+
+  /** The user begins to say the words where they stand, or has done so. */
+  enrolHere(begun: boolean): void {
+    this.here = begun ? new Map<string, number>() : null;
+    this.changed.emit();
   }
 
   watch(watched: boolean): void {

@@ -33,21 +33,28 @@ class Presses:
     """Presses whose sound the engine still processes. It lags behind, so the next may have begun.
 
     Args:
-        is_enrolled: whether words are those that the user enrolled, and can be enrolled where they are said.
+        can_enrol: whether words are those that the user enrols in pages, and so can be enrolled where they are said.
+
+    Attributes:
+        proposes_enrolling: whether the answer to the last press was that proposal. The next press, or a command, takes
+            it back.
     """
 
-    def __init__(self, *, is_enrolled: bool = False) -> None:
-        self._is_enrolled = is_enrolled
+    def __init__(self, *, can_enrol: bool = False) -> None:
+        self._can_enrol = can_enrol
+        self.proposes_enrolling = False
         self._missed = 0
         self._presses: deque[_Press] = deque()
 
     def begin(self) -> None:
         """Record that the button was pressed."""
+        self.proposes_enrolling = False
         self._presses.append(_Press())
 
     def settle(self) -> None:
         """Record that something was done or answered."""
         self._missed = 0
+        self.proposes_enrolling = False
         if self._presses:
             self._presses[0].is_settled = True
 
@@ -71,7 +78,8 @@ class Presses:
         if press.has_gaps:
             return SAY_IT_AGAIN
         self._missed += 1
-        if self._is_enrolled and self._missed % _MISSED == 0:
+        self.proposes_enrolling = self._can_enrol and self._missed % _MISSED == 0
+        if self.proposes_enrolling:
             return phrase("I know none of what you say: enrol your words in the Voice panel, here where you speak")
         if press.unknown.nearest:
             return phrase(

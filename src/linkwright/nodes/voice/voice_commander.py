@@ -74,6 +74,7 @@ class VoiceCommander(SingleNode):
         self._held = False
         self._spoken = False
         self._stopped = False
+        self._proposed = False
         with starting(self._node):
             self._start()
 
@@ -127,7 +128,9 @@ class VoiceCommander(SingleNode):
         # Silence may not wait for simulated time, which may stand still.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self._silence = node.create_timer(silence, self._silent, clock=clock, autostart=False)
-        self._presses = Presses(is_enrolled=engine == "enrolled")
+        # Pages enrol into the usual file, and who listens to all is not told what is no command.
+        self._presses = Presses(can_enrol=engine == "enrolled" and not words and not self._open)
+        self._proposal: Publisher[Any] = node.create_publisher(_BOOL, "voice/propose_enrolling", _DEPTH)
         if engine:
             where = words if engine == "enrolled" and words else model
             # Who enrols words may say them in any language.
@@ -200,6 +203,7 @@ class VoiceCommander(SingleNode):
             self._gaps.restart()  # nothing is published while no button is held
         if held and not self._held:
             self._presses.begin()
+            self._tell_proposal()
         self._stopped = False
         self._held = held
 
@@ -237,8 +241,15 @@ class VoiceCommander(SingleNode):
     def _press_heard(self) -> None:
         """Handle the end of a press of the button whose sound was processed."""
         answer = self._presses.end()
+        self._tell_proposal()
         if answer is not None and not self._open:
             self._conversation.answer(answer)
+
+    def _tell_proposal(self) -> None:
+        """Publish whether enrolling is proposed, where that has changed."""
+        if self._presses.proposes_enrolling != self._proposed:
+            self._proposed = self._presses.proposes_enrolling
+            self._proposal.publish(self._proposal.msg_type(data=self._proposed))
 
     @property
     def _is_addressed(self) -> bool:

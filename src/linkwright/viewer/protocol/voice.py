@@ -96,12 +96,14 @@ class VoiceState(ServerMessage):
         sound_listeners: the number of subscribers to sound.
         text_listeners: the number of subscribers to commands as text.
         cut: the page sent more sound than time has passed, or says that more was lost, and has to begin anew.
+        proposes_enrolling: the robot knows none of what was said and proposes to enrol words where the user stands.
     """
 
     talking: Talking
     sound_listeners: int
     text_listeners: int
     cut: bool
+    proposes_enrolling: bool
 
 
 SaidPart = Literal["partial", "text", "command", "response"]

@@ -33,6 +33,7 @@ _SAID: dict[SaidPart, str] = {
     "command": "/voice/command",
     "response": "/voice/response",
 }
+_PROPOSE = "/voice/propose_enrolling"
 _LISTEN = "/voice/listen"
 _TEXT_INPUT = "/voice/text_input"
 _DEPTH = 10
@@ -62,6 +63,7 @@ class VoiceFeature(PageFeature):
         self._told = 0
         """How many nodes the button's state was published to."""
         self._said = 0
+        self._proposes = False
         self._words = WordBook()
 
     def opening(self) -> list[ServerMessage]:
@@ -170,6 +172,9 @@ class VoiceFeature(PageFeature):
                 self._node.create_subscription("std_msgs/msg/String", topic, partial(self._tell, part), _DEPTH)
                 for part, topic in _SAID.items()
             ]
+            self._subscriptions.append(
+                self._node.create_subscription("std_msgs/msg/Bool", _PROPOSE, self._take_proposal, _DEPTH)
+            )
             self._text_input = self._node.create_publisher("std_msgs/msg/String", _TEXT_INPUT, _DEPTH)
             self.context.graph_changes.listen(self._review)
         elif not self._watchers and self._subscriptions:
@@ -177,6 +182,7 @@ class VoiceFeature(PageFeature):
             for subscription in self._subscriptions:
                 self._node.destroy_subscription(subscription)
             self._subscriptions.clear()
+            self._proposes = False
             if self._text_input is not None:
                 self._node.destroy_publisher(self._text_input)
                 self._text_input = None
@@ -187,6 +193,10 @@ class VoiceFeature(PageFeature):
         for page in self._watchers:
             page.send(VoiceSaid(self._said, part, message.data[:_LONGEST_TEXT]))
 
+    def _take_proposal(self, message: Any) -> None:
+        self._proposes = message.data
+        self._review()
+
     def _review(self) -> None:
         """Tell the pages that watch what has changed."""
         if not self._watchers:
@@ -194,10 +204,11 @@ class VoiceFeature(PageFeature):
         graph = self._node.graph
         sound = graph.count_subscribers(f"{NAMESPACE}/audio_stamped") + graph.count_subscribers(f"{NAMESPACE}/audio")
         texts = graph.count_subscribers(_TEXT_INPUT)
+        proposes = self._proposes and graph.count_publishers(_PROPOSE) > 0
         talker = self._floor.talker
         for page, told in self._watchers.items():
             talking: Talking = "nobody" if talker is None else "you" if talker is page else "another"
-            state = VoiceState(talking, sound, texts, page in self._cut)
+            state = VoiceState(talking, sound, texts, page in self._cut, proposes)
             if state != told:
                 self._watchers[page] = state
                 page.send(state)
