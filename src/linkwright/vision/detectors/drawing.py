@@ -12,8 +12,10 @@ from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.library import load_opencv
 
 _HUES = 24
-_TEXT_HEIGHT = 12
-"""The height of text in pixels, for a picture with 480 rows."""
+_TEXT_SHARE = 1 / 26
+"""The height of capitals as a part of the picture's: a panel of the page shows pictures a few hundred pixels high."""
+_LEAST_TEXT = 9
+"""Pixels."""
 
 
 def colour_of(name: str) -> tuple[int, int, int]:
@@ -39,7 +41,8 @@ def drawn(picture: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
     cv2 = load_opencv()
     canvas = np.array(picture, order="C")
     thick = max(1, round(picture.shape[0] / 300))
-    scale = cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, max(8, _TEXT_HEIGHT * picture.shape[0] // 480))
+    tall = max(_LEAST_TEXT, round(_TEXT_SHARE * picture.shape[0]))
+    scale, stroke = cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, tall), max(1, round(tall / 10))
     for index in reversed(range(len(found))):  # the most certain last, so that nothing is drawn over it
         name = found.name(index)
         colour = colour_of(name)
@@ -49,9 +52,10 @@ def drawn(picture: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
         else:
             cv2.rectangle(canvas, (left, top), (right, bottom), colour, thick)
         text = f"{name} {found.scores[index]:.2f}"
-        (width, height), below = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)
+        (width, height), below = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, stroke)
         line = max(height + below, top - thick)
+        left = max(0, min(left, picture.shape[1] - width))
         cv2.rectangle(canvas, (left, line - height - below), (left + width, line), colour, cv2.FILLED)
         dark = (0, 0, 0) if sum(colour) > 380 else (255, 255, 255)
-        cv2.putText(canvas, text, (left, line - below // 2), cv2.FONT_HERSHEY_SIMPLEX, scale, dark, 1, cv2.LINE_AA)
+        cv2.putText(canvas, text, (left, line - below // 2), cv2.FONT_HERSHEY_SIMPLEX, scale, dark, stroke, cv2.LINE_AA)
     return canvas
