@@ -204,3 +204,20 @@ def test_a_description_that_takes_the_place_of_another_is_told(live, open_page):
     viewer.run(lambda: publisher.publish(String(data=WIDE.replace('"wide"', '"narrow"'))))
     notice.get_by_text("The description of another node is shown now").wait_for()
     becomes(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)
+
+
+def test_of_a_fixed_frame_that_is_missing_one_that_exists_is_proposed_with_the_robot_which_is_then_seen(
+    live, open_page
+):
+    grid = "- {Class: rviz_default_plugins/Grid, Name: Grid, Enabled: true}"
+    viewer = live(configuration(grid, distance=100.0).replace("Fixed Frame: base", "Fixed Frame: map"))
+    viewer.publish("/robot_description", String(data=WIDE), DESCRIPTION_QOS)
+    viewer.place("base", 8, 0, 0, parent="odom")
+    page = open_page(viewer, wait=False)
+    notice = page.locator("[data-notice=frame]")
+    notice.get_by_text("The frame 'map' does not exist").wait_for()
+    notice.get_by_role("button", name="Use odom, and show the robot").click()
+    notice.wait_for(state="hidden")
+    # However long its frames take to come.
+    until(page, "lw.displays.length === 2 && lw.view.values.Distance < 50")
+    assert abs(state(page, "view.values")["Focal Point/X"] - 8) < 1

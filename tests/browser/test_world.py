@@ -33,6 +33,8 @@ WORLD = """\
 """
 SERVICES = {
     "/pause_physics": "std_srvs/srv/Empty",
+    "/get_model_list": "gazebo_msgs/srv/GetModelList",
+    "/spawn_entity": "gazebo_msgs/srv/SpawnEntity",
     "/delete_entity": "gazebo_msgs/srv/DeleteEntity",
     "/get_entity_state": "gazebo_msgs/srv/GetEntityState",
     "/set_entity_state": "gazebo_msgs/srv/SetEntityState",
@@ -71,7 +73,7 @@ def test_models_are_drawn_and_move(live, open_page):
     assert bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
 
 
-def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live, open_page, monkeypatch):
+def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live, open_page, monkeypatch, tmp_path):
     listed = threading.Event()
     monkeypatch.setattr(things, "choices", lambda packages: (listed.wait(SECONDS), ModelChoices([]))[1])
     viewer = described(live)
@@ -119,7 +121,13 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     listed.set()
     dialog.get_by_text("No model is on the search path").wait_for()
     assert failure.is_visible(), "a list that comes late takes nothing away"
-    dialog.get_by_role("button", name="Cancel").click()
+    (tmp_path / "seen.urdf").write_text(SEEN, encoding="utf-8")
+    dialog.get_by_label("Model or file").fill(str(tmp_path / "seen.urdf"))
+    dialog.get_by_role("button", name="Add a model").click()
+    dialog.wait_for(state="detached")
+    (spawned,) = requests("/spawn_entity")
+    assert '<robot name="seen">' in spawned.xml
+    assert (spawned.initial_pose.position.x, spawned.initial_pose.position.y) == (3.0, 0.0)
 
     box = page.locator(".canvas-box canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2

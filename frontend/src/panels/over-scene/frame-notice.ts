@@ -18,10 +18,7 @@ export class FrameNotice {
   private told: string | null = null;
   private robot: TopicChoice | null = null;
 
-  constructor(
-    private readonly session: Session,
-    private readonly fit: () => void,
-  ) {
+  constructor(private readonly session: Session) {
     const { displays, frames, configuration } = session;
     this.element.hidden = true;
     const review = coalesced(() => this.review());
@@ -75,12 +72,7 @@ export class FrameNotice {
     const row = session.displays.globalOptions.find("Fixed Frame");
     if (row) session.setProperty(row.id, frame);
     if (description === null) return;
-    const forget = session.robotChanged.on(({ links }) => {
-      if (links.length === 0) return;
-      forget();
-      // The frames of its links come with the next transforms.
-      setTimeout(this.fit, 1000);
-    });
+    session.view.lookAtRobots();
     session.configuration.add(ROBOT_MODEL, "RobotModel", null, description);
   }
 }

@@ -48,7 +48,7 @@ export class ScenePanel implements Panel {
     const told = [
       new ToolNotice(session.tools),
       new GoalNotice(session.monitor.navigation),
-      new FrameNotice(session, fit),
+      new FrameNotice(session),
       new LineNotice(session),
       new OwnerNotice(session),
       new MeshNotice(session.meshProgress),
