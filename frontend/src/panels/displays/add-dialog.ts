@@ -106,6 +106,7 @@ export class AddDialog {
     this.choices = [];
     const entries = this.tab === "type" ? this.types(wanted) : this.byTopic(wanted);
     this.list.replaceChildren(...entries);
+    this.list.role = entries.length > 0 ? "listbox" : "group"; // a listbox without options is none
     if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.emptyText()));
     const again = this.choices.find((each) => each.cls === before?.cls && each.topic === before.topic);
     this.choose(again ?? (wanted === "" ? null : (this.choices[0] ?? null)));

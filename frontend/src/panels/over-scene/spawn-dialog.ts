@@ -69,6 +69,7 @@ export class SpawnDialog {
     const chosen = models.some(({ address }) => address === typed);
     const shown = chosen ? models : models.filter(({ name }) => name.toLowerCase().includes(typed.toLowerCase()));
     this.list.replaceChildren(...shown.map((model) => this.row(model, model.address === typed)));
+    this.list.role = shown.length > 0 ? "listbox" : "group"; // a listbox without options is none
     if (this.models && shown.length === 0) {
       this.list.append(h("p", { class: "empty" }, models.length === 0 ? words.noModels : words.notListed));
     }
