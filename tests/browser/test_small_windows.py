@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from itertools import pairwise
 from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page
 
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import get_message
 from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import LiveViewer, configuration
 
@@ -101,14 +104,45 @@ def test_the_filter_of_displays_does_not_lie_over_the_tabs(sized):
     assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "it stands beside the buttons"
 
 
-def test_a_phone_has_all_of_the_title_bar(sized):
-    page = sized(390, 844)
+@pytest.mark.parametrize("width", [360, 390])
+def test_a_phone_has_all_of_the_title_bar(sized, width):
+    page = sized(width, 844)
     edges = page.locator(".title-bar button:visible").evaluate_all(
         "all => all.map(each => each.getBoundingClientRect()).map(({ left, right }) => [left, right])"
     )
     assert len(edges) == 9
-    assert all(left >= 0 and right <= 390 for left, right in edges), edges
+    assert all(left >= 0 and right <= width for left, right in edges), edges
     assert all(before[1] <= after[0] + 0.5 for before, after in pairwise(edges)), edges
+
+
+def test_a_phone_shows_all_of_a_map_also_when_it_is_turned_until_the_user_moves_the_camera(browser, live):
+    displays = "- {Class: rviz_default_plugins/Map, Name: Map, Enabled: true, Topic: {Value: /map}}"
+    above = configuration(displays).replace("rviz_default_plugins/Orbit", "rviz_default_plugins/TopDownOrtho")
+    viewer = live(above.replace("Distance: 10.0", "Scale: 60"))
+    grid = get_message("nav_msgs/msg/OccupancyGrid")()
+    grid.header.frame_id = "base"
+    grid.info.width = grid.info.height = 100
+    grid.info.resolution, grid.info.origin.position.x, grid.info.origin.orientation.w = 0.1, 20.0, 1.0
+    grid.data = [0] * 10_000
+    viewer.publish("/map", grid, DESCRIPTION_QOS)
+    with closing(browser.new_context(viewport={"width": 1280, "height": 800})) as context:
+        page = context.new_page()
+        page.goto(viewer.url)
+        until(page, "lw.displays[0]?.drawn?.cells === 10000 && lw.settled")
+        assert state(page, "view.values.Scale") == 60
+        page.set_viewport_size({"width": 390, "height": 844})
+        until(page, "lw.view.values.X === 25 && lw.view.values.Scale * 10 < 390")
+        assert state(page, "view.values.Scale") * 10 > 250
+        page.set_viewport_size({"width": 844, "height": 390})
+        until(page, "lw.view.values.Scale * 10 < document.querySelector('.canvas-box canvas').clientHeight")
+        framed = state(page, "view.values.Scale")
+        page.locator(".canvas-box canvas").hover()
+        page.mouse.wheel(0, -120)
+        until(page, f"lw.view.values.Scale !== {framed}")
+        moved = state(page, "view.values.Scale")
+        page.set_viewport_size({"width": 390, "height": 844})
+        viewer.settle(page)
+        assert state(page, "view.values.Scale") == moved
 
 
 @pytest.mark.parametrize(("width", "height"), [(1024, 600), (1280, 800)])

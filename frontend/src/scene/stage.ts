@@ -16,6 +16,7 @@ import { FocalShape } from "./focal-shape";
 import { lookFirst, spanOf } from "./first-look";
 import { FreeRoom } from "./free-room";
 import { FINEST, FrameLoop, type Detail } from "./frame-loop";
+import { frameMaps } from "./map-look";
 import { InspectLayer } from "./inspect/inspect-layer";
 import { SERVED, type MeshFiles } from "./meshes/mesh-files";
 import { MeshLibrary } from "./meshes/mesh-library";
@@ -254,6 +255,7 @@ export class Stage {
   private draw(detail: Detail): void {
     const { view } = this.session;
     this.viewport.share = detail.share;
+    frameMaps(this.enabled(), view, this.room);
     this.viewport.aim(view);
     this.focalShape.place(view);
     const { lighting } = this;
@@ -300,8 +302,7 @@ export class Stage {
   /** Puts the camera that nobody has put anywhere before the robot, as far as that is there, or into a world that is all there. */
   private lookFirst(settled: boolean): void {
     const { view } = this.session;
-    const robots = this.robots();
-    const [world] = this.worlds();
+    const [robots, [world]] = [this.robots(), this.worlds()];
     if (robots.length === 0 && world?.isInPlace) {
       if (settled) lookFirst(world, view, this.viewport.size);
     } else {

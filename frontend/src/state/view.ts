@@ -11,6 +11,7 @@ import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
 export const FIXED_FRAME = "<Fixed Frame>";
 const ORBIT = "rviz_default_plugins/Orbit";
+const TOP_DOWN = "rviz_default_plugins/TopDownOrtho";
 const CURRENT_NAME = "Current View";
 const TARGET_FRAME = "Target Frame";
 const ANNOUNCE_INTERVAL_MS = 250;
@@ -27,6 +28,8 @@ export class ViewState {
   private showsWholeRobot = false;
   /** What there was when the camera was last put where it shows all of it; null: somebody has put it somewhere. */
   private lookedAt: { readonly what: string; readonly box: Span | null } | null = null;
+  /** The map that the camera shows all of, where a file put it and nobody has moved it; "" for none, null: somebody has. */
+  private framedMap: string | null = null;
   private revision: number | null = null;
   private measuredFor: number | null = null;
   /** A program that was started again does not know the size of the robots yet, wherever the camera is. */
@@ -110,9 +113,15 @@ export class ViewState {
     return this.measuresAgain;
   }
 
+  /** Looks at all of the robots as soon as they are there. */
+  lookAtRobots(): void {
+    this.awaitFirstLook(true);
+  }
+
   /** Keeps the camera where it is, since somebody works with it. */
   stay(): void {
     this.lookedAt = null;
+    this.framedMap = null;
   }
 
   /** Looks at all of a box in the fixed frame, from the side it is seen from, in a canvas of this size. */
@@ -125,6 +134,18 @@ export class ViewState {
     const before = this.lookedAt?.box;
     if (!before || !holds(before, box)) this.update(this.fitted(box, size));
     this.lookedAt = { what, box: before && holds(before, box) ? before : box };
+  }
+
+  /** A file put the camera, it looks at a map as a plan, and nobody has moved it since; it does not show all of this map yet. */
+  awaitsMap(map: string): boolean {
+    return this.view.cls === TOP_DOWN && this.framedMap !== null && this.framedMap !== map;
+  }
+
+  /** Shows all of a map. The file keeps its own view. */
+  frameMap(box: Span, size: ViewSize, map: string): void {
+    this.framedMap = map;
+    this.view = { ...this.view, values: { ...this.values, ...this.bounded(TOP_DOWN, this.fitted(box, size)) } };
+    this.changed.emit();
   }
 
   /**
@@ -247,6 +268,7 @@ export class ViewState {
 
   private awaitFirstLook(awaits: boolean): void {
     this.lookedAt = awaits ? { what: "", box: null } : null;
+    this.framedMap = "";
   }
 
   private fitted(box: Span, size: ViewSize): ViewValues {
@@ -255,6 +277,7 @@ export class ViewState {
 
   private change(view: View): void {
     this.lookedAt = null;
+    this.framedMap = null;
     this.show(view);
   }
 

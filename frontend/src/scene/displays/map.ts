@@ -1,4 +1,4 @@
-import { Group, Matrix4, Plane, Quaternion, Vector3, type Raycaster } from "three";
+import { Box3, Group, Matrix4, Plane, Quaternion, Vector3, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { OccupancyMap } from "../../protocol";
 import { CellPlane } from "../objects/cell-plane";
@@ -72,12 +72,29 @@ export class MapDrawing implements Drawing {
     return { key: "", distance: point.distanceTo(ray.origin), point, isGround: true };
   }
 
+  /** Its cells, `384 x 256`; empty without a map. */
+  get size(): string {
+    return this.map ? `${this.map.width} x ${this.map.height}` : "";
+  }
+
+  /** The box around it in the fixed frame, m; empty where none is shown. */
+  bounds(): Box3 {
+    this.update();
+    return this.plane.root.visible ? new Box3().setFromPoints(this.corners()) : new Box3();
+  }
+
+  private corners(): Vector3[] {
+    if (!this.map) return [];
+    const { width, height, resolution } = this.map;
+    const [x, y] = [width * resolution, height * resolution];
+    return [[0, 0], [x, 0], [0, y], [x, y]].map(([along = 0, up = 0]) => new Vector3(along, up, 0).applyMatrix4(this.root.matrix));
+  }
+
   inspect(): object {
     this.update();
     if (!this.map) return { cells: 0 };
-    const { width, height, resolution, cells } = this.map;
-    const corner = new Vector3().setFromMatrixPosition(this.root.matrix).toArray();
-    const far = new Vector3(width * resolution, height * resolution, 0).applyMatrix4(this.root.matrix).toArray();
+    const { width, height, cells } = this.map;
+    const [corner, , , far] = this.corners().map((each) => each.toArray());
     const counts: Record<number, number> = {};
     for (const value of cells) counts[value] = (counts[value] ?? 0) + 1;
     const colors = Object.keys(counts).map((value) => [
