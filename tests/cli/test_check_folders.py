@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+from pathlib import Path
 
 import pytest
 
@@ -273,8 +274,10 @@ def test_an_address_is_shown_as_it_was_typed(here, capsys):
 @pytest.mark.parametrize(("manifest", "is_told"), [("web/package.json", False), ("package.json", True)])
 def test_a_web_page_in_a_package_reads_urdf_in_its_own_way(here, manifest, is_told):
     write(here, {"package.xml": "<package/>", manifest: "{}", "web/public/robot.urdf": GOOD, "urdf/robot.urdf": GOOD})
-    found = [path.parent.name for path in find_targets([here]).files]
-    assert found == (["urdf", "public"] if is_told else ["urdf"])
+    write(here, {"inner/package.xml": "<package/>"})
+    for folder in (here, Path()):
+        found = [path.parent.name for path in find_targets([folder]).files]
+        assert found == (["urdf", "public"] if is_told else ["urdf"])
 
 
 def test_a_folder_with_nothing_in_it_is_told(here, capsys):

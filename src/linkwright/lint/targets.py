@@ -82,12 +82,13 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
         if not IGNORE_MARKERS.isdisjoint(names):
             folders.clear()
             continue
-        if _WEB_PAGE in names and MANIFEST not in names and packages and Path(place).is_relative_to(packages[-1]):
+        here = Path(place).absolute()
+        if _WEB_PAGE in names and MANIFEST not in names and not set(packages).isdisjoint(here.parents):
             folders.clear()
             continue
         folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
         if MANIFEST in names:
-            packages.append(Path(place).absolute())
+            packages.append(here)
         described = [Path(place, name) for name in sorted(names) if name.endswith((*_WHOLE, _XACRO))]
         found += [path for path in described if not path.is_fifo()]
     return found, packages
