@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 
-from linkwright.cli import calls, main
+from linkwright.cli import calls, control, main
 from linkwright.graph import Graph
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.control.ros2_control_node import Ros2ControlNode
@@ -139,8 +141,19 @@ def test_chains_are_drawn(manager, capsys, tmp_path, monkeypatch):
     assert '"positions" -> "hw command_interfaces" [label="hip/position"];' in text
 
 
+def test_a_manager_that_comes_later_than_other_services_may_is_waited_for(in_graph, capsys, monkeypatch):
+    monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.0)
+
+    def later(graph: Graph) -> None:
+        parameters = {"robot_description": robot(joint("hip"))}
+        asyncio.get_running_loop().call_later(0.2, lambda: Ros2ControlNode(graph, NodeOptions(parameters=parameters)))
+
+    in_graph(later)
+    assert run(capsys, "list_controllers") == "No controllers are currently loaded!\n"
+
+
 def test_another_manager_is_asked(manager, capsys, monkeypatch):
-    monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.5)
+    monkeypatch.setattr(control, "MANAGER_WITHIN", 0.5)
     manager()
     said = run(capsys, "list_controllers", "-c", "/robot/controller_manager", status=1)
     assert "/robot/controller_manager/list_controllers" in said

@@ -96,6 +96,14 @@ async def test_topics_are_there_before_the_simulation_has_them(stage):
     assert [counts[name] for name in ("/scan", "/cmd_vel", "/both")] == [(1, 0), (0, 1), (1, 1)]
 
 
+@pytest.mark.parametrize("types", ["", "@gz.msgs.WorldControl@gz.msgs.Boolean"])
+async def test_a_service_among_the_topics_is_told_of_and_the_topics_are_bridged(stage, said, types):
+    words = [f"/world/empty/control@ros_gz_interfaces/srv/ControlWorld{types}", SCAN]
+    ParameterBridge(stage.graph, NodeOptions(arguments=words))
+    assert "/scan" in stage.graph.topics()
+    assert said("WARN") == ["/world/empty/control is not bridged: services of gz are not here"]
+
+
 async def test_a_remapped_name_is_bridged(stage):
     kind = "nav_msgs/msg/Odometry"
     moved = heard(stage, kind, "/odom")

@@ -19,7 +19,13 @@ class NoAnswerError(LinkwrightError):
 
 
 async def call(
-    session: Session, service_type: str, service_name: str, request: Any, *, timeout: float | None = None
+    session: Session,
+    service_type: str,
+    service_name: str,
+    request: Any,
+    *,
+    timeout: float | None = None,
+    appears_within: float | None = None,
 ) -> Any:
     """The response of a service.
 
@@ -29,15 +35,17 @@ async def call(
         service_name: absolute.
         request: what to ask.
         timeout: how long to wait for the response, in seconds; as long as it takes when left out.
+        appears_within: how long to wait for the service, in seconds; `APPEARS_WITHIN` when left out.
 
     Raises:
         NoAnswerError: CLI421, the service is not there; CLI422, it does not answer in time.
     """
     from linkwright.messages import get_service
 
+    within = APPEARS_WITHIN if appears_within is None else appears_within
     client = session.node.create_client(get_service(service_type), service_name)
     try:
-        if not await session.until(client.service_is_ready, APPEARS_WITHIN):
+        if not await session.until(client.service_is_ready, within):
             raise NoAnswerError(
                 Diagnostic(
                     "CLI421",

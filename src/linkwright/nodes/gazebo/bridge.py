@@ -195,9 +195,17 @@ class ParameterBridge(_Bridge):
             path = str(self._node.declare_parameter("config_file", "").value)
             self._lazy = bool(self._node.declare_parameter("lazy", False).value)
             self._expands = bool(self._node.declare_parameter("expand_gz_topic_names", False).value)
-            topics = [topic_of_word(word) for word in words]
+            topics = [topic_of_word(word) for word in words if not self._is_service(word)]
             topics += topics_of_file(path) if path else []
             self._connect(graph, topics)
+
+    def _is_service(self, word: str) -> bool:
+        """Whether an argument is a service, ``SERVICE@ROS_TYPE``; that it is not bridged is logged."""
+        name, _, types = word.partition("@")
+        is_service = "/srv/" in types.partition("@")[0]
+        if is_service:
+            self._node.get_logger().warning(f"{name} is not bridged: services of gz are not here")
+        return is_service
 
 
 class StaticBridge(_Bridge):
