@@ -112,6 +112,18 @@ async def test_links_move_by_their_names_and_stay_when_the_world_is_described_an
         assert sent(made, "world_poses").fields["revision"] == sent(made, "world_scene").fields["revision"] == 2
 
 
+async def test_what_nothing_moves_goes_where_a_new_description_has_it():
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        await simulation.move(robot__base=(5, 5, 5, 0, 0, 0, 1))
+        lower = WORLD.replace("<static>true</static>", "<static>true</static><pose>0 0 -1 0 0 0</pose>")
+        await simulation.describe(lower)
+        await eventually(lambda: positions(made) == [[0, 0, -1], [5, 5, 5], [1, 3, 0]])
+        await simulation.describe(lower.replace("<pose>1 2 0 0 0 0</pose>", "<static>true</static>"))
+        await eventually(lambda: positions(made) == [[0, 0, -1], [0, 0, 0.5], [0, 1, 0]])
+
+
 async def test_without_a_frame_world_the_world_is_placed_by_a_frame_of_its_robot():
     async with world(config("odom")) as made:
         simulation = Simulation(made)
