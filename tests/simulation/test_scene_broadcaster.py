@@ -69,6 +69,16 @@ async def test_a_spawned_model_is_told_and_a_deleted_one_no_more():
         assert names(recording.last) == []
 
 
+async def test_a_model_without_links_is_told_where_it_stands():
+    mark = '<model name="mark"><static>true</static><pose>1 2 3 0 0 0</pose></model>'
+    async with served(GROUND, mark, BROADCASTER) as (server, graph, log):
+        recording = Recording(graph, server.node, ALL)
+        server.advance(SECOND // 10)
+        await graph.settle()
+        assert translation(recording.last, "mark") == (1.0, 2.0, 3.0)
+        assert not log
+
+
 async def test_it_keeps_the_rate_that_it_is_given():
     slow = BROADCASTER.replace("/>", "><dynamic_pose_hertz>10</dynamic_pose_hertz></plugin>")
     async with served(GROUND, robot(), slow) as (server, graph, log):

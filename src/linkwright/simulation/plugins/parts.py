@@ -61,6 +61,9 @@ def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
 def _frame_of(simulation: Simulation, model: Model, path: str) -> Pose:
     """The pose in the world of a model's frame."""
     top, _, inside = path.partition(SEPARATOR)
+    whole = simulation.scene.models[top]
+    if not whole.structure.links:  # nothing of it moves
+        return partial(_same, whole.pose)
     if not inside or not model.links:
         return lambda: simulation.model_pose(top)
     first = model.links[0].name
