@@ -228,7 +228,11 @@ async def test_a_sensor_of_gz_without_a_topic_has_the_name_of_gz():
 
 @pytest.mark.parametrize(
     ("library", "text", "topic"),
-    [("libgazebo_ros_imu_sensor.so", "", "/driver/out"), (None, "<topic>imu</topic>", "/imu")],
+    [
+        ("libgazebo_ros_imu_sensor.so", "", "/driver/out"),
+        (None, "<topic>imu</topic>", "/imu"),
+        ("ignition-gazebo-imu-system", "<topic>imu</topic>", "/imu"),
+    ],
 )
 async def test_imus_tell_gravity_and_their_noise(library: str | None, text: str, topic: str):
     noise = '<angular_velocity><z><noise type="gaussian"><stddev>0.1</stddev></noise></z></angular_velocity>'
@@ -239,7 +243,7 @@ async def test_imus_tell_gravity_and_their_noise(library: str | None, text: str,
         assert message.angular_velocity_covariance[8] == pytest.approx(0.01)
         assert message.angular_velocity.z != 0
         assert not message.orientation_covariance.any()
-        assert message.header.frame_id == ("link" if library else "one/link/eye")
+        assert message.header.frame_id == ("link" if topic == "/driver/out" else "one/link/eye")
         assert not log
 
 
