@@ -104,6 +104,10 @@ class TestWhatUrdfdomReadsAllTheSame:
             ('read me\n<robot name="r"><link name="a"/></robot>', "XML206"),
             ('<?xml version="1.0"?>\n<!-- a --> read me <robot name="r"><link name="a"/></robot>', "XML206"),
             (f'read me <robot name="r" {PREFIX}><link name="a"/></robot>', "XML206"),
+            ('<robot name="r"><link name="a"/></robot><robot name="s"/>', "XML207"),
+            ('<robot name="r"><link name="a"/></robot></xml>', "XML207"),
+            ('<robot name="r"><link name="a"/></robot><b>words</b></xml> <what follows', "XML207"),
+            ('<robot name="r"><link name="a"/></robot> words </b>', "XML207"),
             ('<robot name="r"><sensor:camera/><link name="a"/></robot>', "XML205"),
             (f'<robot name="r" {PREFIX}><link name="a"/><xacro:camera/></robot>', "XAC401"),
             (f'<robot name="r" {PREFIX}><link name="a"/><xacro:include filename="no.xacro"/></robot>', "XML101"),
@@ -115,6 +119,13 @@ class TestWhatUrdfdomReadsAllTheSame:
         found = examine(path, partly=True)
         assert list(found.robot.links) == ["a"]
         assert [(each.severity.value, each.code) for each in found.diagnostics] == [("warning", code)]
+
+    @pytest.mark.parametrize("rest", ["<b>", "<b></c>", '<?xml version="1.0"?>', "<", "&"])
+    def test_the_rest_after_the_root_is_an_error_where_it_is_one_for_tinyxml2(self, tmp_path, rest):
+        path = tmp_path / "r.urdf"
+        path.write_text(f'<robot name="r"><link name="a"/></robot>{rest}')
+        with pytest.raises(LinkwrightError, match=r"r\.urdf:1:4"):
+            examine(path, partly=True)
 
     def test_a_declaration_after_text_is_an_error_for_tinyxml2_too(self, tmp_path):
         path = tmp_path / "r.urdf"

@@ -339,6 +339,13 @@ def test_comments_keep_their_hyphens():
     assert document.source.text == text
 
 
+def test_what_follows_the_root_is_not_read_and_told_of():
+    text = '<sdf version="1.6"><world name="w"/></sdf>\n<!-- <plugin>\n<!-- wheels --> <left/>\n</plugin> -->\n'
+    document, warnings = parse_as_gazebo(text, "w.sdf")
+    assert [each.tag for each in document.root.elements()] == ["world"]
+    assert [(each.code, each.span.line) for each in warnings] == [("XML206", 3), ("XML207", 3)]
+
+
 def test_an_empty_file_is_told_how_a_world_begins():
     with pytest.raises(LinkwrightError) as error:
         parse_as_gazebo(" ", "w.sdf")

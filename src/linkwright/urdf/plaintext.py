@@ -1,8 +1,7 @@
 """XML text as urdfdom's parser takes it, which is not quite as XML says.
 
 tinyxml2 keeps tabs and line breaks inside attribute values, where XML makes them spaces, and urdfdom does not take them
-between numbers. It also does not mind blanks before the XML declaration, more elements after the root, and what
-`linkwright.xmltree.tinyxml` lists.
+between numbers. It also does not mind blanks before the XML declaration, and what `linkwright.xmltree.tinyxml` lists.
 """
 
 from __future__ import annotations
@@ -40,10 +39,6 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
     try:
         document = parse(text, name, blanks=False)
     except LinkwrightError as error:
-        end = _end_of_root(error)
-        if end is not None:
-            parse(f"<rest>{text[end:]}</rest>", name)  # tinyxml2 wants it well-formed all the same
-            text = text[:end] + blanked(text[end:])
         try:
             document, warnings = parse_as_tinyxml(text, name, _READ_ALL_THE_SAME)
         except LinkwrightError:
@@ -51,14 +46,6 @@ def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diag
     if any(blank in text and inside.search(text) for blank, inside in _INSIDE_VALUE.items()):
         _restore_blanks(document.root, text)
     return document, warnings
-
-
-def _end_of_root(error: LinkwrightError) -> int | None:
-    """Where the content after the root begins, if that is what the error is about."""
-    found = error.diagnostics[0]
-    if found.code != "XML207" or found.span is None or found.source is None:
-        return None
-    return found.source.offset(found.span.line, found.span.column)
 
 
 def _restore_blanks(root: Element, text: str) -> None:

@@ -1,7 +1,8 @@
 """Parsing XML as TinyXML2 does, the parser of urdfdom and the simulators, which accepts more than XML allows.
 
-It knows no namespaces, ends a comment at ``-->`` alone, passes over text before the root element, and an ``&`` that
-begins no entity does not trouble it. Such files work for their users, so they are read, with a warning.
+It knows no namespaces, ends a comment at ``-->`` alone, passes over text before the root element and over elements
+after it, reads nothing after a closing tag that closes nothing, and an ``&`` that begins no entity does not trouble it.
+Such files work for their users, so they are read, with a warning.
 """
 
 from __future__ import annotations
@@ -9,12 +10,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from xml.parsers.expat import ExpatError, ParserCreate
+from xml.parsers.expat.errors import XML_ERROR_TAG_MISMATCH, codes
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, SourceText, Span, phrase
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, Text
 from linkwright.xmltree.reader import parse
 
-_UNDECLARED = "XML205"
+_UNDECLARED, _AFTER_ROOT, _NOT_XML = "XML205", "XML207", "XML206"
 _OUTSIDE_TAGS = re.compile(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
 _BEFORE_ROOT = re.compile(r"\A(?:\s*<\?xml\s[^>]*\?>)?(?:\s|<!--.*?-->)*([^<\s][^<]*)(?=<(?!\?xml\s))", re.DOTALL)
 """Text before the root element; a declaration that follows it is one mistake too many for TinyXML2, too."""
@@ -27,7 +30,7 @@ _STAND_IN = "\x7f"
 def parse_as_tinyxml(
     text: str, name: str, readers: Phrase, *, read_as: str | None = None
 ) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Parse a text as TinyXML2 does, with a warning (XML206, XML205) for each kind of thing that XML forbids.
+    """Parse a text as TinyXML2 does, with a warning (XML205 to XML207) for each kind of thing that XML forbids.
 
     Args:
         text: the text.
@@ -69,12 +72,12 @@ def parse_as_tinyxml(
         )
         for at in bare:
             read_as = read_as[:at] + _STAND_IN + read_as[at + 1 :]
-    document, undeclared = _parsed(text, name, read_as)
+    document, more = _parsed(source, read_as, readers)
     if bare:
         _put_back(document.root)
     for comment in _comments(document) if dashed else ():
         comment.data = text[comment.offset + 4 : text.index("-->", comment.offset + 4)]
-    return document, (*warnings, *undeclared)
+    return document, (*warnings, *more)
 
 
 def blanked(text: str) -> str:
@@ -87,15 +90,60 @@ def forbidden(message: Phrase, span: Span, source: SourceText, hint: Phrase, rea
     return Diagnostic("XML206", message, span, Severity.WARNING, (Note(readers),), hint, source)
 
 
-def _parsed(text: str, name: str, read_as: str) -> tuple[Document, tuple[Diagnostic, ...]]:
+def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document, tuple[Diagnostic, ...]]:
     try:
-        return parse(text, name, blanks=False, read_as=read_as), ()
+        return parse(source.text, source.name, blanks=False, read_as=read_as), ()
     except LinkwrightError as error:
         found = error.diagnostics[0]
-        if found.code != _UNDECLARED:
+        if found.code == _UNDECLARED:
+            document = parse(source.text, source.name, blanks=False, read_as=read_as, any_prefix=True)
+            return document, (replace(found, severity=Severity.WARNING),)
+        end = _end_of_root(found, read_as)
+        if end is None or not _is_passed_over(read_as[end:]):
             raise
-        document = parse(text, name, blanks=False, read_as=read_as, any_prefix=True)
-        return document, (replace(found, severity=Severity.WARNING),)
+        try:
+            document, more = _parsed(source, read_as[:end] + blanked(read_as[end:]), readers)
+        except LinkwrightError:
+            raise error from None
+        if all(each.code != _AFTER_ROOT for each in more):
+            more = (_passed_over(source, end, readers), *more)
+        return document, more
+
+
+def _passed_over(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
+    """The warning about what follows the root."""
+    message = phrase("there is content after the end of the root element")
+    hint = phrase("a file has one root element")
+    return Diagnostic(_AFTER_ROOT, message, source.span(end, end + 1), Severity.WARNING, (Note(readers),), hint, source)
+
+
+def _end_of_root(found: Diagnostic, text: str) -> int | None:
+    """Where the content after the root may begin, by the error that it makes."""
+    if found.span is None or found.source is None:
+        return None
+    at = found.source.offset(found.span.line, found.span.column)
+    return at if found.code == _AFTER_ROOT or (found.code == _NOT_XML and text.startswith("</", at)) else None
+
+
+def _is_passed_over(rest: str) -> bool:
+    """Whether elements after the root are whole, up to a closing tag that closes nothing."""
+    parser = ParserCreate()
+    depth = 0
+
+    def opened(*_: object) -> None:
+        nonlocal depth
+        depth += 1
+
+    def closed(*_: object) -> None:
+        nonlocal depth
+        depth -= 1
+
+    parser.StartElementHandler, parser.EndElementHandler = opened, closed
+    try:
+        parser.Parse(f"<rest>{rest}</rest>", True)
+    except ExpatError as error:
+        return depth == 1 and error.code == codes[XML_ERROR_TAG_MISMATCH]
+    return True
 
 
 def _tags_alone(text: str) -> str:
