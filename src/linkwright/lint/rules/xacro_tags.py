@@ -112,7 +112,7 @@ class XacroNamespaceMissing(XacroRule):
     ## Why
 
     Without `xmlns:xacro` on its root a file is plain URDF for every tool that does not go by the ending of its name: it
-    is not expanded, and its expressions are taken for names and numbers.
+    is not expanded, and its expressions are taken for names and numbers. ROS's xacro expands it all the same. Pedantic.
 
     ## Example
 
@@ -131,6 +131,7 @@ class XacroNamespaceMissing(XacroRule):
     code = "LW721"
     name = "xacro-namespace-missing"
     holds_for_parts = True
+    default = False
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         file = facts.main
