@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -111,7 +112,8 @@ class WorldDisplay(TopicDisplay):
         self._content = WorldContent()
         self._rows_of: dict[str, int] = {}
         self._poses: NDArray[np.float64] = np.empty((0, 7))
-        self._moving: frozenset[str] = frozenset()
+        self._posed: Sequence[str] = ()
+        """The links of the last poses: all that something moves."""
         self._stamp_ns = 0
         self._anchors: tuple[int, ...] = ()
         self._leads = False
@@ -239,9 +241,10 @@ class WorldDisplay(TopicDisplay):
         self.context.meshes.replace(self.id, index.folders)
         before = {link.name: row for row, link in enumerate(self._content.links)}
         poses = np.array(content.poses, dtype=np.float64).reshape(-1, 7)
+        moving = frozenset(self._posed)
         static = tuple(f"{model.name}{SEPARATOR}" for model in world.models if model.static)
         for row, link in enumerate(content.links):  # what moves stays where it is until the simulation says more
-            if link.name in self._moving and link.name in before and not link.name.startswith(static):
+            if link.name in moving and link.name in before and not link.name.startswith(static):
                 poses[row] = self._poses[before[link.name]]
         self._revision += 1
         self._content, self._poses, self._sent = content, poses, ()
@@ -286,7 +289,7 @@ class WorldDisplay(TopicDisplay):
             self.say(_POSES, "error", phrase("Message contained invalid floating point values (nans or infs)"))
             return
         self.unsay(_POSES)
-        self._moving = frozenset(batch.children)
+        self._posed = batch.children
         # Transforms of this very moment may still be on their way, those of the last poses are there.
         self._locate()
         known = [place for place, row in enumerate(rows) if row >= 0]
