@@ -153,7 +153,10 @@ def test_a_manager_that_comes_later_than_other_services_may_is_waited_for(in_gra
 
 
 def test_another_manager_is_asked(manager, capsys, monkeypatch):
-    monkeypatch.setattr(control, "MANAGER_WITHIN", 0.5)
+    monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.3)
+    monkeypatch.setattr(control, "MANAGER_WITHIN", 0.2)
     manager()
     said = run(capsys, "list_controllers", "-c", "/robot/controller_manager", status=1)
-    assert "/robot/controller_manager/list_controllers" in said
+    service = "/robot/controller_manager/list_controllers"
+    waiting, found = f"waiting for service '{service}' to become available...", f"there is no service '{service}'"
+    assert 0 <= said.find(waiting) < said.find(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.lookup import absolute_or_given, unknown
@@ -25,7 +26,7 @@ async def call(
     request: Any,
     *,
     timeout: float | None = None,
-    appears_within: float | None = None,
+    longer: float = 0.0,
 ) -> Any:
     """The response of a service.
 
@@ -35,17 +36,20 @@ async def call(
         service_name: absolute.
         request: what to ask.
         timeout: how long to wait for the response, in seconds; as long as it takes when left out.
-        appears_within: how long to wait for the service, in seconds; `APPEARS_WITHIN` when left out.
+        longer: how much longer than `APPEARS_WITHIN` to wait for the service, in seconds; the user is told.
 
     Raises:
         NoAnswerError: CLI421, the service is not there; CLI422, it does not answer in time.
     """
     from linkwright.messages import get_service
 
-    within = APPEARS_WITHIN if appears_within is None else appears_within
     client = session.node.create_client(get_service(service_type), service_name)
     try:
-        if not await session.until(client.service_is_ready, within):
+        is_ready = await session.until(client.service_is_ready, APPEARS_WITHIN)
+        if not is_ready and longer > 0:
+            print(f"waiting for service '{service_name}' to become available...", file=sys.stderr, flush=True)
+            is_ready = await session.until(client.service_is_ready, longer)
+        if not is_ready:
             raise NoAnswerError(
                 Diagnostic(
                     "CLI421",

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 Ask = Callable[..., Coroutine[Any, Any, Any]]
 """Calls a service of the manager: its name, such as ``list_controllers``, and the fields of the request."""
 
-MANAGER_WITHIN = 60.0
-"""Seconds within which the manager must appear: that of a simulated robot comes with the robot."""
+MANAGER_WITHIN = 55.0
+"""How many seconds more than other services the manager may take to appear: a simulated robot brings its own."""
 _LOGS = "check controller_manager logs"
 _SECTIONS = {
     "claimed_interfaces": "claimed interfaces",
@@ -61,7 +61,7 @@ def _run(job: Callable[[argparse.Namespace, Ask], Coroutine[Any, Any, int]], arg
         async def ask(service: str, **fields: Any) -> Any:
             kind = "controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_"))
             name, request = f"{manager}/{service}", get_service(kind).Request(**fields)
-            return await call(session, kind, name, request, appears_within=MANAGER_WITHIN)
+            return await call(session, kind, name, request, longer=MANAGER_WITHIN)
 
         return await job(arguments, ask)
 
