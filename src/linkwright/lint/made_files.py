@@ -24,8 +24,8 @@ _LONGEST = 200_000
 def is_made_later(package: PackageContext, path: str) -> bool:
     """Return whether a file that a package lacks is likely to be made by a program or a user.
 
-    So it is where git ignores it, where CMake makes it, where it is a map (which mapping saves), and where another file
-    of the package that is no launch file speaks of it: a script that writes it, a README that says how to make it.
+    Such a file is ignored by git, made by CMake, a map (which mapping saves), or mentioned by another file of the
+    package: a script that writes it, or a README that says how to make it. Launch files do not count.
 
     Args:
         package: the package.

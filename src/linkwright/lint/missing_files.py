@@ -49,4 +49,4 @@ def _of_package_folder(diagnostic: Diagnostic) -> Diagnostic | None:
 
 
 def _path(diagnostic: Diagnostic) -> Path:
-    return Path(os.path.abspath(str(as_phrase(diagnostic.message).arguments.get("path", ""))))  # noqa: PTH100 - no links
+    return Path(os.path.abspath(str(as_phrase(diagnostic.message).arguments.get("path", ""))))  # noqa: PTH100 - resolve() follows links

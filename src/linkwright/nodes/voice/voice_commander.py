@@ -128,7 +128,7 @@ class VoiceCommander(SingleNode):
         # Silence may not wait for simulated time, which may stand still.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self._silence = node.create_timer(silence, self._silent, clock=clock, autostart=False)
-        # Pages enrol into the usual file, and who listens to all is not told what is no command.
+        # Pages write enrolled words to the default file. A node that always listens ignores what is not a command.
         self._presses = Presses(can_enrol=engine == "enrolled" and not words and not self._open)
         self._proposal: Publisher[Any] = node.create_publisher(_BOOL, "voice/propose_enrolling", _DEPTH)
         if engine:

@@ -93,9 +93,10 @@ class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({nam
         path = shutil.which(name, path=context.environment.get("PATH"))
         if path is not None:
             return path
-        if name in IN_PROCESS_PROGRAMS or name in PROGRAMS:
+        known = IN_PROCESS_PROGRAMS | PROGRAMS
+        if name in known:
             return name
-        hint = did_you_mean(name, IN_PROCESS_PROGRAMS) or phrase("install it, or add its folder to PATH")
+        hint = did_you_mean(name, known) or phrase("install it, or add its folder to PATH")
         ros_error = SubstitutionFailure(f"executable '{name}' not found on the PATH")
         raise error_at(
             self.place, "LAUNCH124", phrase("executable '{name}' is not on PATH", name=name), hint, ros_error=ros_error
