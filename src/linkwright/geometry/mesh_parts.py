@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -163,17 +164,32 @@ def _rgb(color: Any) -> tuple[float, float, float]:
 def read_png(path: Path) -> bytes | None:
     """An image in a file as PNG; None where it is none, or Pillow is not installed."""
     try:
-        from PIL import Image  # not above: an extra
-
-        with Image.open(path) as image:
-            return _png(image)
+        return _as_png(path.read_bytes())
     except (ModuleNotFoundError, OSError, ValueError, SyntaxError):
         return None
 
 
 def _png(image: Any) -> bytes | None:
+    """An image as PNG; the bytes that it was read from where they are known and are one, for encoding is slow."""
     if image is None:
         return None
+    source = getattr(image, "fp", None)  # Pillow's, until the pixels are decoded
+    return _as_png(source.getvalue()) if isinstance(source, BytesIO) else _encoded(image)
+
+
+@lru_cache(maxsize=8)
+def _as_png(data: bytes) -> bytes:
+    """An image file as PNG; kept for a while, as many meshes share one."""
+    from PIL import Image  # not above: an extra
+
+    image = Image.open(BytesIO(data))
+    if image.format != "PNG":
+        return _encoded(image)
+    image.verify()
+    return data
+
+
+def _encoded(image: Any) -> bytes:
     file = BytesIO()
     image.convert("RGBA" if image.mode in ("RGBA", "LA", "PA", "P") else "RGB").save(file, "PNG")
     return file.getvalue()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any, Protocol
 
+from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.scene.scene import Scene
 
 _SERVO_SPEED = 2.0
@@ -89,6 +90,8 @@ class Motor:
 class Servo:
     """Holds a joint of one axis in a position, and moves it to others.
 
+    It begins with `Simulation.renew`, so that many servos make one new model.
+
     Args:
         simulation: the simulation.
         joint: the name of the joint.
@@ -102,11 +105,17 @@ class Servo:
         self._name = name
         speed = min(speed, simulation.scene.speed_limit(joint))
         self._speed = speed if isfinite(speed) else _SERVO_SPEED
-        self.restart()
+        self._position = 0.0
+
+    @property
+    def model(self) -> str:
+        """The name of the model whose joint it holds."""
+        return self._joint.partition(SEPARATOR)[0]
 
     @property
     def position(self) -> float:
         """The position at which the joint is held, in rad (m)."""
+        self._simulation.renew()
         return self._position
 
     def restart(self) -> None:
@@ -122,6 +131,7 @@ class Servo:
 
     def move(self, target: float, seconds: float) -> None:
         """Move to a position within the joint's limits, in rad (m), within a number of seconds."""
+        self._simulation.renew()
         model = self._simulation.model
         joint = model.joint(self._joint)
         if model.jnt_limited[joint.id]:

@@ -88,6 +88,7 @@ class Simulation:
         self._bodies: dict[str, int] = {}
         self._joints: dict[str, tuple[int, int]] = {}
         self._pushes: dict[str, dict[str, Array]] = {}
+        self._arriving: list[Servo] = []  # not in MuJoCo's model yet
         self._changed = False
         self._current = False
         self._take(*made)
@@ -121,6 +122,7 @@ class Simulation:
         for held in self.scene.models[name].structure.links:
             self._pushes.pop(held.link.name, None)
         self.scene.remove(name)
+        self._arriving = [servo for servo in self._arriving if servo.model != name]
         self._changed = True
 
     def set_world(self, world: World, finder: ResourceFinder) -> None:
@@ -214,9 +216,10 @@ class Simulation:
             joint: the name of the joint.
             speed: how fast it may move in rad/s (m/s), if its own limit allows that; 2 where neither says it.
         """
-        name = self.scene.add_servo(joint)
+        servo = Servo(self, joint, self.scene.add_servo(joint), speed)
+        self._arriving.append(servo)
         self._changed = True
-        return Servo(self, joint, name, speed)
+        return servo
 
     def keep_awake(self, link: str) -> None:
         """Forbid the tree of a link to fall asleep: no forces are computed for sleeping bodies, and sensors need them.
@@ -239,6 +242,9 @@ class Simulation:
             self._bodies, self._joints = {}, {}
             self._changed, self._current = False, False
             self.revision += 1
+            arriving, self._arriving = self._arriving, []
+            for servo in arriving:
+                servo.restart()
 
     def refresh(self) -> None:
         """As `renew`, and compute what depends on positions."""

@@ -115,6 +115,18 @@ async def test_wheels_turn_as_they_are_told_and_stop_with_their_controller(file,
         assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
 
 
+async def test_servos_of_all_joints_come_with_one_new_model_and_each_holds_its_joint(file):
+    async with served(controlled(file), options=None) as (server, graph, _):
+        world = Controlled(server, graph)
+        before = server.simulation.revision
+        wheels = wheel("left_joint", "position", "0.5") + wheel("right_joint", "position", "-0.4")
+        await world.describe(description(wheels))
+        assert server.simulation.revision == before + 1
+        await world.go_on(0.5)
+        positions = [server.simulation.joint_state(f"mbot::{side}_joint")[0] for side in ("left", "right")]
+        assert positions == pytest.approx([0.5, -0.4], abs=0.01)
+
+
 async def test_positions_are_held_from_their_initial_values_on(file, tmp_path):
     positions = tmp_path / "positions.yaml"
     positions.write_text(

@@ -262,3 +262,15 @@ def test_parts_of_a_mesh_that_are_one_triangle_or_none_do_not_lose_the_model(tmp
     model = simulation.model
     seen = [model.mat_rgba[model.geom_matid[geom], :3].tolist() for geom in range(model.ngeom)]
     assert sorted(seen) == [[0, 1, 0], [1, 0, 0]]
+
+
+def test_meshes_with_the_same_image_share_a_texture(tmp_path):
+    Image.new("RGB", (4, 4), "red").save(tmp_path / "i.png")
+    (tmp_path / "m.mtl").write_text("newmtl m\nmap_Kd i.png\n")
+    shapes = []
+    for name in ("one", "two"):
+        path = tmp_path / f"{name}.obj"
+        path.write_text("mtllib m.mtl\nvt 0 0\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n")
+        shapes.append(f"<visual name='{name}'><geometry><mesh><uri>{path}</uri></mesh></geometry></visual>")
+    model = simulated(f"<model name='m'><static>1</static><link name='l'>{''.join(shapes)}</link></model>").model
+    assert (model.nmesh, model.nmat, model.ntex) == (2, 2, 1)

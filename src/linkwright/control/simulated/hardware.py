@@ -94,6 +94,8 @@ class SimulatedSystem(Hardware):
                 gain=gain,
                 pids={kind: Pid(each_gains) for (joint, kind), each_gains in gains.items() if joint == each.name},
             )
+        for joint in self._joints.values():
+            joint.begin()
         self._sensors = self._found_sensors(plugin)
 
     def _forget(self, component: str) -> None:

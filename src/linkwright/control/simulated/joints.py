@@ -19,7 +19,7 @@ _FASTEST = 1000.0
 
 
 class SimulatedJoint:
-    """A simulated joint of hardware.
+    """A simulated joint of hardware; call `begin` when all joints are made: the first changes make a new model.
 
     Positions are held by a constraint, as Gazebo puts joints where they are commanded; velocities by a motor with the
     effort limit of the joint; efforts push, and so do PID controllers.
@@ -68,7 +68,6 @@ class SimulatedJoint:
             self._motor = simulation.add_velocity_motor(name, _GAIN, self._greatest)
         if (POSITION in commands and POSITION not in pids) or (self._pushed and self._motor is None and holds):
             self._servo = simulation.add_servo(name, _FASTEST)
-        self.begin()
 
     def begin(self) -> None:
         """Set the initial position of the description, and hold it."""

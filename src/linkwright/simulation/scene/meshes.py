@@ -56,6 +56,7 @@ class MeshLibrary:
         self._finder = finder
         self._files: dict[tuple[str, Path], Path | None] = {}
         self._assets: dict[Hashable, list[str]] = {}
+        self._textures: dict[bytes, str] = {}  # images as PNG, and the names of their textures
         self._told: set[str] = set()
         self._mapped: set[str] = set()  # meshes of the specification with coordinates of images
 
@@ -184,12 +185,14 @@ class MeshLibrary:
             self._give_image(material, part.own.image)
 
     def _give_image(self, material: Any, image: bytes) -> None:
-        """Give a material of MuJoCo a texture, a PNG."""
+        """Give a material of MuJoCo a texture, a PNG; equal ones share it, for each compilation decodes it."""
         mujoco = load_mujoco()
-        texture = self.spec.add_texture(name=material.name, type=mujoco.mjtTexture.mjTEXTURE_2D)
-        texture.file = f"{material.name}.png"
-        self.spec.assets = {**self.spec.assets, texture.file: image}
-        material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = texture.name
+        if image not in self._textures:
+            texture = self.spec.add_texture(name=material.name, type=mujoco.mjtTexture.mjTEXTURE_2D)
+            texture.file = f"{material.name}.png"
+            self.spec.assets = {**self.spec.assets, texture.file: image}
+            self._textures[image] = texture.name
+        material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = self._textures[image]
 
     def has_room_for_image(self, geom: Any) -> bool:
         """Whether a geom is a mesh with texture coordinates."""

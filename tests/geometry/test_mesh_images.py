@@ -1,0 +1,49 @@
+"""Images that mesh files name: a PNG is handed on as it is, anything else becomes one."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from linkwright.geometry.mesh_files import BadMeshError, beside
+from linkwright.geometry.mesh_parts import read_parts
+
+OBJ = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n"
+
+
+def encoded(kind: str) -> bytes:
+    file = BytesIO()
+    Image.fromarray(np.full((8, 8, 3), (200, 30, 60), dtype=np.uint8)).save(file, kind)
+    return file.getvalue()
+
+
+def image_of(folder: Path, name: str, data: bytes) -> bytes | None:
+    """The image that a mesh of one triangle is read with."""
+    (folder / "m.obj").write_text(OBJ)
+    (folder / "m.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")
+    (folder / name).write_bytes(data)
+    (part,) = read_parts(folder / "m.obj", resolver=beside(str(folder / "m.obj")))
+    assert part.own is not None
+    return part.own.image
+
+
+def test_a_png_is_not_encoded_again(tmp_path: Path) -> None:
+    data = encoded("PNG")
+    assert image_of(tmp_path, "i.png", data) == data
+
+
+def test_a_jpeg_becomes_a_png_of_the_same_colour(tmp_path: Path) -> None:
+    image = image_of(tmp_path, "i.jpg", encoded("JPEG"))
+    assert image is not None
+    with Image.open(BytesIO(image)) as read:
+        assert read.format == "PNG"
+        assert np.abs(np.asarray(read).astype(int) - (200, 30, 60)).max() < 4
+
+
+def test_a_png_that_was_cut_off_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(BadMeshError):
+        image_of(tmp_path, "i.png", encoded("PNG")[:-20])
