@@ -108,3 +108,21 @@ async def test_an_arm_on_a_base_that_stands_fast_is_held_too():
         await command(graph, server, "/model/arm/joint/shoulder/_0/cmd_pos", -1.0, 2.0)
         assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(-1.0, abs=2e-3)
         assert not log
+
+
+async def test_a_force_on_a_joint_acts_until_another_is_commanded_and_a_reset_clears_it():
+    plugin = (
+        '<plugin name="gz::sim::systems::ApplyJointForce" filename="gz-sim-apply-joint-force-system">'
+        "<joint_name>shoulder</joint_name></plugin>"
+    )
+    text = arm(plugin, "<lower>-1e16</lower><upper>1e16</upper>").replace("0 1 0", "0 0 1")
+    inertia = 0.1 + 1.0 * 0.5**2
+    async with served(text) as (server, graph, log):
+        await command(graph, server, "/model/arm/joint/shoulder/cmd_force", 0.7, 1.0)
+        assert server.simulation.joint_state("arm::shoulder")[1] == pytest.approx(0.7 / inertia, rel=0.01)
+        await command(graph, server, "/model/arm/joint/shoulder/cmd_force", -0.7, 1.0)
+        assert server.simulation.joint_state("arm::shoulder")[1] == pytest.approx(0.0, abs=0.01)
+        server.reset()
+        server.advance(SECOND)
+        assert server.simulation.joint_state("arm::shoulder") == pytest.approx((0.0, 0.0), abs=1e-6)
+        assert not log

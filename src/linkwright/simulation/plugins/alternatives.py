@@ -14,7 +14,6 @@ _ALTERNATIVES = {
     "air_speed": _STILL_AIR,
     "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
     "gz-sim-air-speed-system": _STILL_AIR,
-    "gz-sim-apply-joint-force-system": phrase("the service /apply_joint_effort"),
     "gz-sim-apply-link-wrench-system": phrase("the service /apply_link_wrench"),
     "gz-sim-camera-video-recorder-system": phrase("`linkwright bag record` with the topic of the camera"),
     "gz-sim-elevator-system": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
