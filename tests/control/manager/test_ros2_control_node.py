@@ -189,3 +189,14 @@ async def test_simulated_time_that_jumps_is_no_overrun_and_none_goes_back(graph,
     await clock.advance(0.01)
     assert periods[4:] == [0.01]
     running.close()
+
+
+@pytest.mark.parametrize(
+    "plugin", ["gazebo_ros2_control/GazeboSystem", "gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"]
+)
+async def test_the_hardware_of_a_simulator_is_left_to_the_simulators_manager(graph, tmp_path, said, plugin):
+    start(graph, tmp_path, CONTROL.replace("mock_components/GenericSystem", plugin))
+    await graph.settle()
+    assert [each for each in said("ERROR") if plugin in each]
+    services = graph.create_node("audience").get_service_names_and_types()
+    assert not [name for name, _ in services if name.endswith("/list_controllers")]

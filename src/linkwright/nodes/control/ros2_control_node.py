@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from linkwright.control.hardware.component import Hardware
+from linkwright.control.hardware.description import HardwareDescription
 from linkwright.control.hardware.resources import Resources, hardware_by_entry_points
 from linkwright.control.manager.exchange import DirectExchange
 from linkwright.control.manager.manager import ControllerManager
@@ -19,6 +21,7 @@ from linkwright.control.manager.starting import load_hardware
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.graph.command_line.ros_arguments import parse
+from linkwright.graph.log.logger import Logger
 from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
@@ -26,6 +29,25 @@ from linkwright.simulation.plugins.node import PluginNode
 
 _NANOSECONDS = 1_000_000_000
 _DEFAULT_RATE = 100
+_SIMULATED = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
+"""Hardware of gazebo_ros2_control, gz_ros2_control and their forks, which only runs in a simulator."""
+
+
+def _hardware(description: HardwareDescription, logger: Logger) -> Hardware | None:
+    """Make the hardware of a description, or None where nothing here drives it.
+
+    Raises:
+        LinkwrightError: NODE833, it runs only in a simulator.
+    """
+    if description.plugin.rpartition("/")[2] in _SIMULATED:
+        message = phrase(
+            "hardware '{name}': '{plugin}' runs inside a simulator, whose plugin is the controller manager: leave "
+            "ros2_control_node out of the launch file",
+            name=description.name,
+            plugin=description.plugin,
+        )
+        raise LinkwrightError(Diagnostic("NODE833", message))
+    return hardware_by_entry_points(description, logger)
 
 
 class Ros2ControlNode(SingleNode):
@@ -106,8 +128,8 @@ class Ros2ControlNode(SingleNode):
 
     def _take(self, text: str) -> None:
         manager = self._manager
-        self._loaded = load_hardware(manager, text, self._library, hardware_by_entry_points)
-        if not self._loaded:
+        self._loaded = load_hardware(manager, text, self._library, _hardware) and bool(manager.resources.components)
+        if not self._loaded:  # no services either, as upstream: they would hide those of another manager
             return
         node = PluginNode(self._node, DirectExchange(), owned=False, qos={}, usual=None)
         services = ManagerServices(manager, node)
