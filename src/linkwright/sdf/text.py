@@ -11,10 +11,10 @@ from dataclasses import replace
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, phrase
 from linkwright.xmltree import Document
 from linkwright.xmltree.decoding import decode
-from linkwright.xmltree.tinyxml import forbidden, parse_as_tinyxml
+from linkwright.xmltree.tinyxml import COMMENT, forbidden, parse_as_tinyxml
 
 _EMPTY, _NOT_TEXT = "XML105", "XML104"
-_LATE_DECLARATION = re.compile(r"(?:\s|<!--.*?-->)+(<\?xml\s[^>]*\?>)", re.DOTALL)
+_LATE_DECLARATION = re.compile(rf"(?:\s|{COMMENT})+(<\?xml\s[^>]*\?>)")
 _READ_ALL_THE_SAME = phrase("simulators read it all the same; other XML readers refuse the file")
 
 

@@ -19,7 +19,9 @@ from linkwright.xmltree.reader import parse
 
 _UNDECLARED, _AFTER_ROOT, _NOT_XML = "XML205", "XML207", "XML206"
 _OUTSIDE_TAGS = re.compile(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
-_BEFORE_ROOT = re.compile(r"\A(?:\s*<\?xml\s[^>]*\?>)?(?:\s|<!--.*?-->)*([^<\s][^<]*)(?=<(?!\?xml\s))", re.DOTALL)
+COMMENT = "<!--[^-]*(?:-(?!->)[^-]*)*-->"
+"""The pattern of one comment; with ``.*?`` one of several may also end at a later one, in exponentially many ways."""
+_BEFORE_ROOT = re.compile(rf"\A(?:\s*<\?xml\s[^>]*\?>)?(?:\s|{COMMENT})*([^<\s][^<]*)(?=<(?!\?xml\s))")
 """Text before the root element; a declaration that follows it is one mistake too many for TinyXML2, too."""
 _BARE_AMPERSAND = re.compile(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|amp|lt|gt|quot|apos);)")
 _DEFINITION = "<!ENTITY"
