@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.descriptions import examine
 from linkwright.diagnostics import LinkwrightError
-from linkwright.xmltree import Overlay
+from linkwright.xmltree import Comment, Overlay
 
 PREFIX = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 PLAIN = '<robot name="r"><link name="a"/></robot>'
@@ -104,6 +104,10 @@ class TestWhatUrdfdomReadsAllTheSame:
             ('read me\n<robot name="r"><link name="a"/></robot>', "XML206"),
             ('<?xml version="1.0"?>\n<!-- a --> read me <robot name="r"><link name="a"/></robot>', "XML206"),
             (f'read me <robot name="r" {PREFIX}><link name="a"/></robot>', "XML206"),
+            ('<robot name="r" note="a<b > c"><link name="a"/></robot>', "XML206"),
+            ('<robot name="r"version="1.0"><!-- b="1"c="2" --><link name="a"x=\'"1\'/></robot>', "XML206"),
+            ('<?xml version="1.0"?>\n<?xml version="1.0"?><robot name="r"><link name="a"/></robot>', "XML206"),
+            ('<robot name="r">\x01<!-- \x02 --><link name="a"\x0bnote="\x03"/></robot>', "XML206"),
             ('<robot name="r"><link name="a"/></robot><robot name="s"/>', "XML207"),
             ('<robot name="r"><link name="a"/></robot></xml>', "XML207"),
             ('<robot name="r"><link name="a"/></robot><b>words</b></xml> <what follows', "XML207"),
@@ -119,6 +123,39 @@ class TestWhatUrdfdomReadsAllTheSame:
         found = examine(path, partly=True)
         assert list(found.robot.links) == ["a"]
         assert [(each.severity.value, each.code) for each in found.diagnostics] == [("warning", code)]
+
+    def test_keeps_what_is_written_and_where_it_stands(self, tmp_path):
+        path = tmp_path / "r.urdf"
+        written = (
+            '<?xml version="1.0"?><?xml version="1.0"?>\n<robot name="é">\n<!-- < \x02 -->'
+            '<link name="a<\x01&&lt;b"/>\n<link  name="c"note=\'x&y\'x="&amp;1"/></robot>'
+        )
+        path.write_text(written)
+        found = examine(path, partly=True)
+        first, second = found.document.root.elements("link")
+        assert first.attributes == {"name": "a<\x01&<b"}
+        assert second.attributes == {"name": "c", "note": "x&y", "x": "&1"}
+        assert second.attribute_span("note").line == 4
+        assert [child.data for child in found.document.root.children if isinstance(child, Comment)] == [" < \x02 "]
+        assert [(each.severity.value, each.code) for each in found.diagnostics[:-1]] == [("warning", "XML206")] * 5
+        assert found.diagnostics[-1].code == "URDF152"  # two roots
+
+    @pytest.mark.parametrize(
+        "written",
+        [
+            '<robot name="r"><link name="a>\n</link>\n<link name="b"/></robot>',
+            '<robot name="r", x="1"><link name="a"/></robot>',
+            '<robot name="r" \x01x="1"><link name="a"/></robot>',
+            '<robot name="r"> 1 < 2 <link name="a"/></robot>',
+            '<robot name="r"><?xml version="1.0"?><link name="a"/></robot>',
+        ],
+    )
+    def test_an_error_of_tinyxml2_is_one(self, tmp_path, written):
+        path = tmp_path / "r.urdf"
+        path.write_text(written)
+        with pytest.raises(LinkwrightError) as caught:
+            examine(path, partly=True)
+        assert caught.value.diagnostics[0].code == "XML206"
 
     @pytest.mark.parametrize("rest", ["<b>", "<b></c>", '<?xml version="1.0"?>', "<", "&"])
     def test_the_rest_after_the_root_is_an_error_where_it_is_one_for_tinyxml2(self, tmp_path, rest):

@@ -114,8 +114,9 @@ class _Reader:
     def __init__(self, source: SourceText, *, blanks: bool, read_as: str | None, any_prefix: bool) -> None:
         self._source = source
         self._any_prefix = any_prefix
-        self._data = (source.text if read_as is None else read_as).encode("utf-8", "surrogatepass")
-        self._is_ascii = source.text.isascii()
+        text = source.text if read_as is None else read_as
+        self._data = text.encode("utf-8", "surrogatepass")
+        self._is_ascii = text.isascii()
         self._keep_blanks = blanks
         self._parser = parser = ParserCreate("utf-8")
         parser.buffer_text = True

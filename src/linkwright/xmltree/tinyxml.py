@@ -2,20 +2,22 @@
 
 It knows no namespaces, ends a comment at ``-->`` alone, passes over text before the root element and over elements
 after it, reads nothing after a closing tag that closes nothing, and an ``&`` that begins no entity does not trouble it.
-Such files work for their users, so they are read, with a warning.
+Nor do a ``<`` in a value, attributes without a blank between, control characters, and a second XML declaration right
+after the first. Such files work for their users, so they are read, with a warning.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 from xml.parsers.expat import ExpatError, ParserCreate
 from xml.parsers.expat.errors import XML_ERROR_TAG_MISMATCH, codes
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, SourceText, Span, phrase
-from linkwright.xmltree.nodes import Comment, Document, Element, Node, Text
+from linkwright.xmltree.nodes import Document
 from linkwright.xmltree.reader import parse
+from linkwright.xmltree.stand_ins import REPAIRS, can_stand_in, put_back, stand_in, tags_alone
 
 _UNDECLARED, _AFTER_ROOT, _NOT_XML = "XML205", "XML207", "XML206"
 _OUTSIDE_TAGS = re.compile(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
@@ -23,10 +25,9 @@ COMMENT = "<!--[^-]*(?:-(?!->)[^-]*)*-->"
 """The pattern of one comment; with ``.*?`` one of several may also end at a later one, in exponentially many ways."""
 _BEFORE_ROOT = re.compile(rf"\A(?:\s*<\?xml\s[^>]*\?>)?(?:\s|{COMMENT})*([^<\s][^<]*)(?=<(?!\?xml\s))")
 """Text before the root element; a declaration that follows it is one mistake too many for TinyXML2, too."""
+_SECOND_DECLARATION = re.compile(r"\s*<\?xml\s[^>]*\?>\s*(?=(<\?xml\s[^>]*\?>))")
 _BARE_AMPERSAND = re.compile(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|amp|lt|gt|quot|apos);)")
 _DEFINITION = "<!ENTITY"
-_STAND_IN = "\x7f"
-"""The replacement of an ``&`` that begins no entity; as long, and allowed."""
 
 
 def parse_as_tinyxml(
@@ -46,40 +47,68 @@ def parse_as_tinyxml(
     warnings: list[Diagnostic] = []
     source = SourceText(name, text)
     read_as = text if read_as is None else read_as
-    before = _BEFORE_ROOT.match(text)
-    if before:
-        advice = phrase("an XML file holds nothing but comments before its root element")
-        place = source.span(before.start(1), before.start(1) + len(before[1].rstrip()))
-        message = phrase("text stands before the root element")
-        warnings.append(forbidden(message, place, source, advice, readers))
-        read_as = read_as[: before.start(1)] + blanked(before[1]) + read_as[before.end(1) :]
-    dashed = [found for found in _OUTSIDE_TAGS.finditer(text) if _has_dashes(found[1])]
-    if dashed:
-        at = text.index("--", dashed[0].start(1))
-        advice = phrase("use other characters, such as '=='")
-        warnings.append(
-            forbidden(phrase("'--' is not allowed inside a comment"), source.span(at, at + 2), source, advice, readers)
-        )
-        for found in dashed:
-            read_as = read_as[: found.start(1)] + found[1].replace("-", "=") + read_as[found.end(1) :]
-    bare = []
-    if _STAND_IN not in text and _DEFINITION not in text:
-        bare = [each.start() for each in _BARE_AMPERSAND.finditer(_tags_alone(text))]
-    if bare:
-        advice = phrase("write '&amp;' for the character '&'")
-        warnings.append(
-            forbidden(
-                phrase("'&' does not begin an entity"), source.span(bare[0], bare[0] + 1), source, advice, readers
-            )
-        )
-        for at in bare:
-            read_as = read_as[:at] + _STAND_IN + read_as[at + 1 :]
+    for forgive in (_text_before_root, _second_declaration, _dashes, _ampersands):
+        read_as, told = forgive(source, read_as)
+        if told:
+            warnings.append(forbidden(told.message, told.span, source, told.hint, readers))
     document, more = _parsed(source, read_as, readers)
-    if bare:
-        _put_back(document.root)
-    for comment in _comments(document) if dashed else ():
-        comment.data = text[comment.offset + 4 : text.index("-->", comment.offset + 4)]
+    if warnings or more:
+        put_back(document, text)
     return document, (*warnings, *more)
+
+
+class _Told(NamedTuple):
+    message: Phrase
+    span: Span
+    hint: Phrase
+
+
+def _text_before_root(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
+    before = _BEFORE_ROOT.match(source.text)
+    if before is None:
+        return read_as, None
+    place = source.span(before.start(1), before.start(1) + len(before[1].rstrip()))
+    advice = phrase("an XML file holds nothing but comments before its root element")
+    return _without(read_as, before), _Told(phrase("text stands before the root element"), place, advice)
+
+
+def _second_declaration(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
+    second = _SECOND_DECLARATION.match(source.text)
+    if second is None:
+        return read_as, None
+    place = source.span(second.start(1), second.start(1) + len("<?xml"))
+    message = phrase("the XML declaration '<?xml' must be the very first thing in the file")
+    return _without(read_as, second), _Told(message, place, phrase("remove what stands before it"))
+
+
+def _dashes(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
+    text = source.text
+    dashed = [found for found in _OUTSIDE_TAGS.finditer(text) if _has_dashes(found[1])]
+    if not dashed:
+        return read_as, None
+    for found in dashed:
+        read_as = read_as[: found.start(1)] + found[1].replace("-", "=") + read_as[found.end(1) :]
+    at = text.index("--", dashed[0].start(1))
+    message = phrase("'--' is not allowed inside a comment")
+    return read_as, _Told(message, source.span(at, at + 2), phrase("use other characters, such as '=='"))
+
+
+def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
+    text = source.text
+    if not can_stand_in(text) or _DEFINITION in text:
+        return read_as, None
+    bare = [each.start() for each in _BARE_AMPERSAND.finditer(tags_alone(text))]
+    if not bare:
+        return read_as, None
+    for at in bare:
+        read_as = read_as[:at] + stand_in("&") + read_as[at + 1 :]
+    place = source.span(bare[0], bare[0] + 1)
+    return read_as, _Told(phrase("'&' does not begin an entity"), place, phrase("write '&amp;' for the character '&'"))
+
+
+def _without(text: str, found: re.Match[str]) -> str:
+    """The text with the first group of a match blanked."""
+    return text[: found.start(1)] + blanked(found[1]) + text[found.end(1) :]
 
 
 def blanked(text: str) -> str:
@@ -101,15 +130,32 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
             document = parse(source.text, source.name, blanks=False, read_as=read_as, any_prefix=True)
             return document, (replace(found, severity=Severity.WARNING),)
         end = _end_of_root(found, read_as)
-        if end is None or not _is_passed_over(read_as[end:]):
-            raise
+        if end is not None and _is_passed_over(read_as[end:]):
+            told, read_as = _passed_over(source, end, readers), read_as[:end] + blanked(read_as[end:])
+        else:
+            told, read_as = (
+                replace(found, severity=Severity.WARNING, notes=(Note(readers),)),
+                _repaired(source, error, read_as),
+            )
         try:
-            document, more = _parsed(source, read_as[:end] + blanked(read_as[end:]), readers)
+            document, more = _parsed(source, read_as, readers)
         except LinkwrightError:
             raise error from None
-        if all(each.code != _AFTER_ROOT for each in more):
-            more = (_passed_over(source, end, readers), *more)
-        return document, more
+        if told.code == _AFTER_ROOT and any(each.code == _AFTER_ROOT for each in more):
+            return document, more
+        return document, (told, *more)
+
+
+def _repaired(source: SourceText, error: LinkwrightError, text: str) -> str:
+    """The text with all mistakes of the error's kind replaced; the error, where TinyXML2 has one there, too."""
+    found = error.diagnostics[0]
+    if found.code == _NOT_XML and found.span is not None and can_stand_in(source.text):
+        at = source.offset(found.span.line, found.span.column)
+        for repair in REPAIRS:
+            repaired = repair(text, at)
+            if repaired != text:
+                return repaired
+    raise error
 
 
 def _passed_over(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
@@ -148,31 +194,6 @@ def _is_passed_over(rest: str) -> bool:
     return True
 
 
-def _tags_alone(text: str) -> str:
-    """The text with comments and CDATA blanked."""
-    return _OUTSIDE_TAGS.sub(lambda found: " " * len(found[0]), text)
-
-
-def _put_back(root: Element) -> None:
-    """Restore each ``&`` that was replaced by another character."""
-    for element in root.walk():
-        for name, value in element.attributes.items():
-            element.attributes[name] = value.replace(_STAND_IN, "&")
-        for child in element.children:
-            if isinstance(child, Text):
-                child.data = child.data.replace(_STAND_IN, "&")
-
-
 def _has_dashes(comment: str | None) -> bool:
     """Whether XML forbids the content of a comment; None stands for other parts."""
     return comment is not None and ("--" in comment or comment.endswith("-"))
-
-
-def _comments(document: Document) -> Iterator[Comment]:
-    nodes: list[Node] = [*document.prolog, document.root, *document.epilog]
-    while nodes:
-        node = nodes.pop()
-        if isinstance(node, Comment):
-            yield node
-        elif isinstance(node, Element):
-            nodes.extend(node.children)
