@@ -188,6 +188,12 @@ def generate_launch_description():
             </node></launch>""",
         ),
         (
+            "quoted.launch.xml",
+            """<launch><arg name="prefix" default="x_"/>
+            <let name="file" value="'$(find-pkg-share arm)/urdf/arm.urdf.xacro'"/><node pkg="p" exec="e">
+            <param name="d" value="$(command 'xacro $(var file) prefix:=$(var prefix)')"/></node></launch>""",
+        ),
+        (
             "view.launch",
             """<launch><arg name="prefix" default="x_"/><param name="robot_description"
             command="$(find xacro)/xacro --inorder '$(find arm)/urdf/arm.urdf.xacro' prefix:=$(arg prefix)"/>
@@ -210,6 +216,12 @@ launch:
 )
 def test_launch_files_in_markup(workspace: Path, name: str, text: str) -> None:
     assert values(sets(workspace, f"arm/launch/{name}", text)) == [{"prefix": "x_"}]
+
+
+def test_a_share_folder_in_the_middle_of_a_path_is_no_file_of_it(workspace: Path) -> None:
+    text = """<launch><let name="file" value="./$(find-pkg-share arm)/urdf/arm.urdf.xacro"/><node pkg="p" exec="e">
+        <param name="d" value="$(command 'xacro $(var file) prefix:=x_')"/></node></launch>"""
+    assert [each.is_certain for each in sets(workspace, "arm/launch/view.launch.xml", text)] == [False]
 
 
 @pytest.mark.parametrize(

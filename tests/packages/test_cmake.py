@@ -115,6 +115,20 @@ def test_patterns_of_files_are_expanded(package: Path) -> None:
     assert copied(text, package) == {"urdf/arm.urdf": "x/arm.urdf"}
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        "GLOB found LIST_DIRECTORIES FALSE RELATIVE ${PROJECT_SOURCE_DIR} urdf/*f urdf/p*",
+        "GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR} ./ urdf/arm**.urdf",
+        "GLOB_RECURSE found . urdf/ arm.urdf",
+        "GLOB_RECURSE found urdf/**.urdf",
+    ],
+)
+def test_options_folders_and_two_stars_of_patterns(package: Path, words: str) -> None:
+    text = f"project(arm)\nfile({words})\ninstall(FILES ${{found}} DESTINATION share/arm)"
+    assert copied(text, package) == {"urdf/arm.urdf": "share/arm/arm.urdf"}
+
+
 def test_subdirectories_and_included_files(package: Path) -> None:
     (package / "urdf" / "CMakeLists.txt").write_text(
         "install(FILES arm.urdf DESTINATION share/${PROJECT_NAME}/robots)\n"

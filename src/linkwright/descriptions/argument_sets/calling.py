@@ -130,7 +130,7 @@ class _Target:
         first: ArgumentSet | None = None
         for selection in selections(call.path, file.choices, given):
             written = resolve(call.path, file.choices, selection)
-            if written is None or not self._is_target(written, file):
+            if written is None or not self._is_target(_unquoted(written) if call.is_command else written, file):
                 continue
             for taken, certain in variations(call.arguments.values(), file.choices, selection):
                 found = self._set(call, file, taken, is_certain=certain)
@@ -168,6 +168,8 @@ class _Target:
     def _is_target(self, written: str, file: CallingFile) -> bool:
         """Whether a path whose places are filled is that of the description."""
         package, rest = split_mark(written)
+        if _MARK.search(rest):
+            return False  # a share folder in the middle of a path
         if package is None:
             return self._is_same(Path(os.path.dirname(file.path), written)) or self._is_same(Path(written))  # noqa: PTH120
         own = enclosing_package(self.path.parent)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from linkwright.packages.readers.cmake_syntax import is_open
 
 _NUMBER = re.compile(r"[+-]?\d+(\.\d*)?")
-_YES = frozenset({"1", "ON", "YES", "TRUE", "Y"})
+YES = frozenset({"1", "ON", "YES", "TRUE", "Y"})
 _NO = frozenset({"", "0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND"})
 _ORDERS: dict[str, Callable[[int], bool]] = {
     "EQUAL": lambda sign: sign == 0,
@@ -169,7 +169,7 @@ def matched(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
 
 def _constant(text: str) -> bool | None:
     upper = text.upper()
-    if upper in _YES or (_NUMBER.fullmatch(upper) and float(upper)):
+    if upper in YES or (_NUMBER.fullmatch(upper) and float(upper)):
         return True
     if upper in _NO or upper.endswith("-NOTFOUND") or _NUMBER.fullmatch(upper):
         return False

@@ -12,14 +12,14 @@ import os
 import posixpath
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.ament import ROS_VARIABLES
-from linkwright.packages.readers.cmake_conditions import Condition, Word
+from linkwright.packages.readers.cmake_conditions import YES, Condition, Word
 from linkwright.packages.readers.cmake_syntax import ENDS, Statement, Token, branches, end_of_block, is_open, statements
 from linkwright.packages.readers.cmake_values import (
     UNKNOWN,
@@ -405,22 +405,28 @@ class CMakeProgram:
                 self._set(target, value)
 
     def _matching(self, words: list[str], *, recursive: bool) -> str:
-        words = [word for word in words if word != "CONFIGURE_DEPENDS"]
-        base = None
-        if words[:1] == ["RELATIVE"]:
-            base, words = within_package(words[1], self._folder) if len(words) > 1 else "", words[2:]
+        """What ``file(GLOB...)`` finds."""
+        base: str | None = None
+        with_folders = not recursive
+        patterns: list[str] = []
+        rest = iter(words)
+        for word in rest:
+            if word == "RELATIVE":
+                base = within_package(next(rest, ""), self._folder)
+            elif word == "LIST_DIRECTORIES":
+                with_folders = next(rest, "").upper() in YES
+            elif word not in ("CONFIGURE_DEPENDS", "FOLLOW_SYMLINKS"):
+                patterns.append(within_package(word, self._folder))
         if self.package is None or any(map(is_open, words)):
             return UNKNOWN
-        found: set[str] = set()
-        for word in words:
-            pattern = within_package(word, self._folder)
-            if pattern.startswith(("/", "..", "<")):
-                return UNKNOWN
-            folder, _, last = pattern.rpartition("/")
-            paths = (self.package / folder).rglob(last) if recursive else self.package.glob(pattern)
-            found |= {
-                path.relative_to(self.package).as_posix() for path in paths if recursive is False or path.is_file()
-            }
+        if any(pattern.startswith(("/", "..", "<")) for pattern in patterns):
+            return UNKNOWN
+        found = {
+            path.relative_to(self.package).as_posix()
+            for pattern in patterns
+            for path in _globbed(self.package, pattern, recursive=recursive)
+            if with_folders or path.is_file()
+        }
         if base is None:
             return ";".join(f"{SOURCE}/{path}" for path in sorted(found))
         return ";".join(posixpath.relpath(path, base or ".") for path in sorted(found))
@@ -485,6 +491,14 @@ def _range(words: Sequence[str]) -> range:
         return range(0)
     start, stop, step = [0, *numbers, 1][:3] if len(numbers) == 1 else [*numbers, 1, 1][:3]
     return range(start, stop + 1, step) if step > 0 and stop - start < _MOST_COMMANDS else range(0)
+
+
+def _globbed(package: Path, pattern: str, *, recursive: bool) -> Iterable[Path]:
+    """The paths that a pattern of CMake, in which two stars are one, matches in a package."""
+    folder, _, last = re.sub(r"\*+", "*", pattern).rpartition("/")
+    if last in ("", "."):
+        return ()  # a folder itself, which no command needs
+    return (package / folder).rglob(last) if recursive else package.glob(posixpath.join(folder, last))
 
 
 def within_package(text: str, folder: str) -> str:
