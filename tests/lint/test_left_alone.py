@@ -96,12 +96,29 @@ def test_hardware_that_an_argument_chooses(told, inside, codes):
     assert told(robot(f'<link name="base"/>{control}', PREFIX), "LW124", name="r.urdf.xacro") == codes
 
 
+_TRANSMISSION = f'<link name="base"/>{moving("a", "")}<transmission name="t"><joint name="j_a"/></transmission>'
+_PACKAGE = "<package format='3'><name>arm</name><version>0.1.0</version></package>"
+
+
 @pytest.mark.parametrize(
     ("control", "codes"), [("", ["LW127"]), (f'<ros2_control name="c" type="system">{_HARDWARE}</ros2_control>', [])]
 )
 def test_transmissions_beside_ros2_control(told, control, codes):
-    inside = f'<link name="base"/>{moving("a", "")}<transmission name="t"><joint name="j_a"/></transmission>'
-    assert told(robot(inside + control), "LW127") == codes
+    assert told(robot(_TRANSMISSION + control), "LW127", package_dot_xml=_PACKAGE) == codes
+
+
+def test_transmissions_of_a_file_in_no_package(told):
+    assert told(robot(_TRANSMISSION), "LW127") == []
+
+
+@pytest.mark.parametrize(("files", "severity"), [({}, "info"), ({"package.xml": _PACKAGE}, "warning")])
+def test_a_relative_mesh_path_is_a_warning_in_a_package(tmp_path, files, severity):
+    path = tmp_path / "r.urdf"
+    path.write_text(robot('<link name="a"><visual><geometry><mesh filename="a.stl"/></geometry></visual></link>'))
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    found = examine(path, settings=Settings(select=("LW421",))).diagnostics
+    assert [each.severity.value for each in found if each.code == "LW421"] == [severity]
 
 
 @pytest.mark.parametrize(

@@ -26,6 +26,9 @@ _WORLD = "world"
 _NEGLIGIBLE = 0.01
 """A mass of less than this part of its body's is a placeholder that changes nothing."""
 
+WEIGHTLESS = 1e-5
+"""A mass below this one, in kg, is no mass of a part: it is there because a simulator or exporter asked for one."""
+
 _MANY = 200
 """Links of a body from which on it is not measured anew for each of them."""
 
@@ -53,11 +56,10 @@ class Extents:
             (link, inertial)
             for link in self._links
             if (inertial := link.inertial) is not None
-            and inertial.mass > 0
             and (link.visuals or link.collisions)
             and (body := self._bodies.of(link.name)) is not None
             and is_computable(inertial)
-            and inertial.mass >= _NEGLIGIBLE * self._bodies.mass(body)
+            and inertial.mass >= max(WEIGHTLESS, _NEGLIGIBLE * self._bodies.mass(body))
             and _WORLD not in body.links
         ]
 

@@ -9,7 +9,7 @@ from linkwright.lint.finding import Finding
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.tensors import DIAGONAL, PRODUCTS
+from linkwright.lint.tensors import DIAGONAL, PRODUCTS, name_others
 from linkwright.lint.walk import is_for_simulation
 from linkwright.urdf import Inertial, Link
 from linkwright.xmltree import Element
@@ -195,16 +195,19 @@ class TinyMass(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         smallest = self.option(subject, "smallest", float)
+        tiny: list[tuple[Link, Inertial, float]] = []
         for body in subject.bodies.all:
             masses = [(link, link.inertial) for link in subject.bodies.members(body) if link.inertial is not None]
             total = sum(inertial.mass for _, inertial in masses)
-            if body.joint is None or not 0 < total < smallest:
-                continue
-            link, inertial = masses[0]
+            if body.joint is not None and 0 < total < smallest:
+                tiny.append((*masses[0], total))
+        if tiny:
+            (link, inertial, total), *others = tiny
             yield self.report(
                 phrase("the mass of moving link '{name}' is tiny: {total:g} kg", name=link.name, total=total),
                 part(inertial, "mass"),
                 "value",
+                notes=[Note(name_others([other.name for other, *_ in others]))] if others else [],
                 hint=phrase("masses are in kg; a moving link needs one that a solver can work with"),
             )
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.explanations import is_explained
+from linkwright.lint.extents import WEIGHTLESS
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
@@ -21,8 +22,8 @@ class PlaceholderInertia(Rule):
 
     A tensor of ones on everything is a placeholder from a tutorial. For a link of a few hundred grams it is thousands
     of times too large, and the robot moves as if in honey. What depends on size and mass cannot be the same for all.
-    The rule speaks where at least half of the links share such a tensor. Where a comment on the line or above it says
-    why, the finding is an information.
+    The rule speaks where at least half of the links share such a tensor; other rules then leave its size and a missing
+    centre of mass to it. Where a comment on the line or above it says why, the finding is an information.
 
     ## Example
 
@@ -42,20 +43,7 @@ class PlaceholderInertia(Rule):
     options = (Option("links", 3, "how many links must share a tensor to be reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        least = self.option(subject, "links", int)
-        groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
-        count = 0
-        for link, inertial in links_with_inertial(subject):
-            values = tuple(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
-            if any(values):
-                count += 1
-                groups.setdefault(values, []).append((link, inertial))
-        for values, sharing in groups.items():
-            shapes = {_shapes(link) for link, _ in sharing} - {()}
-            if len(sharing) < least or len(shapes) < least or 2 * len(sharing) < count:
-                continue
-            if not values[0] == values[1] == values[2]:
-                continue
+        for sharing in _copies(subject, self.option(subject, "links", int)):
             link, inertial = sharing[0]
             others = name_others([other.name for other, _ in sharing[1:]])
             yield self.report(
@@ -69,6 +57,26 @@ class PlaceholderInertia(Rule):
                 hint=phrase("`linkwright inertia` computes one for each from its shapes"),
                 severity=Severity.INFO if is_explained(inertial.element, "inertia") else None,
             )
+
+
+def placeholders(subject: Subject) -> set[str]:
+    """The names of the links whose inertia `PlaceholderInertia` reports."""
+    least = PlaceholderInertia().option(subject, "links", int)
+    return {link.name for sharing in _copies(subject, least) for link, _ in sharing}
+
+
+def _copies(subject: Subject, least: int) -> Iterator[list[tuple[Link, Inertial]]]:
+    """The links that share a tensor of three equal moments, where they are many and of different shapes."""
+    groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
+    for link, inertial in links_with_inertial(subject):
+        values = tuple(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
+        if any(values) and inertial.mass >= WEIGHTLESS:
+            groups.setdefault(values, []).append((link, inertial))
+    count = sum(map(len, groups.values()))
+    for (ixx, iyy, izz, *_), sharing in groups.items():
+        shapes = {_shapes(link) for link, _ in sharing} - {()}
+        if ixx == iyy == izz and min(len(sharing), len(shapes)) >= least and 2 * len(sharing) >= count:
+            yield sharing
 
 
 class TurnedSphere(Rule):

@@ -5,17 +5,18 @@ A link's body may be larger than the link: what is fixed to it counts. Where a m
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from math import prod
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.geometry.shapes import volume_of
 from linkwright.lint.explanations import is_explained
-from linkwright.lint.extents import MARKER
+from linkwright.lint.extents import MARKER, WEIGHTLESS
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
+from linkwright.lint.rules.inertia_doubtful import placeholders
 from linkwright.lint.subject import Subject
 from linkwright.lint.tensors import DIAGONAL, PRODUCTS, flaw_of, name_others
 from linkwright.urdf import Inertial, Link, Mesh
@@ -143,7 +144,7 @@ class DensityTooLow(Rule):
                 continue  # a frame of rods, as in a mesh, fills little of its box
             mass = bodies.mass(body)
             volume = sum(volume_of(geometry) for geometry in shapes if not isinstance(geometry, Mesh))
-            if mass < LIGHTEST_DENSITY * volume:
+            if WEIGHTLESS <= mass < LIGHTEST_DENSITY * volume:
                 link, inertial = max(heavy, key=lambda each: each[1].mass)
                 yield self.report(
                     phrase(
@@ -247,7 +248,7 @@ class CenterForgotten(Rule):
     name = "center-of-mass-forgotten"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, bounds in subject.extents.measured:
+        for link, inertial, bounds in _without_placeholders(subject):
             element = inertial.element
             if element is None or not _is_at_the_joint(subject, link, inertial):
                 continue
@@ -297,7 +298,7 @@ class InertiaTooLarge(Rule):
 
         factor = self.option(subject, "factor", float)
         too_large: dict[tuple[float, ...], list[tuple[Link, Inertial, Bounds, float]]] = {}
-        for link, inertial, bounds in subject.extents.measured:
+        for link, inertial, bounds in _without_placeholders(subject):
             limit = largest_moment_within(bounds.nearest(inertial.origin.xyz), bounds, inertial.mass)
             if max(inertial.ixx, inertial.iyy, inertial.izz) > factor * limit:
                 alike = (inertial.mass, *(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS)))
@@ -356,7 +357,7 @@ class InertiaTooSmall(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
-        for link, inertial, _ in subject.extents.measured:
+        for link, inertial, _ in _without_placeholders(subject):
             boxes = subject.extents.kinds_of_bounds(link)
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
             if not boxes or largest <= 0:
@@ -381,6 +382,12 @@ class InertiaTooSmall(Rule):
                     ],
                     hint=_COMPUTE,
                 )
+
+
+def _without_placeholders(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
+    """The measured links but those of which `PlaceholderInertia` says that their inertia was never computed."""
+    copied = placeholders(subject) if subject.extents.measured else set()
+    return (each for each in subject.extents.measured if each[0].name not in copied)
 
 
 def _is_at_the_joint(subject: Subject, link: Link, inertial: Inertial) -> bool:

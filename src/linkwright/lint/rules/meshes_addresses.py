@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, Phrase, did_you_mean, display_path, joined, phrase
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, display_path, joined, phrase
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -80,7 +80,8 @@ class RelativePath(Rule):
     ## Why
 
     What it is relative to is up to the tool: the folder of the URDF for some, the current folder for others. RViz
-    gets the description as a text from a topic, knows no folder, and shows nothing.
+    gets the description as a text from a topic, knows no folder, and shows nothing. In a file that lies in no ROS
+    package, as for simulators that know no packages, the finding is an information.
 
     ## Example
 
@@ -111,6 +112,7 @@ class RelativePath(Rule):
                 "filename",
                 hint=phrase("write '{better}'", better=better or "package://PACKAGE/PATH"),
                 fix=replace_value(use.element, "filename", better, safe=False) if better else None,
+                severity=None if subject.package else Severity.INFO,
             )
 
 

@@ -356,7 +356,8 @@ class TransmissionIgnored(Rule):
     ## Why
 
     It is the form of ROS 1. ros2_control and its Gazebo plugins read joints, interfaces and transmissions inside
-    `<ros2_control>` only. Packages that build with catkin, which ROS 1 has, and robots that have both are left alone.
+    `<ros2_control>` only. Packages that build with catkin, which ROS 1 has, and robots that have both are left alone, and
+    files in no package, of which nothing says that they are for ROS 2.
 
     ## Example
 
@@ -385,7 +386,7 @@ class TransmissionIgnored(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """The first transmission of the form of ROS 1."""
         manifest = subject.package and subject.package.manifest
-        if (manifest and manifest.is_ros1) or any(subject.elements("ros2_control")):
+        if manifest is None or manifest.is_ros1 or any(subject.elements("ros2_control")):
             return
         found = list(subject.elements("transmission"))
         if found:
