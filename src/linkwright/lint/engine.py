@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from linkwright.sdf.worlds import Sdf
 
 
+_PREFIX_MISSING, _NO_LINKS = "LW720", "URDF106"
+
+
 @dataclass(frozen=True, slots=True)
 class Checked:
     """The result of checking a file.
@@ -130,7 +133,8 @@ def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic]
     """The findings of the rules and the earlier ones, filtered by settings and comments, in order."""
     suppressions = Suppressions(subject, subject.settings)
     found = _without_replaced([*said, *_find(subject, scopes, suppressions)], subject.settings)
-    return in_order(as_set(suppressions.apply(found), subject.settings), str(subject.path))
+    kept = _without_consequences(as_set(suppressions.apply(found), subject.settings))
+    return in_order(kept, str(subject.path))
 
 
 def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
@@ -236,6 +240,13 @@ def _without_replaced(diagnostics: list[Diagnostic], settings: Settings) -> list
                 better.setdefault(code, set()).add(rule.code)
     places = {(each.code, each.span) for each in diagnostics}
     return [each for each in diagnostics if not any((code, each.span) in places for code in better.get(each.code, ()))]
+
+
+def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """The diagnostics but that there are no links, where the tags that were to make them lack the prefix of xacro."""
+    found = list(diagnostics)
+    is_explained = any(each.code == _PREFIX_MISSING for each in found)
+    return [each for each in found if not (is_explained and each.code == _NO_LINKS)]
 
 
 def _with_trail(diagnostic: Diagnostic) -> Diagnostic:

@@ -123,7 +123,8 @@ class CollisionApart(Rule):
     ## Why
 
     What the robot hits is then somewhere else than what it shows. Mostly the `<origin>` was given to one of the two
-    only.
+    only. A shape that was moved into the visuals of a link below is left alone: it stands for a motor that is drawn
+    there, as in the hips of many quadrupeds.
 
     ## Example
 
@@ -151,7 +152,8 @@ class CollisionApart(Rule):
             if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:
                 continue
             gap = seen.gap(felt)
-            if gap > 0.25 * min(seen.diagonal, felt.diagonal) and gap > 1e-3:
+            is_apart = gap > 0.25 * min(seen.diagonal, felt.diagonal) and gap > 1e-3
+            if is_apart and not _is_moved_to_a_child(subject, link, felt):
                 yield self.report(
                     phrase(
                         "the collision shapes of link '{name}' are {gap:.3g} cm away from its visuals",
@@ -215,6 +217,20 @@ class CollisionSize(Rule):
                     notes=[Note(phrase("the first visual is here"), _place(link.visuals[0]))],
                     hint=phrase("check the sizes, and the 'scale' of meshes"),
                 )
+
+
+def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
+    """Whether the collision shapes of a link were moved to where visuals of a link below it are."""
+    if not all(any(shape.origin.xyz) for shape in link.collisions) or link.name not in subject.frames:
+        return False
+    below = {joint.child for joint in subject.joints if joint.parent == link.name}
+    for child in (each for each in subject.links if each.name in below):
+        seen = _bounds(subject, child.visuals) if child.visuals else None
+        if seen is not None:
+            placed = seen.moved(subject.frames[child.name].seen_from(subject.frames[link.name]))
+            if placed.gap(felt) == 0:
+                return True
+    return False
 
 
 def _doubly_shaped(subject: Subject) -> Iterator[Link]:

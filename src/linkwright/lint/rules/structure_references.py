@@ -356,8 +356,8 @@ class TransmissionIgnored(Rule):
     ## Why
 
     It is the form of ROS 1. ros2_control and its Gazebo plugins read joints, interfaces and transmissions inside
-    `<ros2_control>` only. Packages that build with catkin, which ROS 1 has, and robots that have both are left alone, and
-    files in no package, of which nothing says that they are for ROS 2.
+    `<ros2_control>` only. Packages that build with catkin, which ROS 1 has, and robots that have both are left alone.
+    So are files in no package, of which nothing says that they are for ROS 2.
 
     ## Example
 
