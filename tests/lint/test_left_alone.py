@@ -130,6 +130,12 @@ def test_an_include_of_a_file_that_is_yet_to_be_filled(told, included, codes):
     assert told(text, "LW704", name="r.urdf.xacro", **files) == codes
 
 
+@pytest.mark.parametrize(("name", "codes"), [("map", ["LW624"]), ("$(arg parent)", [])])
+def test_a_frame_that_the_caller_names(told, name, codes):
+    text = robot(f'<xacro:arg name="parent" default="map"/><link name="{name}"/>', PREFIX)
+    assert told(text, "LW624", name="r.urdf.xacro") == codes
+
+
 _WHEEL = '<xacro:macro name="wheel" params="name prefix"><link name="${name}"/></xacro:macro>'
 _ARM = '<xacro:macro name="arm" params="prefix"><link name="${prefix}arm"/></xacro:macro>'
 
@@ -246,6 +252,55 @@ def test_what_git_ignores_is_made_before_it_is_installed(tmp_path, ignored, code
     )
     found = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
     assert [each.code for each in found] == codes
+
+
+_DOWNLOAD = 'set(net "${PROJECT_SOURCE_DIR}/nets/a.onnx")\nfile(DOWNLOAD "https://example.org/a.onnx" "${net}")\n'
+
+
+@pytest.mark.parametrize(
+    ("before", "codes"),
+    [
+        (_DOWNLOAD, []),
+        (_DOWNLOAD.replace("nets", "networks"), ["LW824"]),
+        ("# file(DOWNLOAD) into nets/\n", ["LW824"]),
+        ("file(MAKE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/nets)\n", []),
+    ],
+)
+def test_what_cmake_makes_is_there_when_it_is_installed(tmp_path, before, codes):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    (tmp_path / "CMakeLists.txt").write_text(
+        f"project(p)\nfind_package(ament_cmake REQUIRED)\n{before}"
+        "install(DIRECTORY nets DESTINATION share/p)\nament_package()\n"
+    )
+    found = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
+    assert [each.code for each in found] == codes
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ("<exec_depend>xacro</exec_depend><exec_depend>xacro</exec_depend>", ["info"]),
+        ("<depend>xacro</depend><exec_depend>xacro</exec_depend>", ["warning"]),
+    ],
+)
+def test_the_same_dependency_twice_is_an_information(tmp_path, lines, told):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=lines))
+    found = examine_package(tmp_path, Settings(select=("LW809",))).diagnostics
+    assert [each.severity.value for each in found] == told
+
+
+def test_folders_beside_each_other_that_are_not_installed_are_one_finding(tmp_path):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more="").replace("ament_cmake", "ament_python"))
+    (tmp_path / "setup.py").write_text(
+        "from setuptools import setup\n\nsetup(name='p', packages=['p'], data_files=[('share/p', ['package.xml'])])\n"
+    )
+    for name in ("default", "fake", "schema"):
+        (tmp_path / "config" / name).mkdir(parents=True)
+        (tmp_path / "config" / name / "arm.yaml").write_text("a: 1\n")
+    found = examine_package(tmp_path, Settings(select=("LW822",))).diagnostics
+    assert [str(each.message) for each in found] == [
+        "setup.py does not install the folder 'config/default' (and 2 more)"
+    ]
 
 
 @pytest.mark.parametrize(("needs", "codes"), [("q", ["LW724"]), ("p", []), ("helper", [])])

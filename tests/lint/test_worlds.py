@@ -82,6 +82,12 @@ def test_an_axis_and_a_step_of_zero(told):
     joint = '<joint name="j" type="revolute"><parent>l</parent><child>k</child><axis><xyz>0 0 0</xyz></axis></joint>'
     model = f'<model name="m"><link name="l"/><link name="k"/>{joint}</model>'
     assert told(model) == [("SDF122", 2, "the axis of joint 'j' has no direction")]
+    fixed = [joint.replace('"j"', f'"{name}"').replace("revolute", "fixed") for name in ("f", "g", "h")]
+    model = f'<model name="m"><link name="l"/><link name="k"/>{joint}{"".join(fixed)}</model>'
+    assert told(model) == [
+        ("SDF122", 2, "the axis of joint 'j' has no direction"),
+        ("SDF122", 2, "the axis of joint 'f' has no direction (and 2 more)"),
+    ]
     step = '<physics type="ode"><max_step_size>0</max_step_size></physics>'
     assert told(step + link(GOOD)) == [("SDF122", 2, "the time step is not positive: 0 s")]
 

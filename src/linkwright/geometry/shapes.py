@@ -42,12 +42,13 @@ SimpleShape = Box | Cylinder | Capsule | Sphere
 
 
 def volume_of(shape: SimpleShape) -> float:
-    """The volume of a shape in m3; 0 where a size is zero or less."""
+    """The volume of a shape in m3; 0 where a size is zero or less, infinite where it is beyond all numbers."""
     if isinstance(shape, Box):
         return prod(shape.size) if min(shape.size) > 0 else 0.0
+    r = max(shape.radius, 0.0)
+    ball = 4 / 3 * pi * (r * r * r)  # a power of a large number would raise
     if isinstance(shape, Sphere):
-        return 4 / 3 * pi * max(shape.radius, 0.0) ** 3
+        return ball
     if isinstance(shape, Capsule):
-        r, length = shape.radius, shape.length
-        return pi * r * r * length + 4 / 3 * pi * r**3 if r > 0 and length >= 0 else 0.0
-    return pi * shape.radius**2 * shape.length if min(shape.radius, shape.length) > 0 else 0.0
+        return pi * r * r * shape.length + ball if r > 0 and shape.length >= 0 else 0.0
+    return pi * r * r * shape.length if min(r, shape.length) > 0 else 0.0

@@ -19,6 +19,13 @@ _MAPS = frozenset({"map", "maps"})
 _TELLING = (".py", ".sh", ".bash", ".md", ".rst", ".txt", ".cpp", ".cc", ".hpp", ".h", ".in")
 _BUILD_FILES = frozenset({"setup.py", "CMakeLists.txt"})
 _LONGEST = 200_000
+_COMMENT = re.compile(r"#.*")
+_INSTALLS = re.compile(r"\binstall\s*\([^)]*\)", re.IGNORECASE)
+_MAKES = re.compile(
+    r"\bfile\s*\(\s*(?:DOWNLOAD|MAKE_DIRECTORY|WRITE|COPY|GENERATE|ARCHIVE_EXTRACT)\b"
+    r"|\b(?:execute_process|configure_file|add_custom_command|add_custom_target|ExternalProject_\w+|FetchContent_\w+)\s*\(",
+    re.IGNORECASE,
+)
 
 
 def is_made_later(package: PackageContext, path: str) -> bool:
@@ -95,6 +102,21 @@ def _is_built(package: PackageContext, name: str) -> bool:
         or re.search(rf"\bconfigure_file\s*\([^)]*\b{made}(?:\.in)?\b", source.text)
         or re.search(rf"\bOUTPUT\s[^)]*\b{made}\b", source.text)
     )
+
+
+def is_made_by_cmake(package: PackageContext, path: str) -> bool:
+    """Return whether ``CMakeLists.txt`` downloads, copies or generates files, and names a path besides installing it.
+
+    Args:
+        package: the package.
+        path: of a file or folder that is not among the sources, relative to the package.
+    """
+    source = package.text("CMakeLists.txt")
+    if source is None:
+        return False
+    text = _COMMENT.sub("", source.text)
+    rest = _INSTALLS.sub("", text)
+    return _MAKES.search(text) is not None and bool(re.search(rf"(?<![\w.-]){re.escape(path)}(?![\w.-])", rest))
 
 
 def _is_told_of(package: PackageContext, name: str) -> bool:

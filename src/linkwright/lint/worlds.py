@@ -21,6 +21,7 @@ from linkwright.lint.rules.inertia_tensor import (
 )
 from linkwright.lint.tensors import flaw_of
 from linkwright.sdf.figures import figure_of
+from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.links import Collision, Inertial, Link, Visual
 from linkwright.sdf.mesh_files import shapes_of
 from linkwright.sdf.models import Model
@@ -52,7 +53,7 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
     models = [*sdf.models, *(model for world in sdf.worlds for model in world.models)]
     found = (each for model in models for each in _model(model, static=False))
     actors = [*sdf.actors, *(actor for world in sdf.worlds for actor in world.actors)]
-    for finding in (*_steps(sdf), *found, *_missing_meshes([*models, *map(figure_of, actors)], finder)):
+    for finding in (*_steps(sdf), *found, *_axes(models), *_missing_meshes([*models, *map(figure_of, actors)], finder)):
         key = (finding.span, str(finding.message))
         if key not in told:
             told.add(key)
@@ -102,15 +103,35 @@ def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
             yield from _inertial(link, link.inertial)
     for shape in shapes_of(replace(model, models=())):
         yield from _size(shape)
-    for joint in model.joints:
-        for axis, tag in ((joint.axis, "axis"), (joint.axis2, "axis2")):
-            if axis is not None and joint.element is not None and not any(axis.xyz):
-                place = joint.element.first(tag)
-                message = phrase("the axis of {owner} has no direction", owner=described(joint.element))
-                xyz = place.first("xyz") if place is not None else None
-                yield _warning("SDF122", message, xyz or joint.element, phrase("write 0 0 1, or where it points"))
     for inner in model.models:
         yield from _model(inner, static=static)
+
+
+def _axes(models: Iterable[Model]) -> Iterator[Diagnostic]:
+    """The axes without a direction, those of fixed joints as one: Gazebo classic saves them all so, and gz refuses."""
+    fixed: dict[object, Diagnostic] = {}
+    pending = [*models]
+    while pending:
+        model = pending.pop(0)
+        pending += model.models
+        for joint, axis, tag in ((each, *own) for each in model.joints for own in _axes_of(each)):
+            if axis is None or joint.element is None or any(axis.xyz):
+                continue
+            place = joint.element.first(tag)
+            xyz = place.first("xyz") if place is not None else None
+            message = phrase("the axis of {owner} has no direction", owner=described(joint.element))
+            found = _warning("SDF122", message, xyz or joint.element, phrase("write 0 0 1, or where it points"))
+            if joint.type == "fixed":
+                fixed.setdefault(found.span, found)
+            else:
+                yield found
+    if fixed:
+        first, *others = fixed.values()
+        yield _with_others(first, others)
+
+
+def _axes_of(joint: Joint) -> tuple[tuple[Axis | None, str], ...]:
+    return (joint.axis, "axis"), (joint.axis2, "axis2")
 
 
 def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator[Diagnostic]:

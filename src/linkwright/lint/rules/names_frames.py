@@ -9,6 +9,7 @@ from math import radians
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.geometry.placement import Matrix, angle_between, rotation
 from linkwright.lint.rule import Rule
+from linkwright.lint.rules.meshes_addresses import written
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Box, Geometry, Joint, Mesh, parent_joints
 
@@ -213,7 +214,8 @@ class FixedFrameInRobot(Rule):
     ## Why
 
     REP 105 gives these names to frames that localisation and odometry publish. A frame has one parent: with the link in
-    the description and a node that publishes the same frame, transforms jump between the two.
+    the description and a node that publishes the same frame, transforms jump between the two. A name that comes from an
+    argument or a property is the choice of whoever gives it.
 
     ## Example
 
@@ -232,7 +234,8 @@ class FixedFrameInRobot(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for link in subject.links:
-            if link.name.rpartition("/")[2] in ("map", "odom") and link.element is not None:
+            frame = link.name.rpartition("/")[2]
+            if frame in ("map", "odom") and link.element is not None and frame in written(link.element, "name"):
                 message = phrase(
                     "'{name}' is the name of a frame that localisation publishes (REP 105), not of a link",
                     name=link.name,

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
-from linkwright.lint.made_files import is_ignored_by_git
+from linkwright.lint.made_files import is_ignored_by_git, is_made_by_cmake
 from linkwright.lint.rules.package_manifest import PackageRule
 
 if TYPE_CHECKING:
@@ -133,8 +133,13 @@ class FolderNotInstalled(PackageRule):
         installed = {file.rpartition("/")[0] for file in files}
         empty = [item for item in setup.installed if item.is_pattern and not item.files(package.folder)]
         meant = {near_folder(package, item.text.rpartition("/")[0]) for item in empty}  # LW821 tells of these
+        lacking: dict[str, list[str]] = {}
         for folder in _left_out(package, lambda folder: folder in installed or folder in meant):
+            lacking.setdefault(_top(folder), []).append(folder)
+        for folder, *others in lacking.values():
             message = phrase("setup.py does not install the folder '{folder}'", folder=folder)
+            if others:
+                message = phrase("{message} (and {count} more)", message=message, count=len(others))
             hint = phrase(
                 "add ('share/{name}/{folder}', glob('{folder}/*')) to data_files", name=package.name, folder=folder
             )
@@ -251,9 +256,10 @@ class InstalledFileMissing(PackageRule):
 
 
 def _is_there(package: PackageContext, path: str) -> bool:
-    """Whether a file or folder is among the sources, or is made before the package is installed: git ignores it."""
+    """Whether a file or folder is among the sources, or is made before the package is installed."""
     place = package.folder / path
-    return package.has(path) or is_ignored_by_git(place) or is_ignored_by_git(place / "_")
+    is_ignored = is_ignored_by_git(place) or is_ignored_by_git(place / "_")
+    return package.has(path) or is_ignored or is_made_by_cmake(package, path)
 
 
 def shared_folders(package: PackageContext) -> list[str]:

@@ -185,8 +185,9 @@ class DependencyRepeated(ManifestRule):
 
     ## Why
 
-    catkin_pkg, through which colcon reads the file, complains of it at every build. `<depend>` stands for
-    `<build_depend>`, `<build_export_depend>` and `<exec_depend>` together.
+    `<depend>` stands for `<build_depend>`, `<build_export_depend>` and `<exec_depend>` together. catkin_pkg, through
+    which colcon reads the file, complains where one of them is there, too. The same line twice changes nothing, as in
+    what MoveIt's Setup Assistant writes: that is an information.
 
     ## Example
 
@@ -217,7 +218,10 @@ class DependencyRepeated(ManifestRule):
                 note = Note(phrase("<{tag}> is here", tag=first.tag), first.element.span())
                 message = phrase("the dependency on '{name}' is named again", name=each.name)
                 fix = remove_element(each.element)
-                yield self.report(message, each.element, notes=[note], hint=phrase("remove it"), fix=fix)
+                harmless = Severity.INFO if first.tag == each.tag else None
+                yield self.report(
+                    message, each.element, notes=[note], hint=phrase("remove it"), fix=fix, severity=harmless
+                )
 
 
 class DependencyOnItself(ManifestRule):

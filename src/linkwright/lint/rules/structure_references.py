@@ -385,7 +385,7 @@ class TransmissionIgnored(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """The first transmission of the form of ROS 1."""
-        manifest = subject.package and subject.package.manifest
+        manifest = subject.package.manifest if subject.package is not None else None
         if manifest is None or manifest.is_ros1 or any(subject.elements("ros2_control")):
             return
         found = list(subject.elements("transmission"))
