@@ -83,3 +83,8 @@ def test_a_size_that_is_not_positive_has_no_mass(shape):
 def test_the_volume_is_the_mass_at_a_density_of_one(a, b, c):
     for shape in (Box((a, b, c)), Cylinder(a, b), Capsule(a, b), Sphere(a)):
         assert volume_of(shape) == pytest.approx(shape_properties(shape).mass)
+
+
+@pytest.mark.parametrize("shape", [Sphere(1e308), Cylinder(1e308, 1.0), Capsule(1e308, 1.0), Box((1e308,) * 3)])
+def test_a_volume_beyond_all_numbers_is_infinite(shape):
+    assert volume_of(shape) == float("inf")
