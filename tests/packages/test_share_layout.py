@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -104,6 +104,33 @@ def test_what_cmake_moves_is_where_it_would_be_installed(moved: Path) -> None:
     assert installed <= files_below(share)
     assert (share / "config" / "limits.yaml").read_text() == "robot: arm\n"
     assert {"package.xml", "README.md", "description/urdf/arm.xacro"} <= files_below(share)
+
+
+STAYING = """
+project(arm)
+install(DIRECTORY launch ./urdf meshes/ DESTINATION share/${PROJECT_NAME})
+install(DIRECTORY config/ DESTINATION share/${PROJECT_NAME}/config)
+install(FILES rviz/arm.rviz missing.txt DESTINATION share/${PROJECT_NAME}/rviz)
+install(FILES rviz/arm.rviz DESTINATION share/${PROJECT_NAME}/rviz RENAME other.rviz)
+install(DIRECTORY include/ DESTINATION include)
+"""
+
+
+def test_only_what_changes_its_place_is_looked_for(write: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ("launch/a.py", "urdf/a.xacro", "meshes/base.stl", "config/a.yaml", "rviz/arm.rviz", "include/arm.hpp")
+    package = write({"CMakeLists.txt": STAYING, **dict.fromkeys(names, "")})
+    read: list[str] = []
+    below = Path.rglob
+
+    def rglob(path: Path, pattern: str) -> Iterator[Path]:
+        read.append(path.name)
+        return below(path, pattern)
+
+    monkeypatch.setattr(Path, "rglob", rglob)
+    cmake = read_cmake(SourceText("CMakeLists.txt", STAYING), package)
+    found = {file.destination: file.source for file in cmake.moved(package, "share/arm")}
+    assert found == {"share/arm/base.stl": "meshes/base.stl", "share/arm/rviz/other.rviz": "rviz/arm.rviz"}
+    assert read == ["meshes"]
 
 
 def test_what_setup_py_moves_too(write: Callable[..., Path]) -> None:

@@ -54,10 +54,10 @@ def source_of(path: str) -> str:
 
 
 def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
-    """What a package installs into its share folder: the path there, and the file."""
+    """What a package installs into its share folder: the path there, and the file. Some that keep it are left out."""
     share = f"share/{name}/"
     with suppress(OSError, ValueError):
-        for file in _installed(folder):
+        for file in _installed(folder, share):
             if file.destination.startswith(share) and _is_own(file.source):
                 yield file.destination[len(share) :], file
 
@@ -68,7 +68,7 @@ def _is_own(source: str) -> bool:
     return not path.is_absolute() and path.parts[:1] != (os.pardir,)
 
 
-def _installed(folder: Path) -> Iterator[InstalledFile]:
+def _installed(folder: Path, share: str) -> Iterator[InstalledFile]:
     for build_file in ("CMakeLists.txt", "setup.py"):
         try:
             text = (folder / build_file).read_text(encoding="utf-8", errors="replace")
@@ -86,5 +86,5 @@ def _installed(folder: Path) -> Iterator[InstalledFile]:
 
         cmake = read_cmake(source, folder)
         hooks = set(cmake.hooks)  # they are read where a build is sourced
-        yield from (file for file in cmake.installed(folder, missing_ok=True) if file.destination not in hooks)
+        yield from (file for file in cmake.moved(folder, share) if file.destination not in hooks)
         return

@@ -190,44 +190,63 @@ class CMakeFile:
         """The place of an argument."""
         return argument.source.span(argument.start, argument.end)
 
-    def installed(self, package: Path, *, missing_ok: bool = False) -> Iterator[InstalledFile]:
+    def installed(self, package: Path) -> Iterator[InstalledFile]:
         """What is copied, file by file.
 
         Args:
             package: the package's folder.
-            missing_ok: whether what is not there is passed over.
 
         Raises:
             FileNotFoundError: a file or folder is not there; the exception carries its name.
         """
+        return self._files(package, None)
+
+    def moved(self, package: Path, share: str) -> Iterator[InstalledFile]:
+        """What is copied, without what is not there and what keeps its place.
+
+        A file or folder keeps its place if it lies in the package as it lies in the share folder. So do most, and
+        folders of them need not be read. Some of what is copied to other folders is left out, too.
+
+        Args:
+            package: the package's folder.
+            share: the share folder, relative to the prefix.
+        """
+        return self._files(package, PurePosixPath(share))
+
+    def _files(self, package: Path, share: PurePosixPath | None) -> Iterator[InstalledFile]:
         for file in self._made.values():
-            if not missing_ok or file.content is not None or (package / file.source).is_file():
+            if share is None or file.content is not None or (package / file.source).is_file():
                 yield file
         for rule in self.copies:
             if rule.destination is not None:
                 for item in rule.items:
-                    yield from self._copied(rule, item.text, rule.destination, package, missing_ok=missing_ok)
+                    yield from self._copied(rule, item.text, rule.destination, package, share)
 
     def _copied(
-        self, rule: CopyRule, item: str, destination: str, package: Path, *, missing_ok: bool
+        self, rule: CopyRule, item: str, destination: str, package: Path, share: PurePosixPath | None
     ) -> Iterator[InstalledFile]:
-        into, name = PurePosixPath(destination), PurePosixPath(item).name
+        into, here = PurePosixPath(destination), PurePosixPath(item)
         if item.startswith(BUILD):
             yield from self._copied_from_build(rule, item, into)
             return
+        single = into / (rule.renamed or here.name)
+        if share is not None and rule.kind != "DIRECTORY" and single == share / here:
+            return
         path = package / item
         if not path.exists():
-            if missing_ok or rule.is_optional or item.startswith("$<"):
+            if share is not None or rule.is_optional or item.startswith("$<"):
                 return
             raise FileNotFoundError(item)
         if path.is_file():
-            yield InstalledFile(item, str(into / (rule.renamed or name)))
+            yield InstalledFile(item, str(single))
             return
         below = into if item.endswith("/") else into / path.resolve().name
+        if share is not None and (below == share / here or not _overlap(below, share)):
+            return
         for file in sorted(path.rglob("*")):
             inside = PurePosixPath(file.relative_to(path).as_posix())
             if file.is_file() and rule.takes(item, inside):
-                yield InstalledFile((PurePosixPath(item) / inside).as_posix(), str(below / inside))
+                yield InstalledFile((here / inside).as_posix(), str(below / inside))
 
     def _copied_from_build(self, rule: CopyRule, item: str, into: PurePosixPath) -> Iterator[InstalledFile]:
         below = into if item.endswith("/") else into / PurePosixPath(item).name
@@ -244,6 +263,11 @@ class CMakeFile:
         before = self._made.get(destination)
         text = None if values is not None else (before.content or "" if before else "") + content
         self._made[destination] = InstalledFile(source, destination, values, text)
+
+
+def _overlap(one: PurePosixPath, other: PurePosixPath) -> bool:
+    """Whether one folder is in the other."""
+    return one.is_relative_to(other) or other.is_relative_to(one)
 
 
 def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
