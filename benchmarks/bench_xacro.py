@@ -60,7 +60,7 @@ def theirs() -> Engine | None:
 
 def forget() -> None:
     """Drop everything that was kept from earlier expansions."""
-    for kept in (sources.documents, template.templates, expression.expressions, yamldata.loaded, yamlnodes.tags):
+    for kept in (sources.kept.values, template.templates, expression.expressions, yamldata.kept.values, yamlnodes.tags):
         kept.clear()
     macros.parse_parameters.cache_clear()
     literals.number_or_boolean.cache_clear()

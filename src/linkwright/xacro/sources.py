@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 
+from linkwright.xacro.kept import Kept
 from linkwright.xmltree import Document, Overlay, parse_file
 
 _LINKS = f"{os.sep}shares{os.sep}"
-_KEPT = 500
-_MOST_TEXT = 16_000_000
-"""Files are kept as long as they have fewer bytes together; a parsed one takes ten times as much."""
-documents: dict[tuple[str, str], tuple[int, int, Document]] = {}
+_MOST_TEXT = 12_000_000
+"""How many bytes the files that are kept have together; a parsed one takes twenty times as much memory."""
+kept: Kept[tuple[str, str], tuple[int, int, Document]] = Kept(_MOST_TEXT, lambda _, file: file[1])
 """Path and current folder -> time of change, size and document."""
 
 
@@ -36,11 +36,9 @@ def read(path: str, overlay: Overlay | None = None) -> Document:
         status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
         return parse_file(path)  # which says what is wrong
-    known = documents.get(key)
+    known = kept.values.get(key)
     if known is not None and known[:2] == (status.st_mtime_ns, status.st_size):
         return known[2]
     document = parse_file(path)
-    if len(documents) >= _KEPT or sum(size for _, size, _ in documents.values()) > _MOST_TEXT:
-        documents.clear()
-    documents[key] = (status.st_mtime_ns, status.st_size, document)
+    kept.keep(key, (status.st_mtime_ns, status.st_size, document))
     return document

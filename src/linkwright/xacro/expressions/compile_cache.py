@@ -5,27 +5,29 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
+from linkwright.xacro.kept import Kept
+
 _Form = TypeVar("_Form")
 
-_KEPT = 20_000
-_KEPT_CHARACTERS = 300_000
-"""How many texts are kept, and how long they may be together; compiled they are a hundred times as large."""
+_MOST_CHARACTERS = 400_000
+_AROUND = 8
+"""How long the texts that are kept may be together, with what each adds; compiled they are a hundred times as large."""
 
 
 class TextCompiler(Generic[_Form]):
-    """Compiles texts and keeps what comes out; when there is too much of it, all is forgotten.
+    """Compiles texts and keeps what comes out.
 
     Args:
         compile_text: compiles a text.
 
     Attributes:
-        forms: text -> what it was compiled to; a plain dict, for it is looked into for each text of a description.
+        forms: text -> what it was compiled to.
     """
 
     def __init__(self, compile_text: Callable[[str], _Form]) -> None:
-        self.forms: dict[str, _Form] = {}
+        self._kept: Kept[str, _Form] = Kept(_MOST_CHARACTERS, lambda text, _: len(text) + _AROUND)
+        self.forms = self._kept.values
         self._compile = compile_text
-        self._characters = 0
 
     def make(self, text: str) -> _Form:
         """Compile a text and keep what comes out.
@@ -33,11 +35,6 @@ class TextCompiler(Generic[_Form]):
         Raises:
             Fault: what the compiler says of a malformed text.
         """
-        if not self.forms:
-            self._characters = 0
-        self._characters += len(text)
-        if len(self.forms) >= _KEPT or self._characters > _KEPT_CHARACTERS:
-            self.forms.clear()
-            self._characters = len(text)
-        form = self.forms[text] = self._compile(text)
+        form = self._compile(text)
+        self._kept.keep(text, form)
         return form

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from linkwright.diagnostics import phrase
+from linkwright.xacro.kept import Kept
 
 UNITS = {
     "!radians": 1.0,
@@ -95,15 +96,14 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
     """
     if "!" in text:
         return dotted(_load(text, evaluate))
-    if text not in loaded:
-        if len(loaded) >= _KEPT:
-            loaded.clear()
-        loaded[text] = _load(text, None)
-    return dotted(loaded[text])
+    if text in kept.values:
+        return dotted(kept.values[text])
+    value = _load(text, None)
+    kept.keep(text, value)
+    return dotted(value)
 
 
-_KEPT = 200
-loaded: dict[str, Any] = {}
+kept: Kept[str, Any] = Kept(200, lambda *_: 1)
 """Text -> its value, for texts without tags, whose values never differ; who asks gets a copy."""
 
 
