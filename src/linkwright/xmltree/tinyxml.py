@@ -77,8 +77,8 @@ def _second_declaration(source: SourceText, read_as: str) -> tuple[str, _Told | 
     if second is None:
         return read_as, None
     place = source.span(second.start(1), second.start(1) + len("<?xml"))
-    message = phrase("the XML declaration '<?xml' must be the very first thing in the file")
-    return _without(read_as, second), _Told(message, place, phrase("remove what stands before it"))
+    message = phrase("a second XML declaration follows the first")
+    return _without(read_as, second), _Told(message, place, phrase("remove it"))
 
 
 def _dashes(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
