@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.cli.endings import FINE
-from linkwright.cli.numbers import positive_float, positive_int, share, unsigned_int
+from linkwright.cli.numbers import positive_float, positive_int, unsigned_int
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.interruption import INTERRUPTED
@@ -39,13 +39,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--batch", type=positive_int, default=16, help="pictures in a step, default 16")
     parser.add_argument("--rate", type=positive_float, default=0.002, help="the highest learning rate, default 0.002")
-    parser.add_argument(
-        "--turned",
-        metavar="SHARE",
-        type=share,
-        default=0.0,
-        help="share of pictures turned by 90, 180 or 270 degrees, to find things that lie, default 0",
-    )
     parser.add_argument(
         "--size", metavar="WIDTHxHEIGHT", type=_size, default=(480, 384), help="of its input, default 480x384"
     )
@@ -97,7 +90,6 @@ def run(arguments: argparse.Namespace) -> int:
         whole_epochs=arguments.whole_epochs,
         batch=arguments.batch,
         rate=arguments.rate,
-        turned=arguments.turned,
         width=width,
         height=height,
         channels=arguments.channels,

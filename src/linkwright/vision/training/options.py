@@ -16,12 +16,10 @@ class View:
     Attributes:
         size: width and height, in pixels.
         scales: the smallest and the largest that a picture is scaled by.
-        turned: the share of pictures that are turned by one, two or three quarters.
     """
 
     size: tuple[int, int]
     scales: tuple[float, float]
-    turned: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +34,6 @@ class Options:
         whole_epochs: so many of them, the last ones, are of whole pictures of the size at which they are judged.
         batch: pictures in a step.
         rate: the highest learning rate.
-        turned: the share of pictures that are shown turned by one, two or three quarters of a turn.
         width: of the network's pictures, in pixels, a multiple of 32.
         height: likewise.
         channels: of the first convolution; the others have multiples of it.
@@ -58,7 +55,6 @@ class Options:
     whole_epochs: int = 2
     batch: int = 16
     rate: float = 2e-3
-    turned: float = 0.0
     width: int = 480
     height: int = 384
     channels: int = 8
@@ -78,6 +74,6 @@ class Options:
         quarter of the time. What is left for whole ones to teach is things that fill much of a picture.
         """
         if epoch >= self.epochs - self.whole_epochs:
-            return View((self.width, self.height), _WHOLE, self.turned)
+            return View((self.width, self.height), _WHOLE)
         width, height = (max(32, round(side / 2 / 32) * 32) for side in (self.width, self.height))
-        return View((width, height), _PARTS, self.turned)
+        return View((width, height), _PARTS)

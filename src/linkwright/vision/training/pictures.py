@@ -106,12 +106,12 @@ def changed(
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Augment a picture: a random part, moved, with other light and colours.
 
-    It is mirrored, scaled and perhaps turned; brightness, contrast, colours and sharpness change, and noise is added.
+    It is mirrored and scaled; brightness, contrast, colours and sharpness change, and noise is added.
 
     Args:
         lesson: the pictures.
         place: of the picture in it.
-        view: how large the part is, by what pictures are scaled, and how many are turned.
+        view: how large the part is, and by what pictures are scaled.
         chance: where the dice come from.
 
     Returns:
@@ -119,8 +119,6 @@ def changed(
     """
     cv2 = load_opencv()
     picture, things = lesson.pictures[place], lesson.things[place]
-    if view.turned and chance.random() < view.turned:
-        picture, things = _turned(picture, things, int(chance.integers(1, 4)))
     height, width = picture.shape[:2]
     size = view.size
     smallest, largest = np.log(view.scales)
@@ -141,18 +139,6 @@ def changed(
     turn: NDArray[np.float32] = np.array([[across * mirror, 0, shift], [0, down, -top * down]], np.float32)
     moved = cv2.warpAffine(picture, turn, size, flags=cv2.INTER_LINEAR, borderValue=(GREY, GREY, GREY))
     return _in_other_light(moved, chance), _moved(things, turn, *size)
-
-
-def _turned(
-    picture: NDArray[np.uint8], things: NDArray[np.float32], quarters: int
-) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """The picture turned to the left by quarters of a turn, and the things in it."""
-    boxes = things[:, 1:]
-    for _ in range(quarters):
-        left, top, right, bottom = boxes.T
-        boxes = np.stack((top, picture.shape[1] - right, bottom, picture.shape[1] - left), 1)
-        picture = np.rot90(picture)
-    return np.ascontiguousarray(picture), np.concatenate((things[:, :1], boxes), 1)
 
 
 def _in_other_light(picture: NDArray[np.uint8], chance: np.random.Generator) -> NDArray[np.uint8]:
