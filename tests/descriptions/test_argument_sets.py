@@ -235,6 +235,29 @@ def test_build_files(workspace: Path, text: str) -> None:
     assert values(sets(workspace, "arm/CMakeLists.txt", f"project(arm)\n{text}\n")) == [{"prefix": "c_"}]
 
 
+JOINED = """
+    DeclareLaunchArgument('file', default_value={default})
+    Command([
+        'xacro ', PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro']),
+        ' prefix:=', PathJoinSubstitution([FindPackageShare('user'), 'config', LaunchConfiguration('file')]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("default", "expected"),
+    [
+        ("'a.yaml'", "{user}/config/a.yaml"),
+        ("'/etc/a.yaml'", "/etc/a.yaml"),
+        ("PathJoinSubstitution([FindPackageShare('arm'), 'config', 'a.yaml'])", "{arm}/config/a.yaml"),
+    ],
+)
+def test_an_absolute_part_of_a_path_begins_it_anew(workspace: Path, default: str, expected: str) -> None:
+    text = f"{HEAD}\ndef generate_launch_description():\n{JOINED.format(default=default)}"
+    wanted = expected.format(user=workspace / "user", arm=workspace / "arm")
+    assert values(sets(workspace, "user/launch/a.launch.py", text)) == [{"prefix": wanted}]
+
+
 ROBOT_FILE = "PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro'])"
 
 

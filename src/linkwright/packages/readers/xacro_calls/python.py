@@ -181,7 +181,4 @@ def _texts_of(entries: Mapping[str, Value]) -> Iterator[tuple[str, Text]]:
 def _below_share(package: Text, file: Text) -> Text:
     from linkwright.packages.readers.xacro_calls.texts import Share, joined_path
 
-    first = file[0] if file else None
-    if isinstance(first, Share) or (isinstance(first, str) and first.startswith("/")):
-        return file
     return joined_path([(Share(package),), file])

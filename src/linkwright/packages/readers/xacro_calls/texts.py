@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
 from typing import Union
 
 _DEEPEST = 12
 _MOST_PATHS = 64
+_MARK = "\0"
 MOST_SETS = 24
 """Of more sets of values than these, the others are left out."""
 
@@ -31,10 +32,12 @@ class Open:
     Attributes:
         choice: the name of the `Choice` that decides.
         column: which item of the row that is chosen.
+        is_part: whether it begins a part of a path, and an absolute path in it takes the place of all before.
     """
 
     choice: str
     column: int = 0
+    is_part: bool = False
 
 
 Text = tuple[Union[str, Share, Open], ...]  # noqa: UP007 - Python 3.10 cannot join a name that is not yet there
@@ -79,11 +82,17 @@ def joined(parts: Iterable[Text]) -> Text:
 
 
 def joined_path(parts: Sequence[Text]) -> Text:
-    """Texts as the parts of a path."""
+    """Texts as the parts of a path, of which an absolute one begins anew, as ``os.path.join`` has it."""
     path: Text = ()
     for part in parts:
-        if path and part and not (isinstance(path[-1], str) and path[-1].endswith("/")):
+        first = part[0] if part else ""
+        if not path or isinstance(first, Share) or (isinstance(first, str) and first.startswith("/")):
+            path = part or path
+            continue
+        if part and not (isinstance(path[-1], str) and path[-1].endswith("/")):
             path = (*path, "/")
+        if isinstance(first, Open) and first != UNKNOWN:
+            part = (replace(first, is_part=True), *part[1:])
         path = (*path, *part)
     return path
 
@@ -101,20 +110,23 @@ def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, dep
         value = inner if isinstance(inner, str) else inner and resolve(inner, choices, selection, depth + 1)
         if value is None and inner != ():
             return None
-        found.append(share_mark(value or "") if isinstance(piece, Share) else value or "")
+        filled = share_mark(value or "") if isinstance(piece, Share) else value or ""
+        if isinstance(piece, Open) and piece.is_part and filled.startswith(("/", _MARK)):
+            found.clear()
+        found.append(filled)
     return "".join(found)
 
 
 def share_mark(package: str) -> str:
     """How a share folder stands in a text that `resolve` returns."""
-    return f"\0{package}\0"
+    return f"{_MARK}{package}{_MARK}"
 
 
 def split_mark(path: str) -> tuple[str | None, str]:
     """The package whose share folder a resolved path begins with, or None, and what follows."""
-    if not path.startswith("\0"):
+    if not path.startswith(_MARK):
         return None, path
-    package, _, rest = path[1:].partition("\0")
+    package, _, rest = path[1:].partition(_MARK)
     return package, rest
 
 
