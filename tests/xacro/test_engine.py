@@ -223,3 +223,13 @@ def test_of_a_file_that_is_not_utf_8_one_warning_says_that_ros_cannot_read_it(tm
     (tmp_path / "declared.xacro").write_bytes(latin.decode("latin-1").encode("utf-8"))
     for readable in ("marked.xacro", "declared.xacro"):
         assert not expand(tmp_path / readable).diagnostics
+
+
+def test_variables_that_each_ros_sets_are_there_without_one(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    robot = tmp_path / "r.xacro"
+    robot.write_text(f'{ROOT}<link name="v$(env ROS_VERSION)$(optenv ROS_DISTRO no)"/></robot>')
+    for name in ("ROS_VERSION", "ROS_DISTRO"):
+        monkeypatch.delenv(name, raising=False)
+    assert 'name="v2humble"' in str(expand(robot))
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    assert 'name="v2jazzy"' in str(expand(robot))

@@ -108,7 +108,7 @@ def _package(words: list[str], session: Context) -> str:
 
 def _variable(words: list[str], _session: Context) -> str:
     name = _one("env", "name", words)
-    value = os.environ.get(name)
+    value = _environment(name)
     if value is None:
         hint = phrase("write $(optenv {name} DEFAULT) where it need not be set", name=name)
         raise Fault("XAC214", phrase("the environment variable '{name}' is not set", name=name), hint=hint)
@@ -118,7 +118,18 @@ def _variable(words: list[str], _session: Context) -> str:
 def _optional_variable(words: list[str], _session: Context) -> str:
     if not words:
         raise Fault("XAC213", phrase("'$(optenv ...)' takes a name and a default, and nothing is given"))
-    return os.environ.get(words[0], " ".join(words[1:]))
+    value = _environment(words[0])
+    return " ".join(words[1:]) if value is None else value
+
+
+def _environment(name: str) -> str | None:
+    """A variable of the environment; those that each ROS installation sets are there without one, too."""
+    value = os.environ.get(name)
+    if value is not None:
+        return value
+    from linkwright.packages.ament import ROS_VARIABLES  # few robots need the room of packages for it
+
+    return ROS_VARIABLES.get(name)
 
 
 def _directory(_words: list[str], session: Context) -> str:
@@ -154,7 +165,7 @@ def _names_for_eval(session: Context) -> dict[str, Any]:
     names.update({"true": True, "false": False})
     names["arg"] = lambda name: _typed(session.argument(name))
     names["env"] = lambda name: _variable([name], session)
-    names["optenv"] = lambda name, default="": os.environ.get(name, default)
+    names["optenv"] = lambda name, default="": default if (value := _environment(name)) is None else value
     names["find"] = session.package
     return names
 
