@@ -27,7 +27,7 @@ _NEGLIGIBLE = 0.01
 """A mass of less than this part of its body's is a placeholder that changes nothing."""
 
 WEIGHTLESS = 1e-5
-"""A mass below this one, in kg, is no mass of a part: it is there because a simulator or exporter asked for one."""
+"""The mass in kg below which a value is a placeholder: simulators and exporters ask for some mass."""
 
 _MANY = 200
 """Links of a body from which on it is not measured anew for each of them."""

@@ -8,7 +8,6 @@ from typing import Generic, TypeVar
 _Key = TypeVar("_Key")
 _Value = TypeVar("_Value")
 
-
 _STRIDE = 16
 
 
@@ -37,13 +36,13 @@ class Kept(Generic[_Key, _Value]):
     def keep(self, key: _Key, value: _Value) -> None:
         """Keep one more, or one instead of another."""
         values, size_of = self.values, self._size_of
-        if key in values:
-            self._size -= size_of(key, values.pop(key))
+        values.pop(key, None)
         own = size_of(key, value)
-        self._size += own
+        self._size += own  # too much where another value had this key, which counting anew puts right
         while self._size > self._most and values:
-            self._start = (self._start + 1) % _STRIDE
-            for each in list(values)[self._start :: _STRIDE]:
-                values.pop(each, None)
             self._size = own + sum(size_of(*each) for each in list(values.items()))
+            if self._size > self._most:
+                self._start = (self._start + 1) % _STRIDE
+                for each in list(values)[self._start :: _STRIDE]:
+                    values.pop(each, None)
         values[key] = value

@@ -96,10 +96,11 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
     """
     if "!" in text:
         return dotted(_load(text, evaluate))
-    if text in kept.values:
-        return dotted(kept.values[text])
-    value = _load(text, None)
-    kept.keep(text, value)
+    try:
+        value = kept.values[text]
+    except KeyError:
+        value = _load(text, None)
+        kept.keep(text, value)
     return dotted(value)
 
 
