@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import struct
 
 import numpy as np
@@ -177,3 +178,13 @@ def test_a_library_reads_each_file_once_and_finds_it_from_the_file_it_is_named_i
         with pytest.raises(LinkwrightError) as caught:
             library.load(Mesh("meshes/cube.stl"))
         assert caught.value.diagnostics[0].code == "INR101"
+
+
+def test_a_mesh_that_has_changed_is_read_again_and_one_that_has_not_is_kept_for_the_next_description(tmp_path):
+    path = write(tmp_path, "stl")
+    finder = PackageFinder(start=tmp_path)
+    first = MeshLibrary(finder, tmp_path).read(path)
+    assert MeshLibrary(finder, tmp_path).read(path) is first
+    CONE.copy().apply_scale(2).export(path)
+    os.utime(path, ns=(1, 1))  # however coarse the clock of the file system is
+    assert np.allclose(MeshLibrary(finder, tmp_path).read(path).bounds, np.multiply(first.bounds, 2))

@@ -41,11 +41,16 @@ class TriangleMesh:
     def __init__(self, vertices: Array, faces: Faces) -> None:
         self.vertices = vertices
         self.faces = faces
+        self._scaled: dict[Vector3, TriangleMesh] = {}
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
         """The lowest and highest corner of the box around the mesh, in m; each of shape (3,)."""
-        used = self.vertices[np.unique(self.faces)] if len(self.faces) else np.zeros((1, 3))
+        if not len(self.faces):
+            return np.zeros(3), np.zeros(3)
+        is_used = np.zeros(len(self.vertices), dtype=bool)
+        is_used[self.faces.ravel()] = True
+        used = self.vertices[is_used]
         return used.min(axis=0), used.max(axis=0)
 
     @cached_property
@@ -69,7 +74,12 @@ class TriangleMesh:
 
     def scaled(self, scale: Vector3) -> TriangleMesh:
         """The mesh scaled along its axes, as the ``scale`` of a URDF mesh does; a negative factor mirrors it."""
-        return self if scale == (1.0, 1.0, 1.0) else TriangleMesh(self.vertices * np.asarray(scale), self.faces)
+        if scale == (1.0, 1.0, 1.0):
+            return self
+        found = self._scaled.get(scale)
+        if found is None:
+            found = self._scaled[scale] = TriangleMesh(self.vertices * np.asarray(scale), self.faces)
+        return found
 
     @cached_property
     def _merged(self) -> tuple[Array, Faces]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os.path
+import os
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, phrase
@@ -10,11 +10,17 @@ from linkwright.geometry.bounds import FARTHEST
 from linkwright.geometry.meshes import TriangleMesh, read_mesh, unreadable
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh
+from linkwright.xacro.kept import Kept
 from linkwright.xmltree import Element
+
+_MOST_KEPT = 256 << 20
+"""Bytes of meshes that are kept from one description to the next."""
 
 
 class MeshLibrary:
     """Finds and reads the meshes that a description names.
+
+    A file that has not changed since another description named it is not read again, as far as it is kept.
 
     Args:
         finder: where packages are.
@@ -59,7 +65,7 @@ class MeshLibrary:
         found = self._meshes.get(key)
         if found is None:
             try:
-                found = read_mesh(path)
+                found = _unchanged(path, key)
             except LinkwrightError as error:
                 found = error
             self._meshes[key] = found
@@ -82,3 +88,28 @@ class MeshLibrary:
         if element is None or element.source is None or element.source.name.startswith("<"):
             return self._folder
         return Path(element.source.name).parent
+
+
+def _size_of(_: object, mesh: TriangleMesh) -> int:
+    """Bytes of a mesh, with as many again for what is worked out from it."""
+    return 2 * (mesh.vertices.nbytes + mesh.faces.nbytes)
+
+
+_KEPT: Kept[tuple[str, int, int], TriangleMesh] = Kept(_MOST_KEPT, _size_of)
+"""The meshes of files, by the path, the time of the last change in ns, and the size in bytes."""
+
+
+def _unchanged(path: Path, real: str) -> TriangleMesh:
+    """The triangles of a file, read before or now; glTF is read anew, since parts of it may lie in other files."""
+    if path.suffix.lower() in (".glb", ".gltf"):
+        return read_mesh(path)
+    try:
+        facts = os.stat(real)  # noqa: PTH116 - a path that is already text
+    except OSError:
+        return read_mesh(path)  # which tells why
+    key = real, facts.st_mtime_ns, facts.st_size
+    found = _KEPT.values.get(key)
+    if found is None:
+        found = read_mesh(path)
+        _KEPT.keep(key, found)
+    return found

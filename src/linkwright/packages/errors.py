@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, did_you_mean, is_misspelt, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, phrase
 
 
 class PackageNotFoundError(LinkwrightError, KeyError):
@@ -13,18 +13,21 @@ class PackageNotFoundError(LinkwrightError, KeyError):
     It is a KeyError too, as ``ament_index_python``'s exception of the same name is, so that launch files
     which catch that one go on working.
 
+    Args:
+        searched: the places.
+        meant: the hint at a package that may be meant.
+
     Attributes:
         name: the package that was looked for.
         is_slip: whether it is the misspelt name of a package that there is.
     """
 
-    def __init__(self, name: str, searched: Sequence[str], known: Iterable[str]) -> None:
+    def __init__(self, name: str, searched: Sequence[str], meant: Phrase | None, *, is_slip: bool) -> None:
         notes = tuple(Note(phrase("searched {place}", place=place)) for place in searched)
-        meant = did_you_mean(name, known)
-        hint = meant or (phrase("go to the workspace that holds it, or source its install/setup.bash"))
+        hint = meant or phrase("go to the workspace that holds it, or source its install/setup.bash")
         super().__init__(Diagnostic("PKG101", phrase("package '{name}' not found", name=name), notes=notes, hint=hint))
         self.name = name
-        self.is_slip = is_misspelt(name, known)
+        self.is_slip = is_slip
 
 
 def bad_uri(problem: Phrase, hint: Phrase | None = None) -> LinkwrightError:

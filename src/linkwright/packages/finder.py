@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from pathlib import Path
 
 import linkwright
-from linkwright.diagnostics import Phrase, display_path, is_misspelt, joined, phrase
+from linkwright.diagnostics import Phrase, did_you_mean, display_path, is_misspelt, joined, phrase
 from linkwright.packages import ament, uri
 from linkwright.packages.ament import install_prefix
 from linkwright.packages.errors import PackageNotFoundError
@@ -60,6 +60,7 @@ class PackageFinder:
         self._extra = {name: Path(share) for name, share in (extra or {}).items()}
         self._scans: dict[Path, SourceScan] = {}
         self._known: dict[str, Path] = {}
+        self._meant: dict[str, tuple[Phrase | None, bool]] = {}
         self._offered: str | None = None
 
     @property
@@ -89,9 +90,10 @@ class PackageFinder:
         """
         share = self.find(name)
         if share is None:
-            ours = self._shipped()
-            known = [each for each in self.packages() if each not in ours or is_misspelt(name, [each])]
-            raise PackageNotFoundError(name, self._searched(), known)
+            if name not in self._meant:
+                self._meant[name] = self._nearest(name)
+            meant, is_slip = self._meant[name]
+            raise PackageNotFoundError(name, self._searched(), meant, is_slip=is_slip)
         return share
 
     def packages(self) -> dict[str, Path]:
@@ -133,6 +135,7 @@ class PackageFinder:
     def forget(self) -> None:
         """Look at the disk anew at the next question; packages may have come, gone or moved."""
         self._known.clear()
+        self._meant.clear()
         self._scans.clear()
 
     # --- the places -----------------------------------------------------------------------------------------
@@ -211,7 +214,13 @@ class PackageFinder:
         folder = shipped_folder()
         return {} if folder is None else SourceScan(folder).packages()
 
-    # --- notes of the error -----------------------------------------------------------------------------------
+    # --- what the error says ----------------------------------------------------------------------------------
+
+    def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
+        """The hint at a package with a name like this one, and whether this one is that name misspelt."""
+        ours = self._shipped()
+        known = [each for each in self.packages() if each not in ours or is_misspelt(name, [each])]
+        return did_you_mean(name, known), is_misspelt(name, known)
 
     def _searched(self) -> list[Phrase]:
         prefixes = self._prefixes()

@@ -7,6 +7,7 @@ import re
 import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from linkwright.descriptions.argument_sets.workspace import CallingFiles
@@ -14,6 +15,7 @@ from linkwright.diagnostics import Span
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.readers.xacro_calls.call import (
     CallingFile,
+    Inclusion,
     XacroCall,
     launch_choice,
     launch_names,
@@ -201,29 +203,33 @@ class _Target:
         found: list[dict[str, str]] = [{}]
         if depth >= _DEEPEST:
             return found
-        for other_package, other in self.files:
-            for inclusion in other.inclusions:
-                if not _includes(inclusion.path, other, file, package):
-                    continue
-                for given in self._launches(other_package, other, depth + 1):
-                    selection = Selection({}, given)
-                    texts = {launch_choice(name): text for name, text in inclusion.arguments.items()}
-                    inherited = {name: (Open(name),) for name in launch_names(other.choices)}
-                    values = {
-                        name: value
-                        for name, text in {**inherited, **texts}.items()
-                        if (value := resolve(text, other.choices, selection)) is not None
-                    }
-                    if values not in found and len(found) < _MOST_LAUNCHES:
-                        found.append({**given, **values})
+        for named, by, other, inclusion in self._inclusions.get(Path(file.path).name, ()):
+            if named not in (None, package):
+                continue
+            for given in self._launches(by, other, depth + 1):
+                selection = Selection({}, given)
+                texts = {launch_choice(name): text for name, text in inclusion.arguments.items()}
+                inherited = {name: (Open(name),) for name in launch_names(other.choices)}
+                values = {
+                    name: value
+                    for name, text in {**inherited, **texts}.items()
+                    if (value := resolve(text, other.choices, selection)) is not None
+                }
+                if values not in found and len(found) < _MOST_LAUNCHES:
+                    found.append({**given, **values})
         return found
 
+    @cached_property
+    def _inclusions(self) -> dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]]:
+        """Each inclusion by the name of the file that is included.
 
-def _includes(path: Text, by: CallingFile, file: CallingFile, package: str | None) -> bool:
-    """Whether a launch file is meant by the path of an inclusion."""
-    written = resolve(path, by.choices, Selection()) or (path[-1] if path and isinstance(path[-1], str) else "")
-    named, rest = split_mark(written)
-    return rest.rpartition("/")[2] == file.path.replace(os.sep, "/").rpartition("/")[2] and named in (None, package)
+        Before it stand the package that the path names, the package that includes, and the file that does.
+        """
+        found: dict[str, list[tuple[str | None, str | None, CallingFile, Inclusion]]] = {}
+        for package, file in self.files:
+            for named, name, inclusion in file.included:
+                found.setdefault(name, []).append((named, package, file, inclusion))
+        return found
 
 
 def _is_open(path: Text) -> bool:

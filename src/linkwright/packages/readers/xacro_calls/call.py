@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from linkwright.diagnostics import Span
-from linkwright.packages.readers.xacro_calls.texts import Choice, Open, Text
+from linkwright.packages.readers.xacro_calls.texts import Choice, Open, Selection, Text, resolve, split_mark
 
 _LAUNCH = "launch:"
 
@@ -41,7 +42,7 @@ class Inclusion:
     arguments: Mapping[str, Text]
 
 
-@dataclass(slots=True)
+@dataclass
 class CallingFile:
     """What one file says.
 
@@ -56,6 +57,16 @@ class CallingFile:
     calls: list[XacroCall] = field(default_factory=list)
     inclusions: list[Inclusion] = field(default_factory=list)
     choices: dict[str, Choice] = field(default_factory=dict)
+
+    @cached_property
+    def included(self) -> list[tuple[str | None, str, Inclusion]]:
+        """Each inclusion behind the package that its path begins with, or None, and the name of its file."""
+        found: list[tuple[str | None, str, Inclusion]] = []
+        for each in self.inclusions:
+            last = each.path[-1] if each.path and isinstance(each.path[-1], str) else ""
+            package, rest = split_mark(resolve(each.path, self.choices, Selection()) or last)
+            found.append((package, rest.rpartition("/")[2], each))
+        return found
 
     def declare(self, name: str, default: Text | None, others: tuple[Text, ...] = ()) -> None:
         """Take a launch argument with its default and the other values that it may have."""
