@@ -200,6 +200,11 @@ def generate_launch_description():
             </launch>""",
         ),
         (
+            "optional.launch",
+            """<launch><arg name="long" value="prefix:='x_'"/><param name="robot_description"
+            command="$(find xacro)/xacro $(find arm)/urdf/arm.urdf.xacro $(arg long)"/></launch>""",
+        ),
+        (
             "view.launch.yaml",
             """
 launch:

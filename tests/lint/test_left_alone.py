@@ -241,6 +241,35 @@ def test_cmake_does_not_read_a_setup_py(tmp_path, build, codes):
     assert [each.code for each in found] == codes
 
 
+@pytest.mark.parametrize(
+    ("driver", "codes"), [("init(self, webots_node, properties)", []), ("__init__(self, a, b)", ["LW827"])]
+)
+def test_a_driver_that_webots_loads_needs_no_main(tmp_path, driver, codes):
+    (tmp_path / "package.xml").write_text(
+        MANIFEST.format(more="<export><build_type>ament_python</build_type></export>")
+    )
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p/run.py").write_text(f"class Driver:\n    def {driver}:\n        pass\n")
+    (tmp_path / "setup.py").write_text(
+        "from setuptools import setup\n"
+        "setup(name='p', packages=['p'], entry_points={'console_scripts': ['run = p.run:main']})\n"
+    )
+    found = examine_package(tmp_path, Settings(select=("LW827",))).diagnostics
+    assert [each.code for each in found] == codes
+
+
+@pytest.mark.parametrize("path", ["sdk", "sdk/cxx"])
+def test_what_a_submodule_would_bring_is_told_with_how_to_get_it(tmp_path, path):
+    (tmp_path / ".gitmodules").write_text(f'[submodule "{path}"]\n\tpath = {path}\n\turl = x\n')
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    (tmp_path / "CMakeLists.txt").write_text(
+        "project(p)\nfind_package(ament_cmake REQUIRED)\n"
+        "install(DIRECTORY sdk/cxx/include DESTINATION include)\nament_package()\n"
+    )
+    (found,) = examine_package(tmp_path, Settings(select=("LW824",))).diagnostics
+    assert str(found.hint) == f"'{path}' is a submodule of Git: run git submodule update --init"
+
+
 @pytest.mark.parametrize(("ignored", "codes"), [("dist/", []), ("*.log", ["LW824"])])
 def test_what_git_ignores_is_made_before_it_is_installed(tmp_path, ignored, codes):
     (tmp_path / ".git").mkdir()

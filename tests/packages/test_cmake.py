@@ -53,6 +53,24 @@ def test_patterns(package: Path) -> None:
     assert set(copied(without, package)) == {"urdf/arm.urdf", "urdf/notes.txt"}
 
 
+@pytest.mark.parametrize(
+    ("more", "is_required"),
+    [
+        ("", True),
+        ('PATTERN "*.h"', True),
+        ('PATTERN ".svn" EXCLUDE', True),
+        ('FILES_MATCHING PATTERN "*.h" PATTERN ".svn" EXCLUDE', False),
+        ('FILES_MATCHING PATTERN "inc*"', True),
+        ('PATTERN "include" EXCLUDE', False),
+        ("OPTIONAL", False),
+    ],
+)
+def test_cmake_asks_patterns_before_it_misses_a_folder(package: Path, more: str, is_required: bool) -> None:
+    # As file(INSTALL) of CMake 3.25 does: what no pattern takes is passed over, there or not.
+    found = rules(f"install(DIRECTORY include/ DESTINATION include {more})")
+    assert [item.text for item in found.required] == (["include/"] if is_required else [])
+
+
 def test_programs_and_a_new_name(package: Path) -> None:
     text = (
         "install(PROGRAMS scripts/run.py DESTINATION lib/${PROJECT_NAME})\n"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
 
-_IGNORE = ".gitignore"
+_IGNORE, _SUBMODULES = ".gitignore", ".gitmodules"
 _REPOSITORY = ".git"
 _HIGHEST = 8
 """So many folders above a file are looked at for a ``.gitignore`` where none of them is a repository's."""
@@ -61,9 +61,23 @@ def is_ignored_by_git(path: Path) -> bool:
     return answer
 
 
+def submodule_of(path: Path) -> str | None:
+    """Return the submodule of a Git repository that a file or folder is in, relative to the repository, or None.
+
+    Args:
+        path: of the file or folder, which need not exist; absolute.
+    """
+    for folder in _folders_upwards(path):
+        for line in _lines(folder / _SUBMODULES):
+            key, _, value = line.partition("=")
+            if key.strip() == "path" and path.is_relative_to(folder / value.strip()):
+                return value.strip()
+    return None
+
+
 @lru_cache(maxsize=256)
 def _lines(path: Path) -> tuple[str, ...]:
-    """The patterns of a ``.gitignore``, or none where there is no such file."""
+    """The lines of a ``.gitignore`` or ``.gitmodules``, or none where there is no such file."""
     try:
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:

@@ -150,7 +150,7 @@ class _Target:
             if value is None:
                 missing.append(name)
             elif not name:
-                words = (word.partition(":=") for word in value.split())
+                words = (word.partition(":=") for word in (_words(value) if call.is_command else value.split()))
                 values.update((word, text) for word, sign, text in words if sign)
             else:
                 values[name] = _unquoted(value) if call.is_command else value
@@ -245,7 +245,12 @@ def _varied(call: XacroCall, one: ArgumentSet, other: ArgumentSet) -> tuple[str,
 
 def _unquoted(value: str) -> str:
     """A value as a command line has it, without quotes."""
+    return "".join(_words(value)) if set(value) & {'"', "'"} else value
+
+
+def _words(line: str) -> list[str]:
+    """The words of a piece of a command line, without quotes."""
     try:
-        return "".join(shlex.split(value)) if set(value) & {'"', "'"} else value
+        return shlex.split(line)
     except ValueError:
-        return value
+        return [line]

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
-from linkwright.lint.made_files import is_ignored_by_git, is_made_by_cmake
+from linkwright.lint.made_files import is_ignored_by_git, is_made_by_cmake, submodule_of
 from linkwright.lint.rules.package_manifest import PackageRule
 
 if TYPE_CHECKING:
@@ -244,14 +244,16 @@ class InstalledFileMissing(PackageRule):
                 if item.is_pattern or _is_there(package, item.text) or item.text == f"resource/{package.name}":
                     continue
                 message = phrase("setup.py installs '{text}', which does not exist", text=item.text)
-                yield self.report(message, span=item.span, source=setup.source, hint=near_file(package, item.text))
+                hint = checkout_hint(package, item.text) or near_file(package, item.text)
+                yield self.report(message, span=item.span, source=setup.source, hint=hint)
         if cmake is not None:
             for each in cmake.required:
                 text = each.text.rstrip("/")
                 if text and not text.startswith("/") and "<" not in text and not _is_there(package, text):
                     message = phrase("CMakeLists.txt installs '{text}', which does not exist", text=each.text)
                     like = near_folder(package, text)
-                    hint = phrase("did you mean {names}?", names=quoted(like)) if like else near_file(package, text)
+                    near = phrase("did you mean {names}?", names=quoted(like)) if like else near_file(package, text)
+                    hint = checkout_hint(package, text) or near
                     yield self.report(message, span=cmake.span(each), source=each.source, hint=hint)
 
 
@@ -297,6 +299,14 @@ def _is_shared(file: str) -> bool:
 def _covers(directory: str, folder: str) -> bool:
     directory = directory.rstrip("/")
     return directory in ("", ".") or folder == directory or folder.startswith(f"{directory}/")
+
+
+def checkout_hint(package: PackageContext, path: str) -> Phrase | None:
+    """A hint to check out the submodule of Git that a path of the package is in, or None where it is in none."""
+    submodule = submodule_of(package.folder / path)
+    if submodule is None:
+        return None
+    return phrase("'{folder}' is a submodule of Git: run git submodule update --init", folder=submodule)
 
 
 def near_file(package: PackageContext, path: str) -> Phrase | None:

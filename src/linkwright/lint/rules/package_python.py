@@ -7,13 +7,15 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
-from linkwright.lint.rules.package_install import near_file
+from linkwright.lint.rules.package_install import checkout_hint, near_file
 from linkwright.lint.rules.package_manifest import PackageRule
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
 
 _MARKERS = "share/ament_index/resource_index/packages"
+_DRIVER_OF_WEBOTS = re.compile(r"^[ \t]+def init\(self, *\w+, *\w+\)", re.MULTILINE)
+"""A class that webots_ros2_driver loads by its name; nobody runs the executable that its tutorial declares for it."""
 _SCRIPT_FOLDERS = re.compile(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*\r?$", re.MULTILINE)
 
 
@@ -226,12 +228,8 @@ class PythonPackageMissing(PackageRule):
             path = name.replace(".", "/")
             if name and not package.has(path):
                 message = phrase("setup.py names the Python package '{name}', which has no folder", name=name)
-                yield self.report(
-                    message,
-                    span=span,
-                    source=setup.source,
-                    hint=phrase("add an empty file '{path}/__init__.py'", path=path),
-                )
+                hint = checkout_hint(package, path) or phrase("add an empty file '{path}/__init__.py'", path=path)
+                yield self.report(message, span=span, source=setup.source, hint=hint)
 
 
 class SetupCfgDiffers(PackageRule):
@@ -301,4 +299,6 @@ def _defines(package: PackageContext, file: str, name: str) -> bool:
         rf"\s*(from|import)\b.*\b{name}\b",
         "from.*import [*(]",
     )
-    return bool(re.search(rf"^({'|'.join(patterns)})", source.text, re.MULTILINE)) or "__getattr__" in source.text
+    text = source.text
+    is_defined = re.search(rf"^({'|'.join(patterns)})", text, re.MULTILINE) or "__getattr__" in text
+    return bool(is_defined or _DRIVER_OF_WEBOTS.search(text))

@@ -113,7 +113,17 @@ class CopyRule:
         """
         if not self.patterns:
             return not self.only_matching
-        paths = [f"/{folder.rstrip('/')}/{path}" for path in (*list(inside.parents)[:-1], inside)]
+        return self._takes([f"/{folder.rstrip('/')}/{path}" for path in (*list(inside.parents)[:-1], inside)])
+
+    def may_lack(self, item: str) -> bool:
+        """Whether the build goes on without one of the items.
+
+        CMake asks the patterns first: what is not there is no folder for it, and ``FILES_MATCHING`` passes over it.
+        """
+        return self.is_optional or not self._takes([f"/{item.rstrip('/')}"])
+
+    def _takes(self, paths: Sequence[str]) -> bool:
+        """Whether the patterns take the last of some paths, the others being those of the folders around it."""
         if any(pattern.is_excluded and pattern.matches(path) for pattern in self.patterns for path in paths):
             return False
         wanted = (pattern for pattern in self.patterns if not pattern.is_excluded)
@@ -169,7 +179,7 @@ class CMakeFile:
     @property
     def required(self) -> list[Argument]:
         """The files and folders that have to be there."""
-        return [item for rule in self.copies if not rule.is_optional for item in rule.items]
+        return [item for rule in self.copies for item in rule.items if not rule.may_lack(item.text)]
 
     @property
     def programs(self) -> dict[str, str]:
@@ -234,7 +244,7 @@ class CMakeFile:
             return
         path = package / item
         if not path.exists():
-            if share is not None or rule.is_optional or item.startswith("$<"):
+            if share is not None or rule.may_lack(item) or item.startswith("$<"):
                 return
             raise FileNotFoundError(item)
         if path.is_file():
