@@ -140,6 +140,14 @@ class TestWhatUrdfdomReadsAllTheSame:
         assert [(each.severity.value, each.code) for each in found.diagnostics[:-1]] == [("warning", "XML206")] * 5
         assert found.diagnostics[-1].code == "URDF152"  # two roots
 
+    def test_what_urdfdom_refuses_is_read_with_what_xacro_can_make_of_it(self, tmp_path):
+        path = tmp_path / "r.urdf"
+        part = '<xacro:if value="$(arg unknown)"><geometry><sphere radius="1"/></geometry></xacro:if>'
+        path.write_text(f'<robot name="r" {PREFIX}><link name="a"><visual>{part}</visual></link></robot>')
+        found = examine(path, partly=True)
+        assert [(each.severity.value, each.code) for each in found.problems] == [("error", "XAC211")]
+        assert "URDF130" not in [each.code for each in found.diagnostics if each.severity.value == "error"][1:]
+
     @pytest.mark.parametrize(
         "written",
         [

@@ -17,6 +17,7 @@ ARM = f"""<robot {XACRO} name="$(arg name)">
   <xacro:include filename="$(arg type).xacro"/>
 </robot>
 """
+CAN = '<visual><geometry><mesh filename="file://$(find arm)/urdf/can.stl"/></geometry></visual>'
 PART = '<robot><link name="base_link"/></robot>\n'
 LAUNCH = """
 import xacro
@@ -66,6 +67,28 @@ def test_what_fails_only_without_arguments_is_one_remark(check):
         "it is checked with the 2 sets of values that are given",
     ]
     assert found[0]["notes"][0]["file"].endswith("view.launch.py")
+
+
+PLAIN = f'<robot name="r"><link name="base_link">{CAN}</link></robot>'
+EXPANDS = """
+import os
+import xacro
+from ament_index_python.packages import get_package_share_directory
+
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory('arm'), 'urdf', 'arm.urdf')
+    document = xacro.parse(open(file))
+    xacro.process_doc(document)
+"""
+
+
+@pytest.mark.parametrize(
+    ("launch", "expected"),
+    [(EXPANDS, []), (EXPANDS.replace("xacro", "document"), [("error", "LW114")])],
+)
+def test_a_plain_name_is_xacro_where_a_launch_file_expands_it(check, launch, expected):
+    found = check({"arm/urdf/arm.urdf": PLAIN, "arm/urdf/can.stl": "", "arm/launch/view.launch.py": launch})
+    assert [each for each in codes(found) if each[1] == "LW114"] == expected
 
 
 def test_a_value_that_is_given_and_fails_is_an_error_that_names_it(check):

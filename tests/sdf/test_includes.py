@@ -293,10 +293,11 @@ def test_few_lines_cannot_include_without_end(tmp_path, monkeypatch):
     assert [each.code for each in found.diagnostics].count("SDF161") == 1
 
 
-def test_xacro_makes_worlds_too(tmp_path):
+@pytest.mark.parametrize("name", ["w.sdf.xacro", "w.sdf", "w.world"])
+def test_xacro_makes_worlds_too(tmp_path, name):
     from linkwright.descriptions import examine_world
 
-    path = tmp_path / "w.sdf.xacro"
+    path = tmp_path / name
     path.write_text(
         """<sdf version="1.9" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="n" default="2"/>
         <world name="w"><xacro:property name="h" value="${0.5 * $(arg n)}"/><model name="m"><pose>0 0 ${h} 0 0 0</pose>

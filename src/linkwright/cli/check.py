@@ -244,7 +244,7 @@ def _examine(
 
     settings, trouble = words.settings(file)
 
-    def with_values(values: Mapping[str, str]) -> Checked:
+    def with_values(values: Mapping[str, str], xacro: bool | None = None) -> Checked:
         return examine(
             file,
             arguments=values,
@@ -252,6 +252,7 @@ def _examine(
             settings=settings,
             overlay=None if text is None else Overlay({file: text}),
             scopes=(Scope.DESCRIPTION,),
+            xacro=xacro,
         )
 
     if words.values:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Union
 
 from linkwright.descriptions.description import TEXT_NAME, Description
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, has_errors, phrase
 from linkwright.urdf import Reading, Robot, read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element, Overlay
@@ -99,7 +99,7 @@ def examine(
             told = {each.code for each in forbidden}
             unexpanded = tuple(_as_warning(each) for each in error.diagnostics if each.code not in told)
             plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay, is_told=bool(unexpanded))
-            if plain.robot is not None:
+            if plain.robot is not None and not has_errors(plain.diagnostics):
                 return plain
         from linkwright.xacro.inputs import Inputs
         from linkwright.xacro.parts import expand_parts

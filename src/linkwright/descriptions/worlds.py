@@ -56,7 +56,7 @@ def examine_world(
     """A world or model in SDF, or in SDF that xacro makes, with all findings about it.
 
     Args:
-        path: the file; one whose name ends in ``.xacro`` is expanded first.
+        path: the file; one whose name ends in ``.xacro``, or that has tags of xacro, is expanded first.
         arguments: values for the file's ``<xacro:arg>``.
         packages: package name -> share folder, or a finder.
         environment: the variables with search paths (`linkwright.sdf.resources`); those of the process by default.
@@ -126,20 +126,30 @@ def _document(
 ) -> tuple[Document, tuple[Diagnostic, ...], tuple[Path, ...]]:
     """The document, what was remarked on the way, and the files it was made of."""
     text = None if overlay is None else overlay.text(str(path))
-    if path.suffix == ".xacro":
-        from linkwright.xacro import expand
+    if path.suffix != ".xacro":
+        document, warnings = _as_written(path, read_bytes(path) if text is None else text)
+        if not _is_xacro(document):
+            return document, warnings, (path,)
+    from linkwright.xacro import expand
 
-        expansion = expand(str(path), arguments, packages=finder, text=text, overlay=overlay)
-        return expansion.document, expansion.diagnostics, expansion.dependencies
+    expansion = expand(str(path), arguments, packages=finder, text=text, overlay=overlay)
+    return expansion.document, expansion.diagnostics, expansion.dependencies
+
+
+def _as_written(path: Path, written: str | bytes) -> tuple[Document, tuple[Diagnostic, ...]]:
     from linkwright.sdf.link_counts import has_more_links
     from linkwright.sdf.text import parse_as_gazebo
 
-    written = read_bytes(path) if text is None else text
     if has_more_links(written, _MOST_LINKS):
         message = phrase(
             "'{path}' is not read: it has more than {most} links", path=display_path(path), most=_MOST_LINKS
         )
         hint = phrase("shapes that never move may be in one link")
         raise LinkwrightError(Diagnostic("SDF163", message, hint=hint))
-    document, warnings = parse_as_gazebo(written, str(path))
-    return document, warnings, (path,)
+    return parse_as_gazebo(written, str(path))
+
+
+def _is_xacro(document: Document) -> bool:
+    """Whether a file is written for xacro, whatever its name: launch files expand it before Gazebo gets it."""
+    root = document.root
+    return "xmlns:xacro" in root.attributes and any(each.tag.startswith("xacro:") for each in root.walk())

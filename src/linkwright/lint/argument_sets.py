@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from linkwright.descriptions import examine as examine_description
@@ -77,7 +77,7 @@ class SetCheck:
     Args:
         path: the file.
         finder: where packages are.
-        examine: checks the file with some values.
+        examine: checks the file with some values, expanded where that is True, or as the file says where it is None.
         settings: those in force for the file.
         is_named: whether the user named the file, who then wants to know why it cannot be expanded as it stands.
     """
@@ -85,8 +85,9 @@ class SetCheck:
     path: Path
     finder: PackageFinder
     settings: Settings
-    examine: Callable[[Mapping[str, str]], Checked]
+    examine: Callable[[Mapping[str, str], bool | None], Checked]
     is_named: bool
+    _xacro: bool | None = field(default=None, init=False)
 
     def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
         """The check with the sets of a configuration, which stand for everything that callers give."""
@@ -95,6 +96,9 @@ class SetCheck:
     def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
         """The check with the defaults and the sets that callers give; `find_sets` is asked only where it matters."""
         default = self._run(_NO_VALUES)
+        if _has_expressions(default.checked) and find_sets():
+            self._xacro = True  # a launch file gives it to xacro, whatever it is called
+            default = self._run(_NO_VALUES)
         if (self.is_named and not default.errors) or not _takes_arguments(default.checked):
             return default.checked
         sets = find_sets()
@@ -123,7 +127,7 @@ class SetCheck:
         return self._together(kept, self._needs(kept[0], default, common, sets))
 
     def _run(self, given: ArgumentSet) -> _Run:
-        checked = self.examine(given.values)
+        checked = self.examine(given.values, self._xacro)
         if given.values:  # a caller may give what other descriptions take
             found = tuple(each for each in checked.diagnostics if each.code != UNUSED)
             checked = replace(checked, diagnostics=found)
@@ -183,7 +187,9 @@ class SetCheck:
 
     def _expands(self, values: Mapping[str, str], common: frozenset[Key]) -> bool:
         try:
-            found = examine_description(self.path, arguments=values, packages=self.finder, partly=True).diagnostics
+            found = examine_description(
+                self.path, arguments=values, packages=self.finder, xacro=self._xacro, partly=True
+            ).diagnostics
         except LinkwrightError as error:
             found = error.diagnostics
         return all(each.severity is not Severity.ERROR or _place(each) in common for each in found)
@@ -234,6 +240,14 @@ class SetCheck:
 
 def _sources(checked: Checked) -> Sequence[Document]:
     return () if checked.subject is None else tuple(checked.subject.sources.values())
+
+
+def _has_expressions(checked: Checked) -> bool:
+    """Whether a file that is read as it stands has expressions of xacro in it."""
+    if checked.subject is None or checked.subject.expansion is not None:
+        return False
+    texts = [document.source.text for document in _sources(checked) if document.source is not None]
+    return any("${" in text or "$(" in text for text in texts)
 
 
 def _takes_arguments(checked: Checked) -> bool:

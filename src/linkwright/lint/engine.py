@@ -77,6 +77,7 @@ def examine(
     settings: Settings | None = None,
     overlay: Overlay | None = None,
     scopes: Collection[Scope] = (Scope.DESCRIPTION, Scope.PACKAGE),
+    xacro: bool | None = None,
 ) -> Checked:
     """Check a URDF, xacro or SDF file; arguments as for `check`.
 
@@ -87,6 +88,7 @@ def examine(
         settings: see `check`.
         overlay: texts that stand for those of files, such as ones that are not saved yet.
         scopes: the rules to run.
+        xacro: whether to expand a robot; None for what the file says.
     """
     path = Path(path)
     trouble: tuple[Diagnostic, ...] = ()
@@ -99,7 +101,9 @@ def examine(
     if is_world(str(path)):
         return _examine_world(path, arguments, finder, settings, trouble, overlay)
     try:
-        description = examine_description(path, arguments=arguments, packages=finder, overlay=overlay, partly=True)
+        description = examine_description(
+            path, arguments=arguments, packages=finder, overlay=overlay, xacro=xacro, partly=True
+        )
     except LinkwrightError as error:
         return Checked(path, None, (*trouble, *as_set(error.diagnostics, settings)), None)
     subject = Subject(description, finder, settings)
