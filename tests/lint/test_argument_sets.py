@@ -207,13 +207,20 @@ def generate_launch_description():
     assert codes(found) == [("info", "LINT303")]
 
 
-@pytest.mark.parametrize(("needs", "severity"), [("<exec_depend>far</exec_depend>", "warning"), ("", "error")])
-def test_a_missing_package_is_a_warning_where_it_is_declared(check, needs, severity):
+@pytest.mark.parametrize(
+    ("needs", "beside", "severity"),
+    [
+        ("<exec_depend>far</exec_depend>", "", "warning"),
+        ("", "<depend>far</depend>", "warning"),
+        ("", "", "error"),
+    ],
+)
+def test_a_missing_package_is_a_warning_where_it_or_a_neighbour_declares_it(check, needs, beside, severity):
     robot = (
         f"""<robot {XACRO} name="r"><xacro:include filename="$(find far)/far.xacro"/><link name="base_link"/></robot>"""
     )
-    manifest = MANIFEST.format(name="arm", needs=needs)
-    found = check({"arm/package.xml": manifest, "arm/urdf/arm.urdf.xacro": robot})
+    manifest, other = MANIFEST.format(name="arm", needs=needs), MANIFEST.format(name="bringup", needs=beside)
+    found = check({"arm/package.xml": manifest, "bringup/package.xml": other, "arm/urdf/arm.urdf.xacro": robot})
     assert (severity, "PKG101") in codes(found)
 
 

@@ -85,6 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
         _listed(arguments.ignore or ()),
         None if arguments.config is None else Path(arguments.config),
         arguments.package,
+        tuple(path.absolute() for path in paths if path.is_dir()),
     )
     unknown = words.unknown_selector()
     if unknown:
@@ -110,13 +111,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """The settings of the command line, for every file."""
+    """The settings of the command line, for every file; `folders` are those that are checked."""
 
     values: dict[str, str]
     select: tuple[str, ...] | None
     ignore: tuple[str, ...]
     config: Path | None
     package: bool
+    folders: tuple[Path, ...]
     finders: dict[Path, PackageFinder] = field(default_factory=dict)
     callers: list[ArgumentSets] = field(default_factory=list)
 
@@ -126,7 +128,7 @@ class _Words:
 
         folder = file.absolute().parent
         if folder not in self.finders:
-            self.finders[folder] = PackageFinder(start=[folder, Path.cwd()])
+            self.finders[folder] = PackageFinder(start=[folder, *self.folders, Path.cwd()])
         return self.finders[folder]
 
     def sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
@@ -173,6 +175,7 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
     """Everything found, each thing once, and what came of the file where one was named."""
     from linkwright.lint.engine import examine_package
     from linkwright.lint.targets import find_targets
+    from linkwright.packages.manifest import MANIFEST
 
     targets = find_targets(paths, around=words.package)
     if not targets.files and not targets.packages:
@@ -194,7 +197,7 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
         _add(found, (*trouble, *said))
     for folder in targets.packages:
         settings, trouble = words.settings(folder)
-        _add(found, (*trouble, *examine_package(folder, settings).diagnostics))
+        _add(found, (*trouble, *examine_package(folder, settings, words.finder(folder / MANIFEST)).diagnostics))
     return list(found.values()), checked if len(paths) == 1 and not paths[0].is_dir() else None
 
 
@@ -276,7 +279,8 @@ def _fix(paths: Sequence[Path], words: _Words, *, unsafe: bool, write: bool) -> 
 
     def package_again(folder: Path, text: str | None) -> Iterable[Diagnostic]:
         overlay = None if text is None else Overlay({folder / MANIFEST: text})
-        return examine_package(folder, words.settings(folder)[0], overlay=overlay).diagnostics
+        finder = words.finder(folder / MANIFEST)
+        return examine_package(folder, words.settings(folder)[0], finder, overlay).diagnostics
 
     targets = find_targets(paths, around=words.package)
     checks = [(file, partial(file_again, file)) for file in targets.files]

@@ -9,12 +9,13 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.package import PackageContext, find_package
+from linkwright.packages.manifest import MANIFEST
 
 _MISSING = "PKG101"
 
 
 def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """The diagnostics; a missing package is a warning where the ``package.xml`` of who names it declares it."""
+    """The diagnostics; a missing package is a warning where who names it, or a package beside that, declares it."""
     packages: dict[Path, PackageContext | None] = {}
     for each in diagnostics:
         if each.code != _MISSING or each.span is None:
@@ -25,8 +26,18 @@ def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
             packages[folder] = find_package(folder)
         package = packages[folder]
         name = str(as_phrase(each.message).arguments.get("name", ""))
-        if package is None or package.manifest is None or not package.manifest.declares(name):
+        if package is None or not any(_declares(beside, name) for beside in (package, *_beside(package))):
             yield each
             continue
         hint = phrase("install '{name}', or check it together with this package; what needs it is left out", name=name)
         yield replace(each, severity=Severity.WARNING, hint=hint)
+
+
+def _beside(package: PackageContext) -> Iterator[PackageContext]:
+    """The packages in the folder that a package is in; who builds one of them builds them all."""
+    for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")):
+        yield PackageContext(manifest.parent)
+
+
+def _declares(package: PackageContext, name: str) -> bool:
+    return package.manifest is not None and package.manifest.declares(name)
