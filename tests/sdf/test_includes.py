@@ -208,6 +208,16 @@ def test_merged_parts_are_parts_of_the_model_around_them(tmp_path):
     assert frames.link("_merged__mast__model__") == "pole"
 
 
+def test_what_a_merged_model_could_not_include_is_told_of_once(tmp_path):
+    write(tmp_path, {"mast/model.sdf": sdf('<model name="mast"><include><uri>model://pole</uri></include></model>')})
+    found = examined(
+        tmp_path,
+        """<model name="m"><include merge="true"><uri>mast</uri></include>
+        <joint name="j" type="fixed"><parent>world</parent><child>pole::link</child></joint></model>""",
+    )
+    assert [each.code for each in found.diagnostics] == ["SDF160"]
+
+
 def test_a_merged_model_without_its_placement_frame_is_told_of_and_placed_without(tmp_path):
     write(tmp_path, {"mast/model.sdf": sdf('<model name="mast" placement_frame="foot"><link name="pole"/></model>')})
     found = examined(

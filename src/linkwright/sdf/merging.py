@@ -41,6 +41,7 @@ def merged(whole: Model, part: Model) -> Model:
         frames=(*whole.frames, *frames),
         models=(*whole.models, *(_moved(each, frame) for each in part.models)),
         plugins=(*whole.plugins, *part.plugins),
+        includes=(*whole.includes, *part.includes),  # those that lead nowhere
     )
 
 
