@@ -354,9 +354,9 @@ def test_an_element_by_itself_and_a_file_yet_to_be_written_are_no_robot(here, ca
 
 def test_packages_are_looked_for_in_the_folder_that_is_checked(here, capsys, monkeypatch):
     manifest = '<package format="3"><name>{}</name></package>'
-    whole = f'<robot name="r" {XACRO}><xacro:include filename="$(find far)/part.xacro"/></robot>'
-    files = {"a/b/near/package.xml": manifest.format("near"), "a/b/near/urdf/r.urdf.xacro": whole}
-    files |= {"c/far/package.xml": manifest.format("far"), "c/far/part.xacro": GOOD}
+    whole = f'<robot name="r" {XACRO}><xacro:include filename="$(find yonder)/part.xacro"/></robot>'
+    files = {"a/b/here_by/package.xml": manifest.format("here_by"), "a/b/here_by/urdf/r.urdf.xacro": whole}
+    files |= {"c/yonder/package.xml": manifest.format("yonder"), "c/yonder/part.xacro": GOOD}
     write(here / "ws", files)
     (here / "elsewhere").mkdir()
     monkeypatch.chdir(here / "elsewhere")

@@ -73,12 +73,15 @@ ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
 
 
 def test_a_check_says_once_that_it_did_not_look_into_meshes(without, tmp_path):
-    small_mesh(tmp_path)
-    path = tmp_path / "robot.urdf"
-    path.write_text(ROBOT)
-    assert "INR104" not in [each.code for each in examine(path).diagnostics]
+    def unread_in(folder):
+        folder.mkdir()
+        small_mesh(folder)
+        (folder / "robot.urdf").write_text(ROBOT)
+        return [each for each in examine(folder / "robot.urdf").diagnostics if each.code == "INR104"]
+
+    assert unread_in(tmp_path / "with") == []
     without("trimesh")
-    unread = [each for each in examine(path).diagnostics if each.code == "INR104"]
+    unread = unread_in(tmp_path / "without")  # another file: what was read is kept
     assert [(each.severity, each.hint) for each in unread] == [(Severity.INFO, install_hint("mesh"))]
 
 
