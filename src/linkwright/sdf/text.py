@@ -13,13 +13,15 @@ from linkwright.xmltree import Document
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.tinyxml import COMMENT, forbidden, parse_as_tinyxml
 
-_EMPTY, _NOT_TEXT = "XML105", "XML104"
+_EMPTY, _NOT_TEXT, _NOT_XML = "XML105", "XML104", "XML206"
 _LATE_DECLARATION = re.compile(rf"(?:\s|{COMMENT})+(<\?xml\s[^>]*\?>)")
 _READ_ALL_THE_SAME = phrase("simulators read it all the same; other XML readers refuse the file")
 
 
 def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Parse a text as Gazebo does, with a warning for each kind of thing that XML forbids.
+    """Parse a text as Gazebo does, and tell each kind of thing that XML forbids.
+
+    What leaves the content as it is, such as dashes in a comment, is an information: only simulators read these files.
 
     Raises:
         LinkwrightError: it is not XML (XML###).
@@ -43,7 +45,8 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
             raise
         hint = phrase('a world begins with <sdf version="...">; was the file saved?')
         raise LinkwrightError(replace(found, hint=hint)) from None
-    return document, (*warnings, *more)
+    told = (*warnings, *more)
+    return document, tuple(replace(each, severity=Severity.INFO) if each.code == _NOT_XML else each for each in told)
 
 
 def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:

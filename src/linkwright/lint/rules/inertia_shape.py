@@ -33,6 +33,9 @@ _BEYOND_BELIEF = 20.0
 _SLIP = 1.0
 """Masses below this one, in kg, are not in grams by mistake; on small frames they are there to please a simulator."""
 
+_BALLAST = 10.0
+_ROUGHLY = 3.0
+
 _ALMOST_NOTHING = 1e-3
 """Differences smaller than this, in m, are none."""
 
@@ -45,7 +48,9 @@ class DensityTooHigh(Rule):
     Osmium, the densest there is, has 22 600 kg/m3. A link that would be denser has a mass in grams, or shapes in
     other units than metres. Meshes count with the whole box around them, so nothing real is reported. Where links that
     are fixed to it have shapes and no mass, its mass counts in the box around all links that fixed joints connect.
-    Where a comment on the line or above it says why, as for ballast, the finding is an information.
+    Where a comment on the line or above it says why, as for ballast, the finding is an information. So it is up to ten
+    times osmium for the base of the robot, which a large mass keeps in its place, and up to three times for a mass of
+    one digit, such as 1 or 20: nobody weighed the link, and the unit is right.
 
     ## Example
 
@@ -81,7 +86,9 @@ class DensityTooHigh(Rule):
                 if around is None:
                     continue
                 volume = max(volume, prod(around.size))
-            if volume > 0 and inertial.mass / volume > HEAVIEST_DENSITY:
+            excess = inertial.mass / volume / HEAVIEST_DENSITY if volume > 0 else 0.0
+            if excess > 1:
+                is_meant = excess < self._tolerated(subject, link, inertial) or is_explained(inertial.element, "mass")
                 yield self.report(
                     phrase(
                         "link '{name}' would have a density of {thousands} kg/m3",
@@ -100,8 +107,15 @@ class DensityTooHigh(Rule):
                         )
                     ],
                     hint=phrase("masses are in kg and lengths in m"),
-                    severity=Severity.INFO if is_explained(inertial.element, "mass") else None,
+                    severity=Severity.INFO if is_meant else None,
                 )
+
+    def _tolerated(self, subject: Subject, link: Link, inertial: Inertial) -> float:
+        """How many times osmium's a link's density may be without a mistake in its units."""
+        body = subject.bodies.of(link.name)
+        if body is not None and body.joint is None:
+            return _BALLAST
+        return _ROUGHLY if inertial.mass == float(f"{inertial.mass:.0e}") else 1.0
 
 
 class DensityTooLow(Rule):

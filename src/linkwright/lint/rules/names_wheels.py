@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from math import cos, radians
 from typing import NamedTuple
 
-from linkwright.diagnostics import Diagnostic, Note, Span, phrase
+from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
 from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.vectors import dot, length, subtracted
 from linkwright.lint.rule import Rule
@@ -229,8 +229,9 @@ class WheelsTurnAgainst(Rule):
     ## Why
 
     Equal velocities then turn the wheels against each other, and a controller for differential drive makes the robot
-    spin where it should go straight. Where the maker of a robot wants it so and negates the velocity of one side, the
-    configuration can ignore this rule.
+    spin where it should go straight. Where nothing in the description drives the wheels, neither a plugin of a
+    simulator nor `<ros2_control>`, the finding is an information: the driver of the robot may negate the velocity of
+    one side. Where a plugin does so, the configuration can ignore this rule.
 
     ## Example
 
@@ -260,7 +261,10 @@ class WheelsTurnAgainst(Rule):
                     joint_name=left.joint.name,
                 )
                 hint = phrase("point both axes to the left, +y, so that positive velocities drive forward")
-                yield self.report(message, right.joint.element, notes=[note], hint=hint)
+                severity = (
+                    None if _is_driven(subject, left.joint) and _is_driven(subject, right.joint) else Severity.INFO
+                )
+                yield self.report(message, right.joint.element, notes=[note], hint=hint, severity=severity)
 
 
 class WheelsNotMirrored(Rule):
@@ -342,6 +346,19 @@ class WheelsTurnBackward(Rule):
                 element = left.joint.element.first("axis")
                 hint = phrase("point both axes to the left, +y in the base frame")
                 yield self.report(message, element if element is not None else left.joint.element, hint=hint)
+
+
+def _is_driven(subject: Subject, joint: Joint) -> bool:
+    """Whether a plugin of a simulator or `<ros2_control>` commands the joint."""
+    for gazebo in subject.elements("gazebo"):
+        for plugin in gazebo.elements("plugin"):
+            if any(joint.name in each.text().split() for each in plugin.walk()):
+                return True
+    return any(
+        each.attributes.get("name") == joint.name and each.first("command_interface") is not None
+        for system in subject.elements("ros2_control")
+        for each in system.elements("joint")
+    )
 
 
 def _disc_axes(link: Link) -> Iterator[Vector3]:

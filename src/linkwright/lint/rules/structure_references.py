@@ -15,6 +15,10 @@ from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 
 _NUMBER = re.compile(r"\d+")
+_MISSED = frozenset({"sensor", "plugin", "preserveFixedJoint", "disableFixedJointLumping"})
+"""What somebody misses when it does nothing, unlike a colour."""
+_UNFILLED = frozenset("${}")
+"""Letters of a name that a program was to fill in."""
 
 
 def _names(subject: Subject, tag: str) -> set[str]:
@@ -36,6 +40,11 @@ def _kind_meant(gazebo: Element, name: str) -> str:
     return next((kind for kind in ("link", "joint") if kind in name.casefold()), "")
 
 
+def _is_left_over(gazebo: Element, name: str) -> bool:
+    """Return whether a `<gazebo>` without its link looks like that of a part which the robot does not have."""
+    return _UNFILLED.isdisjoint(name) and not any(child.tag in _MISSED for child in gazebo.elements())
+
+
 def _control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
     """The joints of every ``<ros2_control>``, each with that."""
     for system in subject.elements("ros2_control"):
@@ -48,7 +57,9 @@ class GazeboReferenceUnknown(Rule):
 
     ## Why
 
-    Gazebo drops what is in it without a word: the wheel has no friction, the camera no sensor.
+    Gazebo drops what is in it without a word: the wheel has no friction, the camera no sensor. Where nothing has a
+    similar name, nothing but colours and surfaces is lost, and most references of the description lead somewhere, the
+    part is one that this robot does not have: the finding is an information.
 
     ## Example
 
@@ -70,20 +81,25 @@ class GazeboReferenceUnknown(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Every reference to nothing."""
         links, joints = _names(subject, "link"), _names(subject, "joint")
-        for element in subject.elements("gazebo"):
-            name = element.attributes.get("reference")
-            if name and name not in links | joints:
-                kind = _kind_meant(element, name)
-                known = {"link": links, "joint": joints}.get(kind, links | joints)
-                alike = _without_siblings(name, known)
-                meant = misspelling_of(name, alike)
-                yield self.report(
-                    phrase("<gazebo> refers to '{name}', which is neither a link nor a joint", name=name),
-                    element,
-                    "reference",
-                    hint=did_you_mean(name, alike) or phrase("give the name of a link or joint"),
-                    fix=replace_value(element, "reference", meant, safe=False) if meant else None,
-                )
+        named = [
+            (element, name) for element in subject.elements("gazebo") if (name := element.attributes.get("reference"))
+        ]
+        lost = [(element, name) for element, name in named if name not in links | joints]
+        are_few = 2 * len(lost) < len(named)
+        for element, name in lost:
+            kind = _kind_meant(element, name)
+            known = {"link": links, "joint": joints}.get(kind, links | joints)
+            alike = _without_siblings(name, known)
+            meant = misspelling_of(name, alike)
+            near = did_you_mean(name, alike)
+            yield self.report(
+                phrase("<gazebo> refers to '{name}', which is neither a link nor a joint", name=name),
+                element,
+                "reference",
+                hint=near or phrase("give the name of a link or joint"),
+                fix=replace_value(element, "reference", meant, safe=False) if meant else None,
+                severity=Severity.INFO if are_few and not near and _is_left_over(element, name) else None,
+            )
 
 
 class TransmissionJointUnknown(Rule):

@@ -1,0 +1,106 @@
+"""Findings that are informations where what they tell may be meant; each beside one that is a warning."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+from linkwright.lint.engine import examine
+from linkwright.lint.settings import Settings
+
+BOX = '<geometry><box size="0.1 0.1 0.01"/></geometry>'
+ARM = '<link name="arm"/><joint name="arm_joint" type="fixed"><parent link="base"/><child link="arm"/></joint>'
+WHEEL = """<link name="{0}_wheel"/><joint name="{0}_wheel_joint" type="continuous">
+<origin xyz="0 {1} 0"/><parent link="base"/><child link="{0}_wheel"/><axis xyz="0 {1} 0"/></joint>"""
+WHEELS = WHEEL.format("left", 1) + WHEEL.format("right", -1)
+DRIVEN = "<ros2_control>{}</ros2_control>".format(
+    "".join(
+        f'<joint name="{side}_wheel_joint"><command_interface name="velocity"/></joint>' for side in ("left", "right")
+    )
+)
+STATES = DRIVEN.replace("command_interface", "state_interface")
+PLUGIN = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+<left_joint>left_wheel_joint</left_joint>
+<right_joint>right_wheel_joint</right_joint></plugin></gazebo>"""
+
+
+@pytest.fixture
+def severity_of(tmp_path):
+    """The severity of the one finding of a rule in a robot that has a link ``base`` and what is given."""
+
+    def check(code, inside):
+        (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{inside}</robot>')
+        found = examine(tmp_path / "r.urdf", settings=Settings(select=(code,))).diagnostics
+        (only,) = [each for each in found if each.code == code]
+        return only.severity.name
+
+    return check
+
+
+def surface(name, inside="<mu1>1</mu1>"):
+    return f'<gazebo reference="{name}">{inside}</gazebo>'
+
+
+@pytest.mark.parametrize(
+    ("gazebo", "severity"),
+    [
+        (surface("base") + surface("arm") + surface("camera"), "INFO"),
+        (surface("base") + surface("arm") + surface("camera", ""), "INFO"),
+        (surface("base") + surface("camera"), "WARNING"),
+        (surface("base") + surface("arm") + surface("arm_lnk"), "WARNING"),
+        (surface("base") + surface("arm") + surface("{name}_foot"), "WARNING"),
+        (surface("base") + surface("arm") + surface("camera", '<sensor name="s" type="camera"/>'), "WARNING"),
+        (
+            surface("base") + surface("arm") + surface("tool", "<preserveFixedJoint>true</preserveFixedJoint>"),
+            "WARNING",
+        ),
+    ],
+)
+def test_the_surface_of_a_part_that_the_robot_lacks_is_an_information(severity_of, gazebo, severity):
+    assert severity_of("LW120", ARM.replace("arm", "arm_link") + ARM + gazebo) == severity
+
+
+def moving(mass):
+    inertial = f'<inertial><mass value="{mass}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    joint = '<joint name="j" type="continuous"><parent link="base"/><child link="part"/></joint>'
+    return f'<link name="part"><visual>{BOX}</visual>{inertial}</link>{joint}'
+
+
+@pytest.mark.parametrize(("mass", "severity"), [("3", "INFO"), ("3.2", "WARNING"), ("20", "WARNING")])
+def test_a_rough_mass_is_no_mistake_in_its_unit(severity_of, mass, severity):
+    assert severity_of("LW320", moving(mass)) == severity
+
+
+@pytest.mark.parametrize(("mass", "severity"), [("20.5", "INFO"), ("205", "WARNING")])
+def test_a_base_may_have_ballast(severity_of, mass, severity):
+    assert severity_of("LW320", moving(mass).replace("continuous", "fixed")) == severity
+
+
+@pytest.mark.parametrize(
+    ("more", "severity"), [("", "INFO"), (STATES, "INFO"), (DRIVEN, "WARNING"), (PLUGIN, "WARNING")]
+)
+def test_wheels_that_turn_against_each_other_matter_where_something_drives_them(severity_of, more, severity):
+    assert severity_of("LW643", WHEELS + more) == severity
+
+
+@pytest.mark.parametrize(("triangles", "severity"), [(40_000, "INFO"), (40_001, "WARNING")])
+def test_a_collision_mesh_of_twice_the_triangles_is_a_warning(severity_of, tmp_path, triangles, severity):
+    one = struct.pack("<12fH", *([0.0] * 3), 0, 0, 0, 1, 0, 0, 0, 1, 1, 0)
+    (tmp_path / "a.stl").write_bytes(bytes(80) + struct.pack("<I", triangles) + one * triangles)
+    mesh = '<link name="a"><collision><geometry><mesh filename="a.stl"/></geometry></collision></link>'
+    joint = '<joint name="j" type="fixed"><parent link="base"/><child link="a"/></joint>'
+    assert severity_of("LW435", mesh + joint) == severity
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "severity"),
+    [
+        ("a.world", '<sdf version="1.6"><!-- a -- b --><world name="w"/></sdf>', "INFO"),
+        ("a.urdf", '<robot name="r"><!-- a -- b --><link name="l"/></robot>', "WARNING"),
+    ],
+)
+def test_what_only_simulators_read_need_not_be_good_xml(tmp_path, name, text, severity):
+    (tmp_path / name).write_text(text)
+    found = examine(tmp_path / name, settings=Settings()).diagnostics
+    assert [each.severity.name for each in found if each.code == "XML206"] == [severity]
