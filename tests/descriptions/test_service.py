@@ -124,6 +124,17 @@ class TestWhatUrdfdomReadsAllTheSame:
         assert list(found.robot.links) == ["a"]
         assert [(each.severity.value, each.code) for each in found.diagnostics] == [("warning", code)]
 
+    @pytest.mark.parametrize("name", ["$(arg lost)/a", "${lost}a"])
+    def test_is_for_xacro_where_a_link_has_no_name_without_it(self, tmp_path, name):
+        path = tmp_path / "r.urdf"
+        path.write_text(f'<robot name="r" {PREFIX}><link name="{name}"/></robot>')
+        found = examine(path, partly=True)
+        assert found.robot is None
+        assert [(each.severity.value, each.code) for each in found.problems] in (
+            [("error", "XAC211")],
+            [("error", "XAC201")],
+        )
+
     def test_keeps_what_is_written_and_where_it_stands(self, tmp_path):
         path = tmp_path / "r.urdf"
         written = (

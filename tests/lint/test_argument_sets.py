@@ -207,6 +207,29 @@ def generate_launch_description():
     assert codes(found) == [("info", "LINT303")]
 
 
+@pytest.mark.parametrize(("chosen", "codes_found"), [("large", ["XML101"]), ("small", [])])
+def test_a_value_that_fails_with_a_file_that_a_launch_argument_chooses_is_an_error_by_default_only(
+    check, chosen, codes_found
+):
+    launch = """
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+DeclareLaunchArgument('robot', default_value='large', choices=['large', 'small'])
+DeclareLaunchArgument('type', default_value='six', choices=['six', 'seven'])
+path = PathJoinSubstitution([FindPackageShare('arm'), 'urdf', [LaunchConfiguration('robot'), '.urdf.xacro']])
+Command(['xacro ', path, ' name:=a', ' type:=', LaunchConfiguration('type')])
+"""
+    both = {
+        f"arm/urdf/{name}.urdf.xacro": ARM.replace("$(arg type)", f"{name}_$(arg type)") for name in ("large", "small")
+    }
+    parts = ["large_six", "large_seven", "small_six", "small_seven"]
+    parts.remove(f"{chosen}_seven")
+    files = {**both, "arm/launch/view.launch.py": launch, **{f"arm/urdf/{name}.xacro": PART for name in parts}}
+    assert [each["code"] for each in check(files) if each["severity"] != "info"] == codes_found
+
+
 @pytest.mark.parametrize(
     ("needs", "beside", "severity"),
     [

@@ -99,7 +99,7 @@ def examine(
             told = {each.code for each in forbidden}
             unexpanded = tuple(_as_warning(each) for each in error.diagnostics if each.code not in told)
             plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay, is_told=bool(unexpanded))
-            if plain.robot is not None and not has_errors(plain.diagnostics):
+            if plain.robot is not None and not has_errors(plain.diagnostics) and not _has_open_names(plain.robot):
                 return plain
         from linkwright.xacro.inputs import Inputs
         from linkwright.xacro.parts import expand_parts
@@ -120,6 +120,11 @@ def _as_it_stands(
     reading = read(document)
     said = tuple(each for each in reading.diagnostics if not (is_told and each.code == _LEFT_OVER))
     return Description(name, document, Reading(reading.robot, (*remarks, *said)), overlay=overlay)
+
+
+def _has_open_names(robot: Robot) -> bool:
+    """Whether names of links wait for xacro to fill them in: nobody gives such a file to urdfdom."""
+    return any("$(" in name or "${" in name for name in robot.links)
 
 
 def _as_warning(error: Diagnostic) -> Diagnostic:

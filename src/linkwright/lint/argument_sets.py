@@ -275,6 +275,8 @@ def _is_excused(run: _Run, tried: Sequence[_Run], common: frozenset[Key]) -> boo
     """Whether a set fails only for values that do not go together: what sets it apart works in another."""
     if run.is_fine(common) or not run.given.varied:
         return False
+    if run.given.is_mixed:
+        return True
     apart = {name: run.given.values[name] for name in run.given.varied}
     return any(other.is_fine(common) and apart.items() <= other.given.values.items() for other in tried)
 

@@ -49,6 +49,8 @@ class ArgumentSet:
         span: the call that gives them; None for those of a configuration.
         is_certain: whether they are known to be given together.
         varied: the arguments whose values differ from those that the same call gives by default.
+        is_mixed: whether a launch argument chooses another file than by default, and others of its arguments have other
+            values too: nobody knows whether these go with this file.
     """
 
     values: Mapping[str, str]
@@ -56,6 +58,7 @@ class ArgumentSet:
     span: Span | None = None
     is_certain: bool = True
     varied: tuple[str, ...] = ()
+    is_mixed: bool = False
 
     @property
     def is_complete(self) -> bool:
@@ -137,7 +140,8 @@ class _Target:
             for taken, certain in variations(call.arguments.values(), file.choices, selection):
                 found = self._set(call, file, taken, is_certain=certain)
                 first = first or found
-                yield replace(found, varied=_varied(call, found, first))
+                is_mixed = any(selection.rows.values()) and taken.rows != selection.rows
+                yield replace(found, varied=_varied(call, found, first), is_mixed=is_mixed)
         if first is None and _is_open(call.path):
             yield self._set(call, file, Selection({}, given), is_certain=False)
 
