@@ -296,3 +296,26 @@ def test_what_a_file_lacks_that_is_only_known_at_run_time_is_no_error(check):
     }
     assert codes(check(files)) == [("info", "LINT303")]
     assert ("error", "XAC205") in codes(check({**files, "arm/launch/view.launch.py": ""}))
+
+
+def test_a_copied_inertia_that_one_set_shows_is_not_called_too_large_by_another(check):
+    mass = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    own = mass.replace('ixx="1"', 'ixx="0.0010${index}"').replace('iyy="1" izz="1"', 'iyy="0.001" izz="0.001"')
+    robot = f"""<robot {XACRO} name="r">
+  <xacro:arg name="arm" default="false"/>
+  <xacro:macro name="part" params="index"><joint name="j${{index}}" type="fixed"><parent link="base_link"/>
+    <child link="l${{index}}"/></joint><link name="l${{index}}"><collision><geometry>
+    <box size="0.1 0.1 0.1${{index}}"/></geometry></collision><xacro:if value="${{index &lt; 4}}">{mass}</xacro:if>
+    <xacro:unless value="${{index &lt; 4}}">{own}</xacro:unless></link></xacro:macro>
+  <link name="base_link"/>
+  <xacro:part index="1"/><xacro:part index="2"/><xacro:part index="3"/>
+  <xacro:if value="$(arg arm)">{"".join(f'<xacro:part index="{index}"/>' for index in range(4, 9))}</xacro:if>
+</robot>"""
+    launch = LAUNCH.replace("'name': 'a', 'type': kind", "'arm': kind").format(kinds="'false', 'true'")
+    files = {"arm/urdf/arm.urdf.xacro": robot, "arm/launch/view.launch.py": launch}
+    assert [each["code"] for each in check(files) if each["code"].startswith("LW3")] == ["LW315"]
+    alone = {
+        "arm/urdf/arm.urdf.xacro": robot.replace('default="false"', 'default="true"'),
+        "arm/launch/view.launch.py": "",
+    }
+    assert [each["code"] for each in check(alone) if each["code"].startswith("LW3")] == ["LW324"]

@@ -490,3 +490,9 @@ def test_a_file_that_is_in_the_sources_but_not_in_an_old_build(tmp_path, there, 
     (tmp_path / "src/p/launch/a.launch.py").write_text(launch)
     found = examine_package(tmp_path / "src/p", Settings(select=("LW842",))).diagnostics
     assert [each.code for each in found] == codes
+
+
+@pytest.mark.parametrize(("izz", "codes"), [(1, ["LW324"]), (3, ["LW314"])])
+def test_an_inertia_that_no_body_has_is_not_called_too_large_as_well(told, izz, codes):
+    part = moving("a", BOX.format(0.1) + inertial(0.1, 1).replace('izz="1"', f'izz="{izz}"'))
+    assert told(robot(f'<link name="base"/>{part}'), "LW314", "LW324") == codes

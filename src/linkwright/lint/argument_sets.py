@@ -24,6 +24,7 @@ from linkwright.diagnostics import (
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.engine import Checked, as_set, in_order
 from linkwright.lint.registry import find_rule
+from linkwright.lint.rules.inertia_doubtful import LEFT_TO_PLACEHOLDERS, placeholders
 from linkwright.lint.settings import Settings
 from linkwright.packages import PackageFinder
 from linkwright.xmltree import Document
@@ -152,7 +153,10 @@ class SetCheck:
             for key, each in _numbered(run.checked.diagnostics):
                 told.setdefault(key, (each, []))[1].append(run)
         found: list[Diagnostic] = [*as_set(more, self.settings)]
+        copied = {name for run in runs if run.checked.subject for name in placeholders(run.checked.subject)}
         for diagnostic, having in told.values():
+            if diagnostic.code in LEFT_TO_PLACEHOLDERS and as_phrase(diagnostic.message).arguments["name"] in copied:
+                continue  # the rule about these speaks with other values
             if len(having) == len(runs):
                 found.append(diagnostic)
             elif not _holds_for_all_sets(diagnostic):

@@ -59,6 +59,10 @@ class PlaceholderInertia(Rule):
             )
 
 
+LEFT_TO_PLACEHOLDERS = frozenset({"LW323", "LW324", "LW325"})
+"""The rules that say nothing of a link whose inertia `PlaceholderInertia` reports."""
+
+
 def placeholders(subject: Subject) -> set[str]:
     """The names of the links whose inertia `PlaceholderInertia` reports."""
     least = PlaceholderInertia().option(subject, "links", int)

@@ -285,7 +285,8 @@ class InertiaTooLarge(Rule):
 
     With all of its mass in the farthest corner of its shapes a body would have the largest moment there is. A larger
     one is in other units, as when CAD programs give kg mm2 or g mm2, or it is about another point than the centre of
-    mass, or made up. The robot then turns as if in honey.
+    mass, or made up. The robot then turns as if in honey. A tensor that no body can have is left to the rules about
+    that.
 
     ## Example
 
@@ -314,7 +315,7 @@ class InertiaTooLarge(Rule):
         too_large: dict[tuple[float, ...], list[tuple[Link, Inertial, Bounds, float]]] = {}
         for link, inertial, bounds in _without_placeholders(subject):
             limit = largest_moment_within(bounds.nearest(inertial.origin.xyz), bounds, inertial.mass)
-            if max(inertial.ixx, inertial.iyy, inertial.izz) > factor * limit:
+            if max(inertial.ixx, inertial.iyy, inertial.izz) > factor * limit and flaw_of(inertial) is None:
                 alike = (inertial.mass, *(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS)))
                 too_large.setdefault(alike, []).append((link, inertial, bounds, limit))
         for (link, inertial, bounds, limit), *others in too_large.values():
