@@ -92,6 +92,12 @@ def test_an_axis_and_a_step_of_zero(told):
     assert told(step + link(GOOD)) == [("SDF122", 2, "the time step is not positive: 0 s")]
 
 
+def test_walls_without_a_length_are_one_finding_for_each_model(told):
+    box = '<{0} name="{1}"><geometry>\n<box><size>0 1 2</size></box></geometry></{0}>'
+    walls = "".join(box.format(kind, f"{kind}{number}") for number in range(2) for kind in ("visual", "collision"))
+    assert told(link(GOOD + walls)) == [("SDF122", 3, "a size of visual 'visual0' is not positive (and 3 more)")]
+
+
 def test_a_mesh_that_is_not_there_is_told_of_once(told, tmp_path):
     visual = '<visual name="v{}"><geometry><mesh>\n<uri>meshes/a.stl</uri></mesh></geometry></visual>'
     model = link(GOOD + visual.format(1) + visual.format(2))

@@ -293,6 +293,57 @@ def test_where_a_model_is_known_or_was_renamed_what_is_missing_is_a_warning_and_
     }
 
 
+@pytest.mark.parametrize("name", ["boxed", "box_steel", "old_box"])
+def test_a_model_of_another_name_is_no_misspelling(tmp_path, name):
+    """Gazebo has many models; what shares a word with one that is here is one of those."""
+    write(tmp_path, {"box/model.sdf": BOX, "suv/model.sdf": BOX})
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
+    found = finder.file(f"model://{name}", tmp_path)
+    assert isinstance(found, Missing)
+    assert found.severity.name == "INFO"
+    sun = finder.file("model://sub", tmp_path)
+    assert isinstance(sun, Missing)
+    assert sun.severity.name == "INFO"
+
+
+def test_a_misspelt_model_is_a_warning(tmp_path):
+    write(tmp_path, {"crate/model.sdf": BOX})
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
+    found = finder.file("model://craet", tmp_path)
+    assert isinstance(found, Missing)
+    assert (found.severity.name, str(found.hint)) == ("WARNING", "did you mean 'crate'?")
+
+
+@pytest.mark.parametrize("ending", [".jinja", ".em", ".erb", ".xacro"])
+def test_a_file_that_the_build_makes_of_a_template_is_an_information(tmp_path, ending):
+    files = {f"plane/plane.sdf{ending}": "", "plane/model.config": "<model/>", f"plane/meshes/wing.stl{ending}": ""}
+    write(tmp_path, files)
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
+    model, mesh = finder.model("model://plane", tmp_path), finder.file("model://plane/meshes/wing.stl", tmp_path)
+    assert isinstance(model, Missing)
+    assert isinstance(mesh, Missing)
+    assert (model.severity.name, str(model.hint)) == ("INFO", f"the build makes it from 'plane.sdf{ending}'")
+    assert (mesh.severity.name, str(mesh.hint)) == ("INFO", f"the build makes it from 'wing.stl{ending}'")
+
+
+def test_our_own_models_do_not_hide_that_those_of_gazebo_have_more_files(tmp_path):
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
+    ours = finder.model("model://person_standing", tmp_path)
+    assert isinstance(ours, Path)
+    for beside, severity in ((tmp_path, "INFO"), (ours.parent, "WARNING")):
+        found = finder.file("model://person_standing/meshes/no.dae", beside)
+        assert isinstance(found, Missing)
+        assert found.severity.name == severity
+
+
+def test_a_file_address_in_other_capitals_names_the_file_that_is_meant(tmp_path):
+    write(tmp_path, {"models/lamp/meshes/lamp_visual.DAE": ""})
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
+    found = finder.file("file://models/lamp/meshes/Lamp_visual.DAE", tmp_path / "models" / "lamp")
+    assert isinstance(found, Missing)
+    assert str(found.hint) == "did you mean 'lamp_visual.DAE'?"
+
+
 def test_few_lines_cannot_include_without_end(tmp_path, monkeypatch):
     """Thirty models, each of which includes the next one twice, would be a thousand million."""
     monkeypatch.setattr("linkwright.sdf.includes._MOST", 500)

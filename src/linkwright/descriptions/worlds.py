@@ -115,7 +115,7 @@ def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Findings, of each kind of element that is not read and of each model that is not there only the first."""
     told: set[str] = set()
     for each in found:
-        words = f"{each.code} {each.message}"
+        words = f"{each.code} {each.severity} {each.message}"
         if each.code not in _OF_A_KIND or words not in told:
             told.add(words)
             yield each

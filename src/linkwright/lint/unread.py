@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Span, words_of
+from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.lint.extension_names import CHILDREN
-from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.structure import EXTENSIONS, Place
 from linkwright.lint.subject import Subject
 from linkwright.schema import ElementRule

@@ -101,8 +101,9 @@ def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
     for link in model.links:
         if not static and link.inertial is not None and not link.inertial.auto:
             yield from _inertial(link, link.inertial)
-    for shape in shapes_of(replace(model, models=())):
-        yield from _size(shape)
+    sizes = [each for shape in shapes_of(replace(model, models=())) for each in _size(shape)]
+    if sizes:
+        yield _with_others(sizes[0], sizes[1:])
     for inner in model.models:
         yield from _model(inner, static=static)
 

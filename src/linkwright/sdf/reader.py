@@ -16,6 +16,7 @@ from linkwright.schema import ElementRule, reader_of
 from linkwright.sdf.old_versions import is_old, upgraded
 from linkwright.sdf.poses import POSE, SEPARATOR, WORLD
 from linkwright.sdf.report import NEWEST, SdfReport
+from linkwright.sdf.unread import changes_nothing, links_of_static_models
 from linkwright.sdf.worlds import SDF, Sdf
 from linkwright.xmltree import Document, Element
 
@@ -43,7 +44,7 @@ WITHOUT_EFFECT = {
     "physics": {"bullet", "dart", "dt", "magnetic_field", "ode", "profile", "simbody", "update_rate"},
     "scene": {"cloud", "shadow_caster_material_name", "shadow_caster_render_back_faces"},
     "sky": {"clouds", "cubemap_uri"},
-    "model": {"battery", "gripper", "joint"},
+    "model": {"battery", "gripper", "joint", "ros2_control"},
     "link": {
         "acceleration",
         "audio_sink",
@@ -98,13 +99,12 @@ WITHOUT_EFFECT = {
     },
     "torsional": {"ode"},
     "spherical_coordinates": {"surface_axis_equatorial", "surface_axis_polar"},
-    "state": {"joint", "joint_deletions", "joint_insertions", "plugin", "real_time", "wall_time"},
     "road": {"material"},
     "metal": {"subsurface"},
 }
-"""Words of SDF that have no effect here, by the elements that they stand in."""
-OPEN = frozenset({"plugin", "gui"})
-"""Elements that hold what others than SDF decide."""
+"""Words of SDF that have no effect here, by the elements that they stand in, and what ros2_control reads itself."""
+OPEN = frozenset({"plugin", "gui", "state"})
+"""Elements that hold what others than SDF decide, and what Gazebo saved of a run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,11 +141,16 @@ def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
     """Read an element of limited depth, with findings on all mistakes in it."""
     found = reader_of(rule, NEWEST).read(element, element, report)
     flat = _is_flat(element)
-    for each, each_rule in _known(element, rule):
-        _check_names(each, each_rule, report, flat=flat)
-        for child in each.elements():
-            if child.tag not in each_rule.child_rules and not _is_let_be(child, each_rule):
-                report.unknown_element(child, each_rule)
+    known = list(_known(element, rule))
+    static_links = links_of_static_models(each for each, _ in known)
+    for each, each_rule in known:
+        _check_names(each, report, flat=flat)
+        unread = [
+            child
+            for child in each.elements()
+            if child.tag not in each_rule.child_rules and not _is_let_be(child, each_rule)
+        ]
+        report.unknown_elements(unread, each_rule, [changes_nothing(child, each, static_links) for child in unread])
     return found
 
 
@@ -216,13 +221,11 @@ def _is_flat(root: Element) -> bool:
     return found is not None and int(found[1]) <= _NEWEST_FLAT_MINOR
 
 
-def _check_names(element: Element, rule: ElementRule, report: SdfReport, *, flat: bool) -> None:
+def _check_names(element: Element, report: SdfReport, *, flat: bool) -> None:
     """Report duplicate names, among all that poses may refer to and among shapes and sensors of one kind.
 
     Names that mean something else to poses are told of as well.
     """
-    if rule.tag == "state":
-        return
     first: dict[tuple[str, str], Element] = {}
     for child in element.elements():
         name = child.attributes.get("name")

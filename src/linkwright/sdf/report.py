@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
-from linkwright.diagnostics import Note, Phrase, counted, did_you_mean, joined, nearest, phrase, term
+from linkwright.diagnostics import Note, Phrase, Severity, counted, did_you_mean, joined, nearest, phrase, term
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule
+from linkwright.sdf.poses import WORLD
+from linkwright.sdf.unread import homes_of
 from linkwright.sdf.values import COUNTS, INTEGER, NUMBER, TIME, TRUTH, beginning, numbers
 from linkwright.urdf.findings import Findings
 from linkwright.urdf.values import number_hint, vector_hint
@@ -97,18 +99,55 @@ class SdfReport(Findings):
         """Do nothing: SDF has no element whose first child decides."""
         raise AssertionError(rule.tag)
 
-    def unknown_element(self, element: Element, rule: ElementRule) -> None:
-        """Report an unknown element."""
-        if any(element is each for each in self._misspelt):
-            return
-        hint = did_you_mean(element.tag, [child.tag for child in rule.children])
-        self.warning(
-            "SDF150", phrase("<{tag}> in <{parent}> is not read", tag=element.tag, parent=rule.tag), element, hint=hint
-        )
+    def unknown_elements(self, elements: Sequence[Element], rule: ElementRule, harmless: Sequence[bool]) -> None:
+        """Report the unknown elements of one place: misspelt and misplaced ones each, the others as one.
+
+        Args:
+            elements: the elements.
+            rule: of the element around them.
+            harmless: of each, whether it would change nothing if it were read: an information, unless it is misspelt.
+        """
+        known = [child.tag for child in rule.children]
+        others: list[Element] = []
+        for element, is_harmless in zip(elements, harmless, strict=True):
+            if any(element is each for each in self._misspelt):
+                continue
+            hint = did_you_mean(element.tag, known)
+            if hint is None and is_harmless:
+                self._unread([element], rule, severity=Severity.INFO)
+                continue
+            if hint is None:
+                homes = [f"<{home}>" for home in homes_of(element.tag) if home != rule.tag]
+                hint = phrase("it belongs directly in {listed}", listed=" or ".join(homes)) if homes else None
+            if hint is not None:
+                self._unread([element], rule, hint)
+            else:
+                others.append(element)
+        if others:
+            self._unread(others, rule)
+
+    def _unread(
+        self,
+        elements: Sequence[Element],
+        rule: ElementRule,
+        hint: Phrase | None = None,
+        severity: Severity = Severity.WARNING,
+    ) -> None:
+        tags = list(dict.fromkeys(each.tag for each in elements))
+        message = phrase("<{tag}> in <{parent}> is not read", tag=tags[0], parent=rule.tag)
+        if tags[1:]:
+            message = phrase(
+                "{tags} in <{parent}> are not read", tags=joined([f"<{tag}>" for tag in tags]), parent=rule.tag
+            )
+        self._add(severity, "SDF150", message, elements[0], None, hint, ())
 
     def reserved(self, element: Element, name: str) -> None:
         """Report a reserved name."""
         message = phrase("'{name}' cannot be the name of a {kind}", name=name, kind=term(element.tag))
+        if element.tag == name == WORLD:
+            hint = phrase("gz refuses this name, and Gazebo classic takes it; name it 'default', for instance")
+            self.warning("SDF111", message, element, "name", hint=hint)
+            return
         hint = phrase("'::' stands between names, and 'world' and '__...__' are names of SDF's own")
         self.error("SDF111", message, element, "name", hint=hint)
 

@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
-from linkwright.diagnostics import LinkwrightError, Phrase, Severity, did_you_mean, joined, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, Severity, did_you_mean, joined, phrase, quoted
+from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.packages import PackageFinder
+from linkwright.packages.finder import shipped_folder
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.packages.uri import absolute_path
@@ -40,6 +42,10 @@ _HOOKED = re.compile(
 """``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"``."""
 _BELOW = ("", "models", "media/models", "Media/models")
 """Where in a folder of the search path Gazebo classic looks for ``file://PATH`` (its ``SystemPaths``)."""
+_TEMPLATES = (".jinja", ".jinja2", ".j2", ".em", ".erb", ".in", ".template", ".xacro")
+"""The endings behind a file's own of templates that a build makes the file from."""
+_SHORTEST = 4
+"""Models with shorter names, such as ``suv`` and ``sun``, are never taken for misspellings of each other."""
 _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
 """Models of Fuel that stand in nearly every world, and ours by which they are replaced."""
 
@@ -181,13 +187,17 @@ class ResourceFinder:
 
     def _below(self, address: str, path: str, beside: Path) -> Path | Missing:
         around = (each.parent for each in self._folders)
-        for folder in (*self._folders, *around, *(beside.absolute() / "x").parents):
-            for below in _BELOW:
-                if (folder / below / path).exists():
-                    return folder / below / path
+        folders = (*self._folders, *around, *(beside.absolute() / "x").parents)
+        places = [folder / below / path for folder in folders for below in _BELOW]
+        found = next((place for place in places if place.exists()), None)
+        if found is not None:
+            return found
+        cased = next(filter(None, map(_in_other_case, places)), None)
         hint = phrase(
             "add the folder that '{path}' starts from to {variable}", path=path, variable=SEARCH_VARIABLES[-1]
         )
+        if cased is not None:
+            hint = phrase("did you mean {names}?", names=quoted(cased.name))
         return Missing(phrase("there is no '{path}' on the search path", path=address), hint)
 
     def _in_folders(self, address: str, path: str, beside: Path) -> Path | Missing:
@@ -199,16 +209,16 @@ class ResourceFinder:
                 return folder / path
         name, _, rest = path.partition("/")
         for folder in self._folders:
-            if (folder / name).is_dir():
+            if (folder / name).is_dir() and (_is_ours(beside) or not _is_ours(folder)):
                 return _no_file(folder / path)
         reason = phrase("there is no model '{name}' on the search path", name=name)
         renamed = next((each for each in near if rest and (each / rest).exists()), None)
         if renamed is not None:
             here = renamed.absolute().name
             return Missing(reason, phrase("the folder that holds '{path}' is called '{name}'", path=rest, name=here))
-        hint = did_you_mean(name, self.models())
-        if hint is not None:
-            return Missing(reason, hint)
+        meant = misspelling_of(name, self.models()) if len(name) >= _SHORTEST else None
+        if meant is not None:
+            return Missing(reason, did_you_mean(name, [meant]))
         hint = phrase("add the folder that holds '{name}' to {variable}", name=name, variable=SEARCH_VARIABLES[0])
         return Missing(reason, hint, Severity.INFO)
 
@@ -255,7 +265,10 @@ def model_file(folder: Path) -> Path | Missing:
     if newest is not None:
         return newest[1]
     path = folder / _MODEL_FILE
-    return path if path.is_file() else _no_file(path)
+    if path.is_file():
+        return path
+    template = next((each for each in sorted(folder.glob("*.sdf.*")) if each.suffix in _TEMPLATES), None)
+    return _no_file(path) if template is None else _made_from(template, path)
 
 
 def _holds_world(file: Path) -> bool:
@@ -312,7 +325,28 @@ def _kind(path: Path) -> str:
     return ".sdf" if suffix == ".world" else suffix
 
 
+def _is_ours(folder: Path) -> bool:
+    """Whether a folder is one of our own models, which stand in for some of Gazebo's with fewer files."""
+    shipped = shipped_folder()
+    return folder.is_relative_to(_SHIPPED) or (shipped is not None and folder.absolute().is_relative_to(shipped))
+
+
+def _in_other_case(path: Path) -> Path | None:
+    """The file whose name differs from a missing one's in upper and lower case alone, or None."""
+    with suppress(OSError):
+        return next((each for each in path.parent.iterdir() if each.name.casefold() == path.name.casefold()), None)
+    return None
+
+
+def _made_from(template: Path, path: Path) -> Missing:
+    hint = phrase("the build makes it from '{name}'", name=template.name)
+    return Missing(phrase("there is no '{path}'", path=str(path)), hint, Severity.INFO)
+
+
 def _no_file(path: Path) -> Missing:
+    template = next((each for each in (path.with_name(path.name + end) for end in _TEMPLATES) if each.is_file()), None)
+    if template is not None:
+        return _made_from(template, path)
     hint = None
     with suppress(OSError):
         kind = _kind(path)

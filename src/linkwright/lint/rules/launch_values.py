@@ -20,8 +20,8 @@ from linkwright.diagnostics import (
     phrase,
     quoted,
 )
+from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.lint.fix import Edit, Fix
-from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.launch_files import LaunchRule
 from linkwright.lint.rules.package_manifest import PackageRule

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, phrase, quoted
+from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.lint.extension_names import ATTRIBUTES, CHILDREN
 from linkwright.lint.fix import rename_attribute, rename_element
-from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.unread import attribute_name_span

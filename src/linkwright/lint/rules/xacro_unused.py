@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
+from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.lint.fix import remove_element
-from linkwright.lint.misspellings import misspelling_of
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, parameter_span
 from linkwright.xmltree import Element

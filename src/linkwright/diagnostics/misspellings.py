@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkwright.diagnostics import is_misspelt, words_of
+from linkwright.diagnostics.suggest import is_misspelt, words_of
 
 _SHORTEST = 3
 """Shorter words, such as ``fl`` and ``fr`` of wheels, are never taken for misspellings of each other."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.lint.extension_names import CHILDREN
-from linkwright.lint.misspellings import misspelling_of
 
 
 @pytest.mark.parametrize(

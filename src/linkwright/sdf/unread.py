@@ -1,0 +1,74 @@
+"""What is said about elements that SDF does not have where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+
+from linkwright.schema import ElementRule
+from linkwright.sdf.worlds import SDF
+from linkwright.xmltree import Element
+
+_TRUE, _FALSE = ("true", "1"), ("false", "")
+_NO_SCALE = 1.0
+_MOST_HOMES = 3
+_HARMLESS = frozenset({("collision", "material")})
+"""Parents and elements in them that nobody waits for: the colour of what is never drawn."""
+
+
+def homes_of(tag: str) -> tuple[str, ...]:
+    """Return the elements in which SDF reads an element; none where it has no such element, or reads it in many."""
+    found = _homes().get(tag, ())
+    return tuple(sorted(found)) if len(found) <= _MOST_HOMES else ()
+
+
+def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
+    """Return the identities of the links whose models never move anyway."""
+    return frozenset(
+        id(link)
+        for model in elements
+        if model.tag == "model" and any(each.text().strip() in _TRUE for each in model.elements("static"))
+        for link in model.elements("link")
+    )
+
+
+def changes_nothing(child: Element, parent: Element, static_links: frozenset[int]) -> bool:
+    """Return whether an element would make no difference if it were read: nobody misses it.
+
+    It is empty, says again what holds anyway, or gives an invented word the value zero.
+    """
+    if (parent.tag, child.tag) in _HARMLESS or (child.tag == "static" and id(parent) in static_links):
+        return True
+    if next(child.elements(), None) is not None:
+        return False
+    text = child.text().strip()
+    if not text:
+        return True
+    values = _numbers(text)
+    if child.tag == "scale":
+        return bool(values) and all(each == _NO_SCALE for each in values)
+    return child.tag not in _homes() and (text in _FALSE or (bool(values) and not any(values)))
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(each) for each in text.split()]
+    except ValueError:
+        return []
+
+
+@cache
+def _homes() -> dict[str, frozenset[str]]:
+    """Tag -> the tags of the elements in which it is read."""
+    homes: dict[str, set[str]] = {}
+    seen: set[int] = set()
+    waiting: list[ElementRule] = [SDF]
+    while waiting:
+        rule = waiting.pop()
+        if id(rule) in seen:
+            continue
+        seen.add(id(rule))
+        for tag, child in rule.child_rules.items():
+            homes.setdefault(tag, set()).add(rule.tag)
+            waiting.append(child)
+    return {tag: frozenset(found) for tag, found in homes.items()}
