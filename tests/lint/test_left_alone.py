@@ -309,13 +309,62 @@ def test_what_cmake_makes_is_there_when_it_is_installed(tmp_path, before, codes)
     ("lines", "told"),
     [
         ("<exec_depend>xacro</exec_depend><exec_depend>xacro</exec_depend>", ["info"]),
-        ("<depend>xacro</depend><exec_depend>xacro</exec_depend>", ["warning"]),
+        ("<depend>xacro</depend><exec_depend>xacro</exec_depend>", ["error"]),
+        ("<build_depend>xacro</build_depend><depend>xacro</depend>", ["error"]),
+        ("<depend>xacro</depend><test_depend>xacro</test_depend>", []),
     ],
 )
-def test_the_same_dependency_twice_is_an_information(tmp_path, lines, told):
+def test_a_dependency_twice_is_an_information_and_beside_depend_what_catkin_pkg_refuses(tmp_path, lines, told):
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=lines))
     found = examine_package(tmp_path, Settings(select=("LW809",))).diagnostics
     assert [each.severity.value for each in found] == told
+
+
+@pytest.mark.parametrize("name", ["iCub", "neo-mpo"])
+def test_a_name_that_colcon_takes_is_an_information(tmp_path, name):
+    """Whoever published a package cannot rename it."""
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more="").replace("<name>p</name>", f"<name>{name}</name>"))
+    found = examine_package(tmp_path, Settings(select=("LW805",))).diagnostics
+    assert [each.severity.value for each in found] == ["info"]
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [("", "info"), ("# from launch import LaunchDescription\n", "info"), ("import launch\n", "warning")],
+)
+def test_a_launch_file_to_be_written_is_an_information(tmp_path, text, told):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    (tmp_path / "launch").mkdir()
+    (tmp_path / "launch" / "a.launch.py").write_text(text)
+    found = examine_package(tmp_path, Settings(select=("LW841",))).diagnostics
+    assert [each.severity.value for each in found] == [told]
+
+
+@pytest.mark.parametrize(
+    ("value", "codes"),
+    [("3.14159265", []), ("${pi/2}", []), ("1.5708", []), ("0.0174533", []), ("57.29578", []), ("3.2", ["LW701"])],
+)
+def test_a_constant_of_mathematics_may_stand_by(told, value, codes):
+    text = robot(f'<xacro:property name="constant" value="{value}"/><link name="a"/>', PREFIX)
+    assert told(text, "LW701", name="r.urdf.xacro") == codes
+
+
+@pytest.mark.parametrize(("default", "codes"), [("^|false", []), ("^", []), ("false", ["LW705"])])
+def test_a_parameter_that_is_taken_from_around_costs_no_call_anything(told, default, codes):
+    macro = f'<xacro:macro name="m" params="use_sim:={default}"><link name="m"/></xacro:macro>'
+    outer = '<xacro:property name="use_sim" value="1"/><joint name="${use_sim}"/>'
+    text = robot(f'{outer}<link name="base"/>{macro}<xacro:m/>', PREFIX)
+    assert told(text, "LW705", name="r.urdf.xacro") == codes
+
+
+def test_a_bare_call_beside_that_of_the_group_is_for_older_releases(told):
+    chosen = (
+        '<xacro:property name="a" value="${xacro.load_yaml(f)}"/><xacro:property name="b" value="${load_yaml(f)}"/>'
+    )
+    outer = f'<xacro:macro name="m" params="f">{chosen}<link name="${{a}}${{b}}"/></xacro:macro>'
+    assert told(robot(f'<link name="base"/>{outer}', PREFIX), "LW714", name="r.urdf.xacro") == []
+    alone = outer.replace("xacro.load_yaml", "xacro.abs_filename")
+    assert told(robot(f'<link name="base"/>{alone}', PREFIX), "LW714", name="r.urdf.xacro") == ["LW714"]
 
 
 def test_folders_beside_each_other_that_are_not_installed_are_one_finding(tmp_path):

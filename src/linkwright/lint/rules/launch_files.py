@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 _FILE = re.compile(r"[^/]*\.[A-Za-z0-9]{1,8}$")
 
 
+_COMMENT = re.compile(r"#.*")
+
+
 class LaunchRule(PackageRule):
     """A rule about one launch file."""
 
@@ -79,7 +82,7 @@ class LaunchFunctionMissing(LaunchRule):
     ## Why
 
     `ros2 launch` calls this function and nothing else. Tests of launch_testing and launch_pytest have others and are
-    left alone.
+    left alone. A file without a statement is still to be written, or was taken out of use: that is an information.
 
     ## Example
 
@@ -120,6 +123,8 @@ class LaunchFunctionMissing(LaunchRule):
         message = phrase("the launch file '{path}' does not define {function}()", path=file.path, function=FUNCTION)
         # A file without such a function at all may be one that others import.
         severity = Severity.ERROR if like else Severity.WARNING
+        if not _COMMENT.sub("", file.source.text).strip():
+            severity = Severity.INFO
         yield self.report(message, span=span, source=file.source, hint=hint, severity=severity)
 
 

@@ -98,7 +98,7 @@ class PackageName(ManifestRule):
 
     colcon reads `package.xml` through catkin_pkg, which refuses a name with blanks or dots: that is an error. REP 144
     asks for lower case, digits and underscores; Python cannot import a package whose name has a dash, and `ros2 pkg
-    create` makes none.
+    create` makes none. That is an information: others know a published package by its name.
 
     ## Example
 
@@ -126,7 +126,7 @@ class PackageName(ManifestRule):
         for found in check_package_name(name):
             if is_accepted_name(name):
                 advice = found if iskeyword(name) else departure_from_rep(name)
-                yield self.report(advice.message, element, hint=advice.hint, severity=Severity.WARNING)
+                yield self.report(advice.message, element, hint=advice.hint, severity=Severity.INFO)
             else:
                 yield self.report(found.message, element, hint=found.hint, severity=Severity.ERROR)
 

@@ -186,8 +186,8 @@ class DependencyRepeated(ManifestRule):
     ## Why
 
     `<depend>` stands for `<build_depend>`, `<build_export_depend>` and `<exec_depend>` together. catkin_pkg, through
-    which colcon reads the file, complains where one of them is there, too. The same line twice changes nothing, as in
-    what MoveIt's Setup Assistant writes: that is an information.
+    which colcon and `ament_package()` read the file, refuses it where one of them is there, too: the package is not
+    built. The same line twice changes nothing, as in what MoveIt's Setup Assistant writes: that is an information.
 
     ## Example
 
@@ -205,6 +205,7 @@ class DependencyRepeated(ManifestRule):
 
     code = "LW809"
     name = "dependency-repeated"
+    severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
         """The findings in a manifest."""

@@ -8,7 +8,7 @@ from itertools import islice
 from linkwright.diagnostics import Diagnostic, phrase
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rules.xacro_rule import XacroRule
-from linkwright.lint.xacro_facts import XacroFacts
+from linkwright.lint.xacro_facts import FileFacts, XacroFacts
 from linkwright.lint.xacro_names import DEPRECATED, is_constant
 from linkwright.xacro.faults import attribute_part
 from linkwright.xmltree import Element
@@ -21,7 +21,8 @@ class DeprecatedFunction(XacroRule):
     ## Why
 
     `load_yaml`, `abs_filename`, `dotify`, `sorted` and `range` have moved into the groups `xacro` and `python`. By
-    their bare names every expansion warns, and a coming xacro may not know them.
+    their bare names every expansion warns, and a coming xacro may not know them. A file that calls the function by both
+    names chooses between them, for older releases.
 
     ## Example
 
@@ -48,7 +49,7 @@ class DeprecatedFunction(XacroRule):
                 if use.attribute is None or use.attribute == "params":
                     continue
                 for call in use.found.bare_calls:
-                    if call.name not in taken:
+                    if call.name not in taken and not _is_called_by(DEPRECATED[call.name], file):
                         yield self._found(use.element, use.attribute, call.name, call.offset)
 
     def _found(self, element: Element, attribute: str, name: str, at: int) -> Diagnostic:
@@ -66,6 +67,11 @@ class DeprecatedFunction(XacroRule):
         return self.report(
             message, element, attribute, span=span, hint=phrase("write {better}", better=better), fix=fix
         )
+
+
+def _is_called_by(name: str, file: FileFacts) -> bool:
+    """Whether a file calls a function of a group, by its full name."""
+    return file.document.source is not None and f"{name}(" in file.document.source.text
 
 
 class ConstantCondition(XacroRule):

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator
+from math import isclose, pi
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
@@ -22,6 +23,9 @@ from linkwright.xmltree import Element
 _SPEAKING = re.compile(r"\b(?:fatal|error|warning|message)\s*\(")
 """Functions that are called for what they do."""
 
+_CONSTANTS = (pi / 4, pi / 2, pi, 2 * pi, pi / 180, 180 / pi)
+_ROUNDED = 6e-4
+"""How far 3.14 or 1.57 may be from the constant that they stand for."""
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _CALL = re.compile(r"<xacro:([\w.-]+)")
 
@@ -34,7 +38,8 @@ class UnusedProperty(XacroRule):
     Whoever changes its value expects the robot to change. Often the place where it belongs has the number written out.
 
     Only properties of the checked file and those inside macros are looked at: a file of properties for several robots
-    holds more than one of them needs. One that is evaluated at once, with `lazy_eval="false"`, and calls `xacro.fatal`,
+    holds more than one of them needs. Constants of mathematics, such as `PI`, stand by for who needs them. One that is
+    evaluated at once, with `lazy_eval="false"`, and calls `xacro.fatal`,
     `error`, `warning` or `message` is there for what it says.
 
     ## Example
@@ -63,6 +68,8 @@ class UnusedProperty(XacroRule):
             for definition in file.properties:
                 name, element = definition.name, definition.element
                 if "$" in name or not name or name in facts.names or _is_remove(element) or _speaks(element):
+                    continue
+                if _is_mathematics(element.attributes.get("value", "")):
                     continue
                 if file is not facts.main and (definition.macro is None or "scope" in element.attributes):
                     continue
@@ -254,6 +261,8 @@ class UnusedMacroParameter(XacroRule):
         calls_others = bool(file.calls_by_macro.get(id(macro.element)))
         for parameter in file.parameters(macro.element):
             name = parameter.name.lstrip("*")
+            if parameter.forward:
+                continue  # no call has to give it
             if parameter.is_block:
                 is_used = name in blocks or (calls_others and any(name in each.blocks for each in facts.files.values()))
             else:
@@ -304,6 +313,17 @@ def _speaks(element: Element) -> bool:
     """Whether a property is evaluated where it is defined and tells the user something then."""
     lazy = element.attributes.get("lazy_eval", "true").strip() not in ("false", "False", "0")
     return (not lazy or "scope" in element.attributes) and bool(_SPEAKING.search(element.attributes.get("value", "")))
+
+
+def _is_mathematics(value: str) -> bool:
+    """Whether a value is pi, a part or multiple of it, or a factor between degrees and radians."""
+    if re.fullmatch(r"\$\{[\s\d.*/()-]*\bpi\b[\s\d.*/()-]*\}", value.strip()):
+        return True
+    try:
+        number = abs(float(value))
+    except ValueError:
+        return False
+    return any(isclose(number, each, rel_tol=_ROUNDED) for each in _CONSTANTS)
 
 
 def _is_remove(element: Element) -> bool:
