@@ -5,7 +5,8 @@ import pytest
 import trimesh
 
 from linkwright.geometry.mesh_files import placed_meshes
-from linkwright.geometry.stl import StlMesh, read_stl
+from linkwright.geometry.plain import PlainMesh
+from linkwright.geometry.stl import read_stl
 
 
 def _bytes(kind: str = "stl") -> bytes:
@@ -23,7 +24,7 @@ TEXT = _bytes("stl_ascii")
 )
 def test_a_file_has_the_triangles_that_trimesh_reads(data):
     (ours,) = placed_meshes(data, "stl")
-    assert isinstance(ours.mesh, StlMesh)
+    assert isinstance(ours.mesh, PlainMesh)
     scene = trimesh.load_scene(trimesh.util.wrap_as_stream(data), file_type="stl", process=False)
     ((name, theirs),) = scene.geometry.items()
     assert np.array_equal(ours.mesh.vertices[ours.faces], theirs.vertices[theirs.faces])

@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.geometry.arrays import Array
+from linkwright.geometry.collada import read_collada
 from linkwright.geometry.mesh_faults import fault_in
 from linkwright.geometry.stl import read_stl
+from linkwright.geometry.wavefront import read_obj
 
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
 """The formats that are read, as RViz and Gazebo read them."""
@@ -30,7 +32,7 @@ class PlacedMesh(NamedTuple):
     """One mesh of a file at one of its places.
 
     Attributes:
-        mesh: the `trimesh.Trimesh`, or the `StlMesh` that stands for one; it has triangles.
+        mesh: the `trimesh.Trimesh`, or the `PlainMesh` that stands for one; it has triangles.
         matrix: its frame in that of the file, homogeneous, in the file's unit; shape (4, 4).
         unit: metres for each unit of the file.
         names: what the file calls the mesh and the place.
@@ -60,7 +62,7 @@ class BadMeshError(Exception):
         self.why = why
 
 
-def placed_meshes(data: bytes, kind: str, **options: Any) -> list[PlacedMesh]:
+def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: Any) -> list[PlacedMesh]:
     """The triangle meshes of an STL, COLLADA, OBJ or glTF file; lines and points are left out.
 
     STL and OBJ say nothing of their unit; URDF takes their numbers as metres. The unit of COLLADA is told, its up axis
@@ -69,6 +71,8 @@ def placed_meshes(data: bytes, kind: str, **options: Any) -> list[PlacedMesh]:
     Args:
         data: the file.
         kind: its ending, without the dot.
+        is_plain: whether nothing but triangles is wanted: no colours, no normals, no names. Then most files are read
+            without trimesh, whose import takes longer.
         options: for `trimesh.load_scene`.
 
     Raises:
@@ -78,7 +82,7 @@ def placed_meshes(data: bytes, kind: str, **options: Any) -> list[PlacedMesh]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            found = list(_parsed(data, kind, **options))
+            found = (_plain(data, kind) if is_plain else None) or list(_parsed(data, kind, **options))
     except ModuleNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
@@ -116,9 +120,18 @@ def told_triangles(path: Path) -> int | None:
         return None
 
 
+def _plain(data: bytes, kind: str) -> list[PlacedMesh] | None:
+    """The triangles of a usual STL, COLLADA or OBJ file."""
+    nameless: frozenset[str] = frozenset()
+    if kind == "dae":
+        file = read_collada(data)
+        return None if file is None else [PlacedMesh(each, place, file.unit, nameless) for each, place in file.placed]
+    mesh = read_stl(data, is_plain=True) if kind == "stl" else read_obj(data) if kind == "obj" else None
+    return None if mesh is None else [PlacedMesh(mesh, np.eye(4), 1.0, nameless)]
+
+
 def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
-    stl = read_stl(data) if kind == "stl" else None
-    if stl is not None:
+    if kind == "stl" and (stl := read_stl(data)) is not None:
         yield PlacedMesh(stl, np.eye(4), 1.0, frozenset((stl.name,)))
         return
     import trimesh  # not above: it costs 0.1 s, and most robots are checked without a look into their meshes

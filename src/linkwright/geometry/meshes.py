@@ -142,7 +142,7 @@ def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
     faces: list[Faces] = [np.zeros((0, 3), dtype=np.int64)]
     count = 0
     parsed = []
-    for placed in placed_meshes(data, kind, **options):
+    for placed in placed_meshes(data, kind, is_plain=True, **options):
         corners = np.asarray(placed.mesh.vertices, dtype=np.float64)
         vertices.append((corners @ placed.matrix[:3, :3].T + placed.matrix[:3, 3]) * placed.unit)
         faces.append(placed.faces + count)

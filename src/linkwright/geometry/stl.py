@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 
 from linkwright.geometry.arrays import Array
+from linkwright.geometry.plain import PlainMesh
 
 _HEADER, _COUNT = 80, 4
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -20,43 +17,28 @@ _CORNERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 """The positions of a facet's words, and of the numbers of its corners."""
 
 
-@dataclass
-class StlMesh:
-    """The triangles of an STL file, with as much of a `trimesh.Trimesh` as is asked for here.
+def read_stl(data: bytes, *, is_plain: bool = False) -> PlainMesh | None:
+    """The triangles of an STL file; None for one with several solids or mistakes, which trimesh is to read.
 
-    Attributes:
-        vertices: three for each triangle, shape (3 n, 3), in the file's unit.
-        name: what the file calls it.
-        visual: of no kind, as there are no colours.
+    Args:
+        data: the file.
+        is_plain: whether its colours do not matter. Where they do, a file with colours gives None, too.
     """
-
-    vertices: Array
-    name: str
-    visual: Any = field(default_factory=lambda: SimpleNamespace(kind=None))
-
-    @property
-    def faces(self) -> Any:
-        """The numbers of three vertices each, shape (n, 3)."""
-        return np.arange(len(self.vertices)).reshape(-1, 3)
+    return _binary(data, is_plain=is_plain) or _text(data)
 
 
-def read_stl(data: bytes) -> StlMesh | None:
-    """The triangles of an STL file; None for one with colours, several solids or mistakes, which trimesh is to read."""
-    return _binary(data) or _text(data)
-
-
-def _binary(data: bytes) -> StlMesh | None:
+def _binary(data: bytes, *, is_plain: bool) -> PlainMesh | None:
     begin = _HEADER + _COUNT
     count = int.from_bytes(data[_HEADER:begin], "little")
-    if not count or len(data) != begin + count * _TRIANGLE.itemsize or b"COLOR=" in data[:_HEADER]:
+    if not count or len(data) != begin + count * _TRIANGLE.itemsize:
         return None
     triangles = np.frombuffer(data, _TRIANGLE, count, begin)
-    if triangles["attribute"].any():
+    if not is_plain and (b"COLOR=" in data[:_HEADER] or triangles["attribute"].any()):
         return None
-    return StlMesh(triangles["corners"].reshape(-1, 3).astype(np.float64), "geometry_0")
+    return _mesh(triangles["corners"].astype(np.float64), "geometry_0")
 
 
-def _text(data: bytes) -> StlMesh | None:
+def _text(data: bytes) -> PlainMesh | None:
     if len(data) > _LARGEST_TEXT:
         return None
     first, _, rest = data.partition(b"\n")
@@ -69,6 +51,12 @@ def _text(data: bytes) -> StlMesh | None:
     if (facets[:, _WORDS] != [_FACET[place] for place in _WORDS]).any():
         return None
     try:
-        return StlMesh(facets[:, _CORNERS].astype(np.float64).reshape(-1, 3), name.strip().decode())
+        return _mesh(facets[:, _CORNERS].astype(np.float64), name.strip().decode())
     except ValueError:  # what stands for a number is none, or the name no UTF-8
         return None
+
+
+def _mesh(corners: Array, name: str) -> PlainMesh:
+    """The mesh of triangles, each with three corners of its own."""
+    vertices = corners.reshape(-1, 3)
+    return PlainMesh(vertices, np.arange(len(vertices)).reshape(-1, 3), name)

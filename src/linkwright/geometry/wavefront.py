@@ -1,0 +1,47 @@
+"""Reading the triangles of usual OBJ files: importing trimesh takes longer than reading most."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from linkwright.geometry.plain import PlainMesh, Unusual, fans, numbers
+from linkwright.geometry.polyhedron import Faces
+
+_OF_TEXTURES = re.compile(rb"/\S*")
+"""What stands behind the number of a vertex: those of its texture and its normal."""
+
+
+def read_obj(data: bytes) -> PlainMesh | None:
+    """The triangles of an OBJ file; None for one with anything out of the ordinary, which trimesh is to read."""
+    if b"\\" in data:
+        return None  # a line may go on in the next one
+    lines = data.splitlines()
+    vertices = [line[2:] for line in lines if line.startswith(b"v ")]
+    polygons = [line[2:] for line in lines if line.startswith(b"f ")]
+    try:
+        return _mesh(vertices, polygons)
+    except (Unusual, ValueError):
+        return None
+
+
+def _mesh(vertices: list[bytes], polygons: list[bytes]) -> PlainMesh:
+    if not vertices or not polygons:
+        raise Unusual
+    width = len(vertices[0].split())
+    if width < 3 or any(len(line.split()) != width for line in vertices):
+        raise Unusual
+    points = numbers(b" ".join(vertices).decode(), np.float64).reshape(-1, width)[:, :3]
+    faces = _faces(polygons)
+    if faces.min() < 0 or faces.max() >= len(points):
+        raise Unusual
+    return PlainMesh(points, faces)
+
+
+def _faces(polygons: list[bytes]) -> Faces:
+    counts = np.array([len(line.split()) for line in polygons])
+    corners = numbers(_OF_TEXTURES.sub(b"", b" ".join(polygons)).decode(), np.int64)
+    if counts.min() < 3 or counts.sum() != len(corners):
+        raise Unusual
+    return fans(corners - 1, counts)
