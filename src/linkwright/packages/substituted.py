@@ -8,10 +8,10 @@ std_msgs and robot_state_publisher, have a share folder there by name, with noth
 from __future__ import annotations
 
 from functools import cache
-from importlib.metadata import entry_points
 from pathlib import Path
 
 import linkwright
+from linkwright.extensions import extensions
 from linkwright.packages.ament import install_prefix, share_in_prefix
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.installed_file import InstalledFile
@@ -34,7 +34,7 @@ def _known_in_part() -> frozenset[str]:
     ours = Path(linkwright.__file__).parent
     found = {file.stem for folder in ("standins/tables", "messages/data") for file in (ours / folder).glob("*.txt")}
     for group in ("linkwright.nodes", "linkwright.components"):
-        found.update(each.name.partition("/")[0] for each in entry_points(group=group))
+        found.update(name.partition("/")[0] for name in extensions(group))
     return frozenset({*found, "rviz2"})
 
 
