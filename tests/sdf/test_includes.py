@@ -314,6 +314,13 @@ def test_a_misspelt_model_is_a_warning(tmp_path):
     assert (found.severity.name, str(found.hint)) == ("WARNING", "did you mean 'crate'?")
 
 
+def test_a_misspelt_scheme_is_told_of(tmp_path):
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
+    found = finder.file("models://boat/meshes/hull.dae", tmp_path)
+    assert isinstance(found, Missing)
+    assert str(found.hint) == "did you mean 'model'?"
+
+
 @pytest.mark.parametrize("ending", [".jinja", ".em", ".erb", ".xacro"])
 def test_a_file_that_the_build_makes_of_a_template_is_an_information(tmp_path, ending):
     files = {f"plane/plane.sdf{ending}": "", "plane/model.config": "<model/>", f"plane/meshes/wing.stl{ending}": ""}

@@ -42,6 +42,7 @@ _HOOKED = re.compile(
 """``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"``."""
 _BELOW = ("", "models", "media/models", "Media/models")
 """Where in a folder of the search path Gazebo classic looks for ``file://PATH`` (its ``SystemPaths``)."""
+_SCHEMES = ("model", "package", "file")
 _TEMPLATES = (".jinja", ".jinja2", ".j2", ".em", ".erb", ".in", ".template", ".xacro")
 """The endings behind a file's own of templates that a build makes the file from."""
 _SHORTEST = 4
@@ -112,7 +113,9 @@ class ResourceFinder:
         try:
             path = self._packages.resolve(address, beside)
         except LinkwrightError as error:
-            return Missing(error.diagnostics[0].message, error.diagnostics[0].hint)
+            meant = misspelling_of(scheme, _SCHEMES)
+            hint = error.diagnostics[0].hint if meant is None else did_you_mean(scheme, [meant])
+            return Missing(error.diagnostics[0].message, hint)
         return path if path.exists() else _no_file(path)
 
     def model(self, address: str, beside: Path) -> Path | Missing:
