@@ -231,6 +231,25 @@ Command(['xacro ', path, ' name:=a', ' type:=', LaunchConfiguration('type')])
 
 
 @pytest.mark.parametrize(
+    ("declared", "severity"),
+    [("default_value='small', choices=['small', 'lost']", "warning"), ("default_value='lost'", "error")],
+)
+def test_a_value_that_is_merely_offered_and_fails_is_a_warning(check, declared, severity):
+    launch = f"""
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+def generate_launch_description():
+    DeclareLaunchArgument('type', {declared})
+    Command(['xacro ', PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro']), ' name:=a',
+             ' type:=', LaunchConfiguration('type')])
+"""
+    files = {"arm/urdf/arm.urdf.xacro": ARM, "arm/urdf/small.xacro": PART, "arm/launch/view.launch.py": launch}
+    assert [each for each in codes(check(files)) if each[1] == "XML101"] == [(severity, "XML101")]
+
+
+@pytest.mark.parametrize(
     ("needs", "beside", "severity"),
     [
         ("<exec_depend>far</exec_depend>", "", "warning"),

@@ -160,7 +160,7 @@ class SetCheck:
             if len(having) == len(runs):
                 found.append(diagnostic)
             elif not _holds_for_all_sets(diagnostic):
-                found.append(replace(diagnostic, notes=(*diagnostic.notes, _condition(having[0], runs))))
+                found.append(_under_condition(diagnostic, having, runs))
         best = next((run.checked for run in runs if run.checked.robot is not None), runs[0].checked)
         return replace(best, diagnostics=tuple(in_order(found, str(self.path))))
 
@@ -288,6 +288,16 @@ def _is_excused(run: _Run, tried: Sequence[_Run], common: frozenset[Key]) -> boo
 def _holds_for_all_sets(diagnostic: Diagnostic) -> bool:
     rule = find_rule(diagnostic.code)
     return rule is not None and rule.needs_all_sets
+
+
+def _under_condition(diagnostic: Diagnostic, having: Sequence[_Run], runs: Sequence[_Run]) -> Diagnostic:
+    """A finding of some runs; an error is a warning where launch arguments merely offer what leads to it.
+
+    Another argument may have to go with the offered value, such as the number of joints with the kind of arm.
+    """
+    notes = (*diagnostic.notes, _condition(having[0], runs))
+    is_offered = diagnostic.severity is Severity.ERROR and all(run.given.is_offered for run in having)
+    return replace(diagnostic, notes=notes, severity=Severity.WARNING if is_offered else diagnostic.severity)
 
 
 def _condition(run: _Run, runs: Sequence[_Run]) -> Note:

@@ -51,6 +51,7 @@ class ArgumentSet:
         varied: the arguments whose values differ from those that the same call gives by default.
         is_mixed: whether a launch argument chooses another file than by default, and others of its arguments have other
             values too: nobody knows whether these go with this file.
+        is_offered: whether they differ by what launch arguments offer, whose other arguments keep their defaults.
     """
 
     values: Mapping[str, str]
@@ -59,6 +60,7 @@ class ArgumentSet:
     is_certain: bool = True
     varied: tuple[str, ...] = ()
     is_mixed: bool = False
+    is_offered: bool = False
 
     @property
     def is_complete(self) -> bool:
@@ -105,8 +107,11 @@ class ArgumentSets:
         for each in sets:
             key = (tuple(sorted(each.values.items())), each.open)
             known = found.get(key)
-            if known is None or (each.is_certain and not known.is_certain):
-                found[key] = each if known is None else replace(known, is_certain=True)
+            if known is None:
+                found[key] = each
+            else:
+                certain, offered = each.is_certain or known.is_certain, each.is_offered and known.is_offered
+                found[key] = replace(known, is_certain=certain, is_offered=offered)
         best = sorted(found.values(), key=lambda each: (not each.is_complete, bool(each.open)))
         complete = [each for each in best if each.is_complete][:MOST_SETS]
         return (*complete, *[each for each in best if not each.is_complete][:MOST_SETS])
@@ -140,8 +145,13 @@ class _Target:
             for taken, certain in variations(call.arguments.values(), file.choices, selection):
                 found = self._set(call, file, taken, is_certain=certain)
                 first = first or found
-                is_mixed = any(selection.rows.values()) and taken.rows != selection.rows
-                yield replace(found, varied=_varied(call, found, first), is_mixed=is_mixed)
+                apart = {name for name, row in taken.rows.items() if row != selection.rows.get(name, 0)}
+                yield replace(
+                    found,
+                    varied=_varied(call, found, first),
+                    is_mixed=any(selection.rows.values()) and bool(apart),
+                    is_offered=bool(apart) and apart <= launch_names(file.choices).keys(),
+                )
         if first is None and _is_open(call.path):
             yield self._set(call, file, Selection({}, given), is_certain=False)
 
