@@ -97,9 +97,8 @@ class SetCheck:
     def with_callers(self, find_sets: Callable[[], Sequence[ArgumentSet]]) -> Checked:
         """The check with the defaults and the sets that callers give; `find_sets` is asked only where it matters."""
         default = self._run(_NO_VALUES)
-        if _has_expressions(default.checked) and find_sets():
-            self._xacro = True  # a launch file gives it to xacro, whatever it is called
-            default = self._run(_NO_VALUES)
+        if _has_expressions(default.checked):
+            default = self._expanded(find_sets()) or default
         if (self.is_named and not default.errors) or not _takes_arguments(default.checked):
             return default.checked
         sets = find_sets()
@@ -126,6 +125,17 @@ class SetCheck:
         if not kept or default in kept:
             return self._together(kept or [default], ())
         return self._together(kept, self._needs(kept[0], default, common, sets))
+
+    def _expanded(self, sets: Sequence[ArgumentSet]) -> _Run | None:
+        """The check of a file that launch files give to xacro, whatever it is called; None where xacro would fail."""
+        if not sets:
+            return None
+        self._xacro = True
+        default = self._run(_NO_VALUES)
+        if default.errors and all(self._run(each).errors for each in sets if each.values):
+            self._xacro = None
+            return None
+        return default
 
     def _run(self, given: ArgumentSet) -> _Run:
         checked = self.examine(given.values, self._xacro)
