@@ -94,6 +94,23 @@ def test_a_collision_mesh_of_twice_the_triangles_is_a_warning(severity_of, tmp_p
 
 
 @pytest.mark.parametrize(
+    ("name", "end", "severity"),
+    [("imu", 0, "INFO"), ("ft_sensor", 0, "INFO"), ("imu", 1, "WARNING"), ("limuzin", 0, "WARNING")],
+)
+def test_a_joint_that_holds_a_sensor_for_a_simulator_need_not_move(severity_of, name, end, severity):
+    joint = f'<joint name="{name}_joint" type="revolute"><parent link="base"/><child link="{name}_link"/>'
+    limit = f'<axis xyz="0 0 1"/><limit lower="{end}" upper="{end}" effort="1" velocity="1"/></joint>'
+    assert severity_of("LW202", f'<link name="{name}_link"/>{joint}{limit}') == severity
+
+
+@pytest.mark.parametrize(("more", "severity"), [("", "WARNING"), (f"<visual>{BOX}</visual>", "INFO")])
+def test_a_footprint_may_be_the_name_of_the_whole_body(severity_of, more, severity):
+    joint = '<joint name="j" type="fixed"><parent link="base"/><child link="base_footprint"/></joint>'
+    link = f'<link name="base_footprint"><collision>{BOX.replace("0.01", "1")}</collision>{more}</link>'
+    assert severity_of("LW623", joint + link) == severity
+
+
+@pytest.mark.parametrize(
     ("name", "text", "severity"),
     [
         ("a.world", '<sdf version="1.6"><!-- a -- b --><world name="w"/></sdf>', "INFO"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from math import pi
 
@@ -10,6 +11,11 @@ from linkwright.lint.fix import Fix, remove_element, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import BOUNDED, UNBOUNDED, bounds, limits, shown
+
+_SENSOR = re.compile(
+    r"sensor|camera|(?<![a-z])(imu|gps|gnss|dvl|sonar|lidar|laser|magnetometer|altimeter|pressure|bumper)(?![a-z])",
+    re.IGNORECASE,
+)
 
 
 class LimitInverted(Rule):
@@ -73,7 +79,8 @@ class LimitEmpty(Rule):
     ## Why
 
     It cannot move. joint_state_publisher_gui gives it no slider and planners treat it as fixed, with the cost of a
-    joint that moves.
+    joint that moves. Where it holds a sensor at 0, by the names, the finding is an information: Gazebo merges a link on
+    a fixed joint with its parent, and such a joint keeps the link of the sensor.
 
     ## Example
 
@@ -107,6 +114,7 @@ class LimitEmpty(Rule):
                     limit,
                     "lower" if "lower" in limit.attributes else "upper",
                     hint=phrase("give the range it has, or make the joint 'fixed'"),
+                    severity=Severity.INFO if ends[0] == 0 and _SENSOR.search(f"{joint.name} {joint.child}") else None,
                 )
 
 

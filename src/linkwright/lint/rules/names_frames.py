@@ -173,7 +173,8 @@ class FootprintHasBody(Rule):
     ## Why
 
     `base_footprint` is a place on the ground, not a thing. A body there rubs on the floor of a simulation, and its mass
-    is counted twice.
+    is counted twice. Where the link has a visual, too, it is the whole body of the robot under another name, and the
+    finding is an information.
 
     ## Example
 
@@ -205,7 +206,9 @@ class FootprintHasBody(Rule):
                 part = link.element.first("inertial")
             if part is not None:
                 message = phrase("'{name}' is a place on the ground, and has a <{tag}>", name=link.name, tag=part.tag)
-                yield self.report(message, part, hint=phrase("move it to the link of the body, such as 'base_link'"))
+                hint = phrase("move it to the link of the body, such as 'base_link'")
+                severity = Severity.INFO if link.visuals else None
+                yield self.report(message, part, hint=hint, severity=severity)
 
 
 class FixedFrameInRobot(Rule):
