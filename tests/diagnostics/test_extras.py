@@ -57,12 +57,12 @@ def test_what_is_missing_is_asked_for_by_name(extra, use, without, tmp_path):
 
 
 def small_mesh(folder):
-    """A tetrahedron in an OBJ file: of STL nothing is needed."""
+    """A tetrahedron in an OBJ file with a line that goes on in the next: of usual OBJ and STL nothing is needed."""
     corners = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
     faces = ((1, 3, 2), (1, 2, 4), (2, 3, 4), (1, 4, 3))
     lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a} {b} {c}" for a, b, c in faces]
     path = folder / "tetrahedron.obj"
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join(lines).replace("f 1 3 2", "f 1 3 \\\n2") + "\n")
     return path
 
 
