@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -139,6 +140,23 @@ def test_several_starts_are_asked_in_their_order(tmp_path: Path) -> None:
     found = PackageFinder(start=[tmp_path / "a", tmp_path / "b"], environment={})
     assert found.share("arm") == first
     assert found.share("gripper") == only_there
+
+
+def _no_scan_below(folder: Path, root: Path) -> SourceScan:
+    assert not root.is_relative_to(folder)
+    return SourceScan(root)
+
+
+def test_a_finder_for_another_place_searches_no_source_tree_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arm, leg = make_source(tmp_path / "src" / "arm", "arm"), make_source(tmp_path / "src" / "leg", "leg")
+    first = PackageFinder(start=[arm, tmp_path], environment={}, extra={"hand": tmp_path / "mine"})
+    assert first.find("wheel") is None
+    monkeypatch.setattr("linkwright.packages.finder.SourceScan", partial(_no_scan_below, tmp_path))
+    other = first.starting_at([leg, tmp_path])
+    assert (other.find("arm"), other.find("hand"), other.find("wheel")) == (arm, tmp_path / "mine", None)
+    assert other.starts == (leg, tmp_path)
 
 
 def test_shipped_packages_are_there_from_anywhere(tmp_path: Path) -> None:

@@ -123,12 +123,14 @@ class _Words:
     callers: list[ArgumentSets] = field(default_factory=list)
 
     def finder(self, file: Path) -> PackageFinder:
-        """Where the packages are for a file; one finder for each folder, because a search takes time."""
+        """Where the packages are for a file: one finder for each folder, and one search of each source tree for all."""
         from linkwright.packages import PackageFinder
 
         folder = file.absolute().parent
         if folder not in self.finders:
-            self.finders[folder] = PackageFinder(start=[folder, *self.folders, Path.cwd()])
+            start = [folder, *self.folders, Path.cwd()]
+            first = next(iter(self.finders.values()), None)
+            self.finders[folder] = first.starting_at(start) if first else PackageFinder(start=start)
         return self.finders[folder]
 
     def sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:

@@ -63,6 +63,12 @@ class PackageFinder:
         self._meant: dict[str, tuple[Phrase | None, bool]] = {}
         self._offered: str | None = None
 
+    def starting_at(self, start: Sequence[Path]) -> PackageFinder:
+        """Return a finder for another place, which shares what this one has searched of source trees."""
+        finder = PackageFinder(start=start, environment=self._environment, extra=self._extra)
+        finder._scans = self._scans
+        return finder
+
     @property
     def starts(self) -> tuple[Path, ...]:
         """Where the search begins."""
