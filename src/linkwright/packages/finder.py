@@ -63,9 +63,9 @@ class PackageFinder:
         self._meant: dict[str, tuple[Phrase | None, bool]] = {}
         self._offered: str | None = None
 
-    def starting_at(self, start: Sequence[Path]) -> PackageFinder:
+    def starting_at(self, start: Sequence[Path], extra: Mapping[str, Path]) -> PackageFinder:
         """Return a finder for another place, which shares what this one has searched of source trees."""
-        finder = PackageFinder(start=start, environment=self._environment, extra=self._extra)
+        finder = PackageFinder(start=start, environment=self._environment, extra=extra)
         finder._scans = self._scans
         return finder
 
