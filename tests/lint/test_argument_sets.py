@@ -147,6 +147,15 @@ def test_an_argument_that_nobody_declares_or_gives_is_a_remark_in_a_folder_and_a
     assert codes(check(files, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC211")]
 
 
+def test_what_hangs_on_an_argument_that_the_root_names_too_early_is_no_error_of_its_own(check):
+    text = f"""<robot {XACRO} name="$(arg model)"><xacro:arg name="model" default="r"/>
+<xacro:include filename="$(arg model)/arm.xacro"/><xacro:include filename="{{}}.xacro"/></robot>"""
+    found = check({"arm/urdf/arm.urdf.xacro": text.format("hand"), "arm/urdf/hand.xacro": PART})
+    assert codes(found) == [("info", "LINT303")]
+    found = check({"arm/urdf/arm.urdf.xacro": text.format("none")})
+    assert codes(found) == [("info", "LINT303"), ("error", "XML101")]
+
+
 def test_a_misspelt_argument_stays_an_error(check):
     robot = f"""<robot {XACRO} name="r"><xacro:arg name="prefix" default=""/>
     <link name="$(arg prefix)base_link"/><link name="$(arg prefx)tool"/></robot>"""

@@ -222,8 +222,12 @@ class SetCheck:
         """The check where no caller gives a value that is known: what nobody declares or fills in, somebody gives."""
         asked = [name for each in default.checked.diagnostics if (name := asked_argument(each))]
         if asked:
+            hanging = self._changed(default, dict.fromkeys(asked, _ANY_VALUE))
             return self._only(
-                default, lambda error: asked_argument(error) is None, list(dict.fromkeys(asked)), _when(sets)
+                default,
+                lambda error: asked_argument(error) is None and _place(error) not in hanging,
+                list(dict.fromkeys(asked)),
+                _when(sets),
             )
         names = dict.fromkeys((*_opened(sets), *empty_defaults(_sources(default.checked))))
         changed = {
