@@ -121,3 +121,10 @@ def test_what_only_simulators_read_need_not_be_good_xml(tmp_path, name, text, se
     (tmp_path / name).write_text(text)
     found = examine(tmp_path / name, settings=Settings()).diagnostics
     assert [each.severity.name for each in found if each.code == "XML206"] == [severity]
+
+
+@pytest.mark.parametrize(("second", "severity"), [("0.8 0.8 0.8 1", "INFO"), ("0.7 0.7 0.9 1", "WARNING")])
+def test_a_colour_that_nobody_tells_from_the_first_of_its_name_is_an_information(severity_of, second, severity):
+    grey = '<visual>{}<material name="grey"><color rgba="{}"/></material></visual>'
+    visuals = "".join(grey.format(BOX, colour) for colour in ("0.7 0.7 0.7 1", second))
+    assert severity_of("LW501", moving("3").replace("<inertial>", visuals + "<inertial>")) == severity

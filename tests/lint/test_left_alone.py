@@ -545,3 +545,27 @@ def test_a_file_that_is_in_the_sources_but_not_in_an_old_build(tmp_path, there, 
 def test_an_inertia_that_no_body_has_is_not_called_too_large_as_well(told, izz, codes):
     part = moving("a", BOX.format(0.1) + inertial(0.1, 1).replace('izz="1"', f'izz="{izz}"'))
     assert told(robot(f'<link name="base"/>{part}'), "LW314", "LW324") == codes
+
+
+@pytest.mark.parametrize(
+    ("root", "kind", "codes"),
+    [
+        ("world", "prismatic", []),
+        ("world", "continuous", ["LW324"]),
+        ("base", "prismatic", ["LW324"]),
+    ],
+)
+def test_the_inertia_of_what_only_slides_on_the_world_does_nothing(told, root, kind, codes):
+    part = moving("cart", BOX.format(0.1) + inertial(0.1, 1), parent=root).replace("continuous", kind)
+    part = part.replace("</joint>", '<limit lower="0" upper="1" effort="1" velocity="1"/></joint>')
+    assert told(robot(f'<link name="{root}"/>{part}'), "LW322", "LW324") == codes
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "count"),
+    [("-100", "100", 0), ("-1000.0", "1e3", 0), ("0", "100", 1), ("-120", "120", 2), ("-100", "1000", 2)],
+)
+def test_a_round_limit_to_both_sides_of_a_slide_means_no_end(told, lower, upper, count):
+    slide = moving("cart", "").replace("continuous", "prismatic")
+    limit = f'<limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>'
+    assert told(robot(f'<link name="base"/>{slide.replace("</joint>", limit)}'), "LW213") == ["LW213"] * count

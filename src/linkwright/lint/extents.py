@@ -12,16 +12,13 @@ from linkwright.geometry.placement import IDENTITY, Placement, placement
 from linkwright.geometry.shapes import volume_of
 from linkwright.lint.meshes import MeshFacts
 from linkwright.urdf import Collision, Inertial, Link, Mesh, Visual
-from linkwright.urdf.bodies import Bodies, Body
+from linkwright.urdf.bodies import WORLD, Bodies, Body
 
 if TYPE_CHECKING:
     from linkwright.geometry.mass import MassProperties
 
 MARKER = 0.01
 """A body smaller than this, in m, is a marker; nothing is concluded from its shapes."""
-
-_WORLD = "world"
-"""What is fixed to this link never moves, and no mass matters there."""
 
 _NEGLIGIBLE = 0.01
 """A mass of less than this part of its body's is a placeholder that changes nothing."""
@@ -60,13 +57,14 @@ class Extents:
             and (body := self._bodies.of(link.name)) is not None
             and is_computable(inertial)
             and inertial.mass >= max(WEIGHTLESS, _NEGLIGIBLE * self._bodies.mass(body))
-            and _WORLD not in body.links
+            and WORLD not in body.links
         ]
 
     @cached_property
     def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
-        """The links whose body can be measured and is no marker, with the box around the body in the link's frame."""
-        boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in self.heavy)
+        """The links whose body turns, can be measured and is no marker, with the box around it in the link's frame."""
+        turning = (each for each in self.heavy if self._bodies.turns(each[0].name))
+        boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in turning)
         return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
 
     def mass_properties(self, body: Body) -> MassProperties:

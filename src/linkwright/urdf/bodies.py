@@ -12,6 +12,9 @@ from functools import cached_property
 from linkwright.geometry.placement import IDENTITY, Placement, placement
 from linkwright.urdf.model import Joint, Link, Robot
 
+WORLD = "world"
+"""What is fixed to this link never moves, and no mass matters there."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
@@ -51,6 +54,15 @@ class Bodies:
         """The links of a body."""
         assert self._robot is not None, "there are bodies only where there is a robot"
         return [self._robot.links[name] for name in body.frames]
+
+    def turns(self, link: str) -> bool:
+        """Whether a link's body can turn: not where it is on a link `WORLD`, or slides on one that does not turn."""
+        body = self._by_link.get(link)
+        while body is not None and body.joint is not None:
+            if body.joint.type != "prismatic":
+                return True
+            body = self._by_link.get(body.joint.parent)
+        return body is None or WORLD not in body.frames
 
     def stands_for_others(self, link: Link) -> bool:
         """Whether a link's mass may be that of links with shapes and no mass that are fixed to it, too."""

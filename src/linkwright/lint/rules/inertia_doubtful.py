@@ -74,7 +74,7 @@ def _copies(subject: Subject, least: int) -> Iterator[list[tuple[Link, Inertial]
     groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
     for link, inertial in links_with_inertial(subject):
         values = tuple(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
-        if any(values) and inertial.mass >= WEIGHTLESS:
+        if any(values) and inertial.mass >= WEIGHTLESS and subject.bodies.turns(link.name):
             groups.setdefault(values, []).append((link, inertial))
     count = sum(map(len, groups.values()))
     for (ixx, iyy, izz, *_), sharing in groups.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import pi, radians
+from math import log10, pi, radians
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.option import Option
@@ -115,7 +115,8 @@ class LimitInMillimetres(Rule):
 
     ## Why
 
-    Lengths are in metres. A slide of 120 m is a slide of 120 mm that was copied from a data sheet.
+    Lengths are in metres. A slide of 120 m is a slide of 120 mm that was copied from a data sheet. Limits such as -100
+    and 100 are left alone: who writes them means no end.
 
     ## Example
 
@@ -140,6 +141,9 @@ class LimitInMillimetres(Rule):
         """Every limit of a prismatic joint that is beyond belief in metres."""
         longest = self.option(subject, "longest", float)
         for joint, limit in limits(subject, "prismatic"):
+            ends = bounds(limit)
+            if ends is not None and -ends[0] == ends[1] > 0 and log10(ends[1]).is_integer():
+                continue  # such as -100 to 100: no end is meant
             for name in ("lower", "upper"):
                 way = value(limit, name)
                 if way is not None and longest < abs(way) <= 10 * UNBOUNDED:

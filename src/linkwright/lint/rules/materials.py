@@ -18,6 +18,9 @@ from linkwright.xmltree import Element
 
 _UNSEEN = re.compile(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)
 
+_ALIKE = 0.1001
+"""The largest difference of a channel, of 1 and with room for rounding, between colours that look alike."""
+
 
 def definitions(subject: Subject) -> Iterator[Material]:
     """Every material that has a colour or texture, as it is written: those of the robot, then those in visuals."""
@@ -45,7 +48,8 @@ class RedefinedMaterial(Rule):
     ## Why
 
     The first definition of a name in the file holds for all of them, even over the colour written right in the visual.
-    So the second colour is never seen: "RViz shows the wrong colour".
+    So the second colour is never seen: "RViz shows the wrong colour". A colour that nobody tells from the first is an
+    information.
 
     ## Example
 
@@ -93,6 +97,7 @@ class RedefinedMaterial(Rule):
                 "name",
                 notes=[Note(phrase("the first definition, '{look}', holds", look=_look(known)), known.element.span())],
                 hint=phrase("give this one a name of its own, or leave its colour out"),
+                severity=Severity.INFO if _looks_alike(known, material) else None,
             )
 
 
@@ -320,6 +325,13 @@ class AlikeNames(Rule):
 
 def _difference(first: Material, second: Material) -> Phrase:
     return phrase("colour") if first.rgba != second.rgba else phrase("texture")
+
+
+def _looks_alike(first: Material, second: Material) -> bool:
+    """Whether two colours differ by too little to be seen unless they are side by side."""
+    if first.rgba is None or second.rgba is None or first.texture != second.texture:
+        return False
+    return all(abs(one - other) <= _ALIKE for one, other in zip(first.rgba, second.rgba, strict=True))
 
 
 def _look(material: Material) -> str:
