@@ -42,5 +42,9 @@ def test_two_findings_at_one_place_of_a_package_file_are_both_told(tmp_path):
     )
     (tmp_path / "setup.py").write_text("from setuptools import setup\nsetup(name='p', data_files=[])\n")
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
-    codes = [each.code for each in check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))]
-    assert codes == ["LW826", "LW826"]
+    found = check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))
+    assert [each.code for each in found] == ["LW826", "LW826"]
+    assert str(found[0].hint).startswith("make an empty file 'resource/p', and add ")
+    (tmp_path / "resource").mkdir()
+    (tmp_path / "resource" / "p").touch()
+    assert str(check(tmp_path / "robot.urdf", settings=Settings(select=("LW826",)))[0].hint).startswith("add ")

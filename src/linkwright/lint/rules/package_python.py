@@ -133,7 +133,15 @@ class MarkerNotInstalled(PackageRule):
         marked = any(item.destination == _MARKERS or item.text.startswith("resource/") for item in setup.installed)
         if not marked:
             message = phrase("setup.py does not install the marker of the package '{name}'", name=package.name)
-            hint = phrase("add ('{markers}', ['resource/{name}']) to data_files", markers=_MARKERS, name=package.name)
+            hint = (
+                phrase("add ('{markers}', ['resource/{name}']) to data_files", markers=_MARKERS, name=package.name)
+                if (package.folder / "resource" / package.name).is_file()
+                else phrase(
+                    "make an empty file 'resource/{name}', and add ('{markers}', ['resource/{name}']) to data_files",
+                    markers=_MARKERS,
+                    name=package.name,
+                )
+            )
             yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
         if not any(item.text == "package.xml" for item in setup.installed):
             message = phrase("setup.py does not install package.xml")
