@@ -341,6 +341,24 @@ def test_a_launch_file_to_be_written_is_an_information(tmp_path, text, told):
 
 
 @pytest.mark.parametrize(
+    ("text", "files", "count"),
+    [
+        ("import ast\ndef test_it():\n    pass\n", [], 0),
+        ("import launch\n", ["__init__.py"], 0),
+        ("import launch\ndef tested():\n    pass\n", [], 1),
+    ],
+    ids=["pytest", "a module", "neither"],
+)
+def test_what_is_called_as_a_launch_file_and_runs_otherwise_is_none(tmp_path, text, files, count):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    (tmp_path / "p").mkdir()
+    for name in ("a_launch.py", *files):
+        (tmp_path / "p" / name).write_text(text if name == "a_launch.py" else "")
+    found = examine_package(tmp_path, Settings(select=("LW841",))).diagnostics
+    assert [each.code for each in found] == ["LW841"] * count
+
+
+@pytest.mark.parametrize(
     ("value", "codes"),
     [("3.14159265", []), ("${pi/2}", []), ("1.5708", []), ("0.0174533", []), ("57.29578", []), ("3.2", ["LW701"])],
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from abc import abstractmethod
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, nearest, phrase, quoted
@@ -81,8 +82,9 @@ class LaunchFunctionMissing(LaunchRule):
 
     ## Why
 
-    `ros2 launch` calls this function and nothing else. Tests of launch_testing and launch_pytest have others and are
-    left alone. A file without a statement is still to be written, or was taken out of use: that is an information.
+    `ros2 launch` calls this function and nothing else. Tests of launch_testing, launch_pytest and pytest have others
+    and are left alone, as are modules of a Python package, beside an `__init__.py`. A file without a statement is still
+    to be written, or was taken out of use: that is an information.
 
     ## Example
 
@@ -106,6 +108,8 @@ class LaunchFunctionMissing(LaunchRule):
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
         """The findings in a launch file."""
         if file.python is None or file.has_function or file.is_test:
+            return
+        if Path(file.source.name).with_name("__init__.py").is_file():
             return
         from linkwright.packages.readers.launch_files import FUNCTION
 

@@ -55,7 +55,7 @@ class LaunchFile:
         error: the syntax error, where it is no Python.
         python: the parsed file, or None.
         has_function: whether it defines ``generate_launch_description``, or gets names from elsewhere that may.
-        is_test: whether it is run by launch_testing or launch_pytest, which ask for other functions.
+        is_test: whether it is run by launch_testing or pytest, which ask for other functions.
         nodes: what it starts.
         shares: the packages whose share folder it asks for.
         paths: the whole paths that it makes in share folders.
@@ -91,9 +91,7 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
         return facts
     facts.has_function = any(map(_may_define_function, python.tree.body))
     _read_imports(python, facts)
-    facts.is_test = any(_defines_function(node, _TEST_FUNCTION) for node in python.tree.body) or any(
-        package in _TESTING for package, _ in facts.imports
-    )
+    facts.is_test = any(map(_is_of_test, python.tree.body)) or any(package in _TESTING for package, _ in facts.imports)
     for call in python.calls("Node", "LifecycleNode", "ComposableNode"):
         package, executable = argument_of(call, "package"), argument_of(call, "executable")
         facts.nodes.append(StartedNode(_place(python, package), _place(python, executable)))
@@ -113,6 +111,12 @@ def _may_define_function(node: ast.stmt) -> bool:
     if isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names):
         return True
     return _defines_function(node, FUNCTION) or isinstance(node, (ast.If, ast.Try))  # it may be defined in there
+
+
+def _is_of_test(node: ast.stmt) -> bool:
+    return _defines_function(node, _TEST_FUNCTION) or (
+        isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name.startswith("test_")
+    )
 
 
 def _defines_function(node: ast.stmt, name: str) -> bool:
