@@ -335,22 +335,31 @@ def test_what_xacro_made_of_a_file_that_is_checked_has_errors_only_in_a_folder(h
 INCLUDE = '<xacro:include filename="$(find arm)/urdf/part.xacro"/>'
 
 
-def test_a_package_is_checked_as_its_sources_are_whatever_a_build_installed_of_it(here, capsys):
+@pytest.mark.parametrize("user", ["arm", "robot"])
+def test_packages_are_checked_as_their_sources_are_whatever_a_build_installed_of_them(here, capsys, user):
+    manifest = '<package format="3"><name>{}</name><version>1.0.0</version></package>'
     share = "ws/install/arm/share/arm"
-    manifest = '<package format="3"><name>arm</name><version>1.0.0</version></package>'
     write(
         here,
         {
             "ws/install/arm/share/ament_index/resource_index/packages/arm": "",
             "ws/install/.colcon_install_layout": "isolated\n",
-            f"{share}/package.xml": manifest,
+            f"{share}/package.xml": manifest.format("arm"),
             f"{share}/urdf/part.xacro": LONG_AXIS,
-            "ws/src/arm/package.xml": manifest,
+            "ws/src/arm/package.xml": manifest.format("arm"),
             "ws/src/arm/urdf/part.xacro": LONG_AXIS.replace("0 0 2", "0 0 1"),
-            "ws/src/arm/urdf/r.urdf.xacro": f'<robot {XACRO} name="r">{INCLUDE}</robot>',
+            f"ws/src/{user}/package.xml": manifest.format(user),
+            f"ws/src/{user}/urdf/r.urdf.xacro": f'<robot {XACRO} name="r">{INCLUDE}</robot>',
         },
     )
-    assert main(["check", *ONLY, "--strict", "ws/src/arm/urdf/r.urdf.xacro"]) == 0, capsys.readouterr().out
+    assert main(["check", *ONLY, "--strict", f"ws/src/{user}/urdf/r.urdf.xacro"]) == 0, capsys.readouterr().out
+
+
+def test_a_variable_that_whoever_starts_the_robot_sets_is_an_information_in_a_folder(here, capsys):
+    write(here, {"p/r.urdf.xacro": f'<robot {XACRO} name="$(env KIND_OF_ROBOT)"><link name="base_link"/></robot>'})
+    assert main(["check", "p"]) == 0
+    assert "info[XAC214]" in capsys.readouterr().err
+    assert main(["check", "p/r.urdf.xacro"]) == 1
 
 
 @pytest.mark.parametrize(

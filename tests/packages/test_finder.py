@@ -151,10 +151,10 @@ def test_a_finder_for_another_place_searches_no_source_tree_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     arm, leg = make_source(tmp_path / "src" / "arm", "arm"), make_source(tmp_path / "src" / "leg", "leg")
-    first = PackageFinder(start=[arm, tmp_path], environment={})
+    first = PackageFinder(start=[arm, tmp_path], environment={}, extra={"hand": tmp_path / "mine"})
     assert first.find("wheel") is None
     monkeypatch.setattr("linkwright.packages.finder.SourceScan", partial(_no_scan_below, tmp_path))
-    other = first.starting_at([leg, tmp_path], {"hand": tmp_path / "mine"})
+    other = first.starting_at([leg, tmp_path])
     assert (other.find("arm"), other.find("hand"), other.find("wheel")) == (arm, tmp_path / "mine", None)
     assert other.starts == (leg, tmp_path)
 

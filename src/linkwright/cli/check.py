@@ -42,6 +42,8 @@ _USAGE = 2
 _Found: TypeAlias = "dict[tuple[str, Span | None, str], Diagnostic]"
 _OF_NAMED_FILES = frozenset({"LINT302", "SDF160", "SDF162"})
 """Findings whose information matters where a file was named: it is no robot by itself, or Gazebo fetches its models."""
+_GIVEN_BY_USERS = "XAC214"
+"""An environment variable without a value: whoever starts the robot sets it."""
 _ONCE = "PKG101"
 """A package that is not here is one thing to mend, however many files name it."""
 _ASIDE = re.compile(r"tests?\d*|(.+[_-])?(old|deprecated|discard(ed)?|(archived?|backups?)([_-].*)?)", re.IGNORECASE)
@@ -128,18 +130,13 @@ class _Words:
 
     def finder(self, file: Path) -> PackageFinder:
         """Where the packages are for a file: one finder for each folder, and one search of each source tree for all."""
-        from linkwright.packages import PackageFinder, enclosing_package
-        from linkwright.packages.share_layout import share_of_sources
+        from linkwright.packages import PackageFinder
 
         folder = file.absolute().parent
         if folder not in self.finders:
             start = [folder, *self.folders, Path.cwd()]
-            own = enclosing_package(folder)
-            sources = {own[0]: share_of_sources(*own)} if own else {}  # whatever an earlier build installed of it
             first = next(iter(self.finders.values()), None)
-            self.finders[folder] = (
-                first.starting_at(start, sources) if first else PackageFinder(start=start, extra=sources)
-            )
+            self.finders[folder] = first.starting_at(start) if first else PackageFinder(start=start, sources_first=True)
         return self.finders[folder]
 
     def sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
@@ -216,6 +213,9 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
 def _of_a_folder(said: Iterable[Diagnostic], *, is_aside: bool) -> Iterator[Diagnostic]:
     """The findings that matter where a file was not named: of tests and what is put aside, errors alone."""
     for each in said:
+        if each.code == _GIVEN_BY_USERS:
+            yield replace(each, severity=Severity.INFO)
+            continue
         is_info = each.severity is Severity.INFO
         if each.severity is Severity.ERROR or not (is_aside or (is_info and each.code in _OF_NAMED_FILES)):
             yield each

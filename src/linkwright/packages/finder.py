@@ -42,6 +42,7 @@ class PackageFinder:
             behind it those that `START_VARIABLE` names.
         environment: the variables to read ``AMENT_PREFIX_PATH`` from; the process's by default.
         extra: package name -> share folder, before everything else.
+        sources_first: whether sources come before what an earlier build installed of them.
     """
 
     def __init__(
@@ -50,6 +51,7 @@ class PackageFinder:
         start: Path | Sequence[Path] | None = None,
         environment: Mapping[str, str] | None = None,
         extra: Mapping[str, str | Path] | None = None,
+        sources_first: bool = False,
     ) -> None:
         self._environment = os.environ if environment is None else environment
         if start is None:
@@ -58,14 +60,17 @@ class PackageFinder:
         starts = [start] if isinstance(start, Path) else start
         self._starts = tuple(dict.fromkeys(_absolute(each) for each in starts))
         self._extra = {name: Path(share) for name, share in (extra or {}).items()}
+        self._sources_first = sources_first
         self._scans: dict[Path, SourceScan] = {}
         self._known: dict[str, Path] = {}
         self._meant: dict[str, tuple[Phrase | None, bool]] = {}
         self._offered: str | None = None
 
-    def starting_at(self, start: Sequence[Path], extra: Mapping[str, Path]) -> PackageFinder:
+    def starting_at(self, start: Sequence[Path]) -> PackageFinder:
         """Return a finder for another place, which shares what this one has searched of source trees."""
-        finder = PackageFinder(start=start, environment=self._environment, extra=extra)
+        finder = PackageFinder(
+            start=start, environment=self._environment, extra=self._extra, sources_first=self._sources_first
+        )
         finder._scans = self._scans
         return finder
 
@@ -150,15 +155,22 @@ class PackageFinder:
         yield self._extra.get(name)
         for prefix in self._prefixes():
             yield ament.share_in_prefix(prefix, name)
+        places = (self._in_sources, self._in_installs) if self._sources_first else (self._in_installs, self._in_sources)
+        for each in places:
+            yield from each(name)
+        yield self._shipped().get(name)
+        yield substituted_share(name)
+
+    def _in_installs(self, name: str) -> Iterator[Path | None]:
         for install in self._installs():
             yield ament.share_in_install(install, name)
         for prefix in self._holding():
             yield ament.share_in_prefix(prefix, name)
+
+    def _in_sources(self, name: str) -> Iterator[Path | None]:
         yield _share_of(name, dict(self._enclosing()).get(name))
         for root in self._source_roots():
             yield _share_of(name, self._scan(root).find(name))
-        yield self._shipped().get(name)
-        yield substituted_share(name)
 
     def _all(self) -> Iterator[tuple[str, Path]]:
         for prefix in self._prefixes():
