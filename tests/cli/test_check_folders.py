@@ -77,6 +77,12 @@ def test_what_arguments_and_the_environment_choose_to_include_stands_not_by_itse
     assert [path.name for path in find_targets([here]).files] == ["other.urdf", "r.urdf.xacro"]
 
 
+@pytest.mark.parametrize(("text", "files"), [("<robot></robot>", []), ('<robot name="r"></robot>', ["r.urdf"])])
+def test_a_robot_without_name_and_content_is_a_place_for_others_to_fill(here, text, files):
+    write(here, {"r.urdf": text})
+    assert [path.name for path in find_targets([here]).files] == files
+
+
 def test_packages_are_those_around_the_files_and_those_in_the_folders(here):
     manifest = "<package><name>{}</name></package>"
     write(
@@ -369,7 +375,6 @@ def test_a_variable_that_whoever_starts_the_robot_sets_is_an_information_in_a_fo
         ("<gazebo/><transmission/>", False),
         ('<xacro:macro name="m" params="n"><link name="${n}"/></xacro:macro>', False),
         ('<limit lower="0"/>', True),
-        ("", True),
     ],
 )
 def test_a_urdf_without_links_of_its_own_is_a_part_of_a_robot(here, capsys, inside, is_told):

@@ -223,6 +223,19 @@ def test_launch_files_in_markup(workspace: Path, name: str, text: str) -> None:
     assert values(sets(workspace, f"arm/launch/{name}", text)) == [{"prefix": "x_"}]
 
 
+@pytest.mark.parametrize(
+    ("default", "known", "is_open"),
+    [("$(optenv EXTRAS)", {}, ("prefix",)), ("$(optenv EXTRAS none.urdf)", {"prefix": "none.urdf"}, ())],
+)
+def test_a_variable_of_the_environment_has_the_value_that_is_written_for_it(
+    workspace: Path, default: str, known: dict[str, str], is_open: tuple[str, ...]
+) -> None:
+    text = f"""<launch><arg name="prefix" default="{default}"/><param name="robot_description"
+        command="$(find xacro)/xacro '$(find arm)/urdf/arm.urdf.xacro' prefix:=$(arg prefix)"/></launch>"""
+    (found,) = sets(workspace, "arm/launch/view.launch", text)
+    assert (found.values, found.open) == (known, is_open)
+
+
 def test_a_share_folder_in_the_middle_of_a_path_is_no_file_of_it(workspace: Path) -> None:
     text = """<launch><let name="file" value="./$(find-pkg-share arm)/urdf/arm.urdf.xacro"/><node pkg="p" exec="e">
         <param name="d" value="$(command 'xacro $(var file) prefix:=x_')"/></node></launch>"""

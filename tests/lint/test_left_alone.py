@@ -443,6 +443,63 @@ def test_a_gripper_that_presses_has_no_soft_limit_where_it_is_closed(told, lower
     assert told(robot(f'<link name="base"/><link name="a"/>{joint}'), "LW240") == codes
 
 
+@pytest.mark.parametrize(("far", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
+def test_a_shape_that_is_far_away_is_told_of_once(told, far, codes):
+    seen = f'<visual><origin xyz="{far} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
+    felt = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+    assert told(robot(f'<link name="a">{seen}{felt}</link>'), "LW405", "LW412") == codes
+
+
+@pytest.mark.parametrize(
+    ("part", "codes"),
+    [('<ros2_control name="c" type="system"/>', ["LINT302"]), ('<gazebo reference="a"/>', ["URDF106"])],
+)
+def test_the_ros2_control_of_a_robot_may_stand_alone(told, part, codes):
+    assert told(robot(part, PREFIX), "LINT302", "URDF106", name="r.urdf.xacro") == codes
+
+
+@pytest.mark.parametrize(
+    ("address", "hint"),
+    [
+        ("file:///opt/ros/humble/share/arm/meshes/base.stl", "write 'package://arm/meshes/base.stl'"),
+        ("/opt/ros/humble/lib/base.stl", "write 'package://PACKAGE/PATH'"),
+    ],
+)
+def test_the_folder_of_a_distribution_is_told_of_once(tmp_path, address, hint):
+    path = tmp_path / "r.urdf"
+    mesh = f'<visual><geometry><mesh filename="{address}"/></geometry></visual>'
+    path.write_text(robot(f'<link name="a">{mesh}</link>'))
+    (found,) = examine(path, settings=Settings(select=("LW422", "LW424"))).diagnostics
+    assert (found.code, str(found.hint)) == ("LW422", hint)
+
+
+@pytest.mark.parametrize(
+    ("file", "launch", "severity"),
+    [
+        ("a.yaml", "config/a.yaml", "WARNING"),
+        ("a.yaml", "", "INFO"),
+        ("a.launch.yaml", "", "WARNING"),
+        ("a.urdf", "", "WARNING"),
+    ],
+)
+def test_settings_that_no_launch_file_reads_are_not_missed(tmp_path, file, launch, severity):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    (tmp_path / "CMakeLists.txt").write_text(
+        "project(p)\nfind_package(ament_cmake REQUIRED)\n"
+        "install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})\nament_package()\n"
+    )
+    for folder in ("config", "launch"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "config" / file).write_text("a: 1\n")
+    (tmp_path / "launch/p.launch.py").write_text(
+        "import os\nfrom ament_index_python.packages import get_package_share_directory\n\n\n"
+        "def generate_launch_description():\n"
+        f"    os.path.join(get_package_share_directory('p'), {launch!r})\n"
+    )
+    found = examine_package(tmp_path, Settings(select=("LW822",))).diagnostics
+    assert [each.severity.name for each in found] == [severity]
+
+
 @pytest.mark.parametrize("big", ["a", "b"])
 def test_of_two_parts_that_are_not_connected_one_is_told(told, big):
     text = robot(f'<link name="a"/><link name="b"/>{moving("c", "", parent=big)}')

@@ -104,6 +104,13 @@ def test_a_file_address_without_a_root_is_below_the_search_path(tmp_path):
     assert isinstance(finder.file("file://models/box/meshes/no.stl", mesh.parents[1]), Missing)
 
 
+@pytest.mark.parametrize(("address", "severity"), [("media/models/walk.dae", "INFO"), ("meshes/walk.dae", "WARNING")])
+def test_what_gazebo_classic_brings_along_is_likely_to_be_there(tmp_path, address, severity):
+    found = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {}).file(f"file://{address}", tmp_path)
+    assert isinstance(found, Missing)
+    assert found.severity.name == severity
+
+
 def test_the_newest_file_that_can_be_read_is_taken(tmp_path):
     config = "<model>{}</model>".format(
         "".join(f'<sdf version="{each}">{each}.sdf</sdf>' for each in ("1.4", "1.12", "1.99", "1.5"))

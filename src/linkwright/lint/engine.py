@@ -171,7 +171,7 @@ def _of_library(subject: Subject) -> Iterator[Diagnostic]:
     whole = subject.root.span()
     yield from (each for each in described.reading.diagnostics if each.code in TRUE_OF_PARTS and each.span != whole)
     hint = phrase("check the file that includes it")
-    message = phrase("this file only defines macros, properties or materials and is no robot by itself")
+    message = phrase("this file holds parts for others to include and is no robot by itself")
     yield Diagnostic("LINT302", message, subject.root.span(), Severity.INFO, hint=hint, source=subject.root.source)
 
 

@@ -67,6 +67,9 @@ class Subject:
         tags = {element.tag for element in main.root.elements()}
         if tags and tags <= _DEFINITIONS:
             return True
+        made = {element.tag for element in self.elements()}
+        if "ros2_control" in made and made.isdisjoint(("link", "joint")):
+            return True
         makes_link = next(self.elements("link"), None) is not None
         return "xacro:macro" in tags and not ("name" in self.root.attributes and makes_link)
 

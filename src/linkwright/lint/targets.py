@@ -122,7 +122,8 @@ def _is_part(path: Path) -> bool:
     if root.tag != "robot":
         return root.tag in _PARTS
     is_empty = next(root.elements(), None) is None
-    return not _has_content(root) and (not is_empty or _EXPANDED in _text(path))
+    is_named = "name" in root.attributes
+    return not _has_content(root) and not (is_empty and is_named and _EXPANDED not in _text(path))
 
 
 def _included_names(text: str) -> Iterator[str]:

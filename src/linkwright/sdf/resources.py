@@ -40,6 +40,8 @@ _HOOKED = re.compile(
     r"(?:;|\s+[\"']?\$\{?(?:AMENT|COLCON)_CURRENT_PREFIX\}?/)share(?:/(?P<path>[^\s\"';:]*))?"
 )
 """``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"``."""
+_OF_GAZEBO = "media/"
+"""The folder of what Gazebo classic brings along, such as the walking people of its actors."""
 _BELOW = ("", "models", "media/models", "Media/models")
 """Where in a folder of the search path Gazebo classic looks for ``file://PATH`` (its ``SystemPaths``)."""
 _SCHEMES = ("model", "package", "file")
@@ -201,7 +203,8 @@ class ResourceFinder:
         )
         if cased is not None:
             hint = phrase("did you mean {names}?", names=quoted(cased.name))
-        return Missing(phrase("there is no '{path}' on the search path", path=address), hint)
+        severity = Severity.INFO if path.startswith(_OF_GAZEBO) and cased is None else Severity.WARNING
+        return Missing(phrase("there is no '{path}' on the search path", path=address), hint, severity)
 
     def _in_folders(self, address: str, path: str, beside: Path) -> Path | Missing:
         if not path:

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 _WORLD = frozenset(("world", "map", "odom"))
 """Links that are the surroundings: what is fixed to them does not move."""
 
+_FAR = 20.0
+"""In m; of what lies farther away, LW405 says that."""
+
 
 class MissingCollision(Rule):
     """A moving part that is seen but has no collision shape, while the other parts have.
@@ -152,7 +155,7 @@ class CollisionApart(Rule):
             if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:
                 continue
             gap = seen.gap(felt)
-            is_apart = gap > 0.25 * min(seen.diagonal, felt.diagonal) and gap > 1e-3
+            is_apart = _FAR > gap > max(0.25 * min(seen.diagonal, felt.diagonal), 1e-3)
             if is_apart and not _is_moved_to_a_child(subject, link, felt):
                 yield self.report(
                     phrase(

@@ -16,7 +16,10 @@ from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range
 
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):")
-HOME = re.compile(r"(?:file://(?:localhost)?)?(/home/[^/]+|/Users/[^/]+|/root|[A-Za-z]:[\\/]Users[\\/][^\\/]+)[\\/]")
+HOME = re.compile(
+    r"(?:file://(?:localhost)?)?(/home/[^/]+|/Users/[^/]+|/root|[A-Za-z]:[\\/]Users[\\/][^\\/]+|/opt/ros/[^/]+)[\\/]"
+)
+_INSTALLED = re.compile(r".*?/opt/ros/[^/]+/share/(.+)")
 KNOWN = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx", ".3ds", ".mesh")
 """What RViz reads."""
 
@@ -117,12 +120,12 @@ class RelativePath(Rule):
 
 
 class HomePath(Rule):
-    """A mesh address with the home folder of one computer in it.
+    """A mesh address with a folder of one computer or of one ROS distribution in it.
 
     ## Why
 
-    On every other computer, and in every container, there is no such folder. Only what is written in the file counts:
-    `file://$(find PACKAGE)/...` is found wherever the package is.
+    On every other computer, and in every container, there is no such folder, or another one. Only what is written in
+    the file counts: `file://$(find PACKAGE)/...` is found wherever the package is.
 
     ## Example
 
@@ -146,9 +149,16 @@ class HomePath(Rule):
             home = HOME.match(written(use.element, "filename"))
             if home is not None:
                 path = subject.meshes.path(use)
-                better = _as_package_uri(path) or _in_known_package(subject, path)
+                installed = _INSTALLED.fullmatch(use.mesh.filename)
+                better = f"package://{installed[1]}" if installed else _as_package_uri(path)
+                better = better or _in_known_package(subject, path)
+                message = (
+                    phrase("the mesh address holds the folder of one ROS distribution, '{home}'", home=home[1])
+                    if installed
+                    else phrase("the mesh address holds a folder of one computer, '{home}'", home=home[1])
+                )
                 yield self.report(
-                    phrase("the mesh address holds a folder of one computer, '{home}'", home=home[1]),
+                    message,
                     use.element,
                     "filename",
                     hint=phrase("write '{better}'", better=better or "package://PACKAGE/PATH"),

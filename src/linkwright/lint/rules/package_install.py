@@ -7,7 +7,7 @@ rules about what is missing say nothing.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
@@ -30,6 +30,7 @@ _USUAL = frozenset(
     }
 )
 """What the folders are called whose files belong to what is installed; others may hold templates or sources."""
+_SETTINGS = re.compile(r"(?<!\.launch)\.(rviz|yaml)$", re.IGNORECASE)
 _NOT_SHARED = re.compile(r"(^|/)(test|tests|docs?|scripts?|\w*_py|src|include|resource|ci|docker)(/|$)")
 
 
@@ -94,7 +95,8 @@ class FolderNotInstalled(PackageRule):
 
     ROS looks in the share folder of the installed package, not in the sources. What is not installed is not there when
     the launch file or the description asks for it. Folders with names of their own count where a launch file of the
-    package looks for a file in them.
+    package looks for a file in them. A folder of YAML and RViz files that no launch file of the package reads is an
+    information.
 
     ## Example
 
@@ -143,7 +145,8 @@ class FolderNotInstalled(PackageRule):
             hint = phrase(
                 "add ('share/{name}/{folder}', glob('{folder}/*')) to data_files", name=package.name, folder=folder
             )
-            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint)
+            severity = self._severity(package, [folder, *others])
+            yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint, severity=severity)
 
     def _by_cmake(self, package: PackageContext, cmake: CMakeFile) -> Iterator[Diagnostic]:
         if not cmake.is_complete or cmake.foreign or not cmake.is_ament:
@@ -159,7 +162,15 @@ class FolderNotInstalled(PackageRule):
             message = phrase("CMakeLists.txt does not install the folder '{folder}'", folder=folder)
             hint = phrase("add install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})", folder=folder)
             span = cmake.span(cmake.project) if cmake.project else None
-            yield self.report(message, span=span, source=cmake.source, hint=hint)
+            severity = self._severity(package, [folder])
+            yield self.report(message, span=span, source=cmake.source, hint=hint, severity=severity)
+
+    def _severity(self, package: PackageContext, folders: Iterable[str]) -> Severity:
+        """An information for settings that no launch file of the package reads."""
+        inside = tuple(f"{folder}/" for folder in folders)
+        held = [file for file in package.files if file.startswith(inside) and _is_shared(file)]
+        is_unread = not any(path.startswith(inside) for path in _asked(package))
+        return Severity.INFO if is_unread and all(map(_SETTINGS.search, held)) else self.severity
 
 
 class FileNotInstalled(PackageRule):
@@ -271,12 +282,17 @@ def shared_folders(package: PackageContext) -> list[str]:
 
 def _left_out(package: PackageContext, is_installed: Callable[[str], bool]) -> list[str]:
     """Return the folders that are not installed although they are usual ones, or a launch file looks into them."""
-    asked = {shared.path for file in package.launch_files.values() for shared in file.paths}
+    asked = _asked(package)
     return [
         folder
         for folder in shared_folders(package)
         if not is_installed(folder) and (_top(folder) in _USUAL or any(path.startswith(f"{folder}/") for path in asked))
     ]
+
+
+def _asked(package: PackageContext) -> set[str]:
+    """The paths in share folders that the package's launch files name."""
+    return {shared.path for file in package.launch_files.values() for shared in file.paths}
 
 
 def _top(folder: str) -> str:

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from math import isclose, pi
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, Phrase, phrase
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
 from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rules.xacro_rule import XacroRule
@@ -157,6 +157,7 @@ class UnusedMacro(XacroRule):
 
     code = "LW703"
     name = "unused-macro"
+    severity = Severity.INFO
     needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
@@ -194,6 +195,7 @@ class UnusedInclude(XacroRule):
 
     code = "LW704"
     name = "unused-include"
+    severity = Severity.INFO
     needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:

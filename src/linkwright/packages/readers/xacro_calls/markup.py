@@ -151,7 +151,7 @@ def _substituted(inside: str, file: str) -> Text:
         return literal(rest)
     if tag in ("env", "optenv"):
         default = rest.partition(" ")[2]
-        return markup_text(default.strip(), file) if default or tag == "optenv" else (UNKNOWN,)
+        return markup_text(default.strip(), file) if default else (UNKNOWN,)
     return (UNKNOWN,)
 
 
