@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from xml.etree import ElementTree as ET
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.plain import PlainMesh, Unusual, fans, numbers
@@ -179,7 +180,7 @@ class _File:
         width = max(offset for _, _, offset in inputs) + 1
         texts = [numbers(each.text, np.int64).reshape(-1, width) for each in self._all(part, "p")]
         if tag == "triangles" and len(texts) == 1:
-            counts = np.full(len(texts[0]) // 3, 3)
+            counts: NDArray[np.int64] = np.full(len(texts[0]) // 3, 3, np.int64)
         elif tag == "polylist" and len(texts) == 1:
             counts = numbers(self._only(part, "vcount").text, np.int64)
         elif tag == "polygons" and texts and not self._all(part, "ph"):
