@@ -8,7 +8,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -214,7 +214,7 @@ def _of_a_folder(said: Iterable[Diagnostic], *, is_aside: bool) -> Iterator[Diag
     """The findings that matter where a file was not named: of tests and what is put aside, errors alone."""
     for each in said:
         if each.code == _GIVEN_BY_USERS:
-            yield replace(each, severity=Severity.INFO)
+            yield each.but(severity=Severity.INFO)
             continue
         is_info = each.severity is Severity.INFO
         if each.severity is Severity.ERROR or not (is_aside or (is_info and each.code in _OF_NAMED_FILES)):
@@ -247,7 +247,7 @@ def _add(found: _Found, more: Iterable[Diagnostic]) -> None:
     for diagnostic in more:
         key = (diagnostic.code, _place(diagnostic), diagnostic.message)
         if key not in found:
-            found[key] = replace(diagnostic, element=None) if isinstance(diagnostic, Finding) else diagnostic
+            found[key] = diagnostic.but(element=None) if isinstance(diagnostic, Finding) else diagnostic
 
 
 def _place(diagnostic: Diagnostic) -> Span | None:
@@ -255,7 +255,7 @@ def _place(diagnostic: Diagnostic) -> Span | None:
     span = diagnostic.span
     if span is None or diagnostic.code == _ONCE:
         return None
-    return replace(span, file=str(Path(span.file).resolve()))
+    return span._replace(file=str(Path(span.file).resolve()))
 
 
 def _examine(

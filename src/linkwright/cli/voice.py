@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -145,7 +144,7 @@ def run_enrol(arguments: argparse.Namespace) -> int:
     for file in arguments.files:
         place = Note(phrase("in '{path}'", path=file))
         found = enrol(words, arguments.word, read_wav(file))
-        wrong += [dataclasses.replace(each, notes=(*each.notes, place)) for each in found]
+        wrong += [each.but(notes=(*each.notes, place)) for each in found]
     if wrong:
         raise LinkwrightError(*wrong)
     _write(words, path)

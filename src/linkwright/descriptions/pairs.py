@@ -80,11 +80,11 @@ class Model:
         """A finding that names files of a commit as git does."""
         if self.revision is None:
             return diagnostic
-        notes = tuple(replace(note, span=self._span(note.span)) for note in diagnostic.notes)
-        return replace(diagnostic, span=self._span(diagnostic.span), notes=notes)
+        notes = tuple(note._replace(span=self._span(note.span)) for note in diagnostic.notes)
+        return diagnostic.but(span=self._span(diagnostic.span), notes=notes)
 
     def _span(self, span: Span | None) -> Span | None:
-        return None if span is None else replace(span, file=self.named(span.file))
+        return None if span is None else span._replace(file=self.named(span.file))
 
 
 @dataclass(frozen=True)

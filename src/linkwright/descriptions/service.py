@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Union
 
@@ -130,7 +129,7 @@ def _has_open_names(robot: Robot) -> bool:
 def _as_warning(error: Diagnostic) -> Diagnostic:
     """An error of the expansion in a file that is a robot for urdfdom as it stands."""
     note = Note(phrase("urdfdom reads the file without expanding it, and passes over what xacro would do"))
-    return replace(error, severity=Severity.WARNING, notes=(*error.notes, note))
+    return error.but(severity=Severity.WARNING, notes=(*error.notes, note))
 
 
 def is_xacro(name: str, root: Element) -> bool:

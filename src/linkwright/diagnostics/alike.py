@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note
 from linkwright.diagnostics.phrase import as_phrase, counted
@@ -32,4 +31,4 @@ def _together(group: list[Diagnostic]) -> Diagnostic:
     notes.append(
         Note(counted("and {count} more like it (--all shows it)", "and {count} more like it (--all shows them)", rest))
     )
-    return replace(first, notes=(*first.notes, *notes))
+    return first.but(notes=(*first.notes, *notes))

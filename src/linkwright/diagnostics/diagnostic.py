@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from linkwright.diagnostics.phrase import Phrase, joined
 from linkwright.diagnostics.source import SourceText, Span
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 
 class Severity(Enum):
@@ -18,17 +21,17 @@ class Severity(Enum):
     INFO = "info"
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
+class Note(NamedTuple):
     """One more fact about a diagnostic, with the place it holds at, such as a macro call on the way there."""
 
     message: Phrase
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding: a stable code, what is wrong, where, why, and how to put it right.
+    """One finding: a stable code, what is wrong, where, why, and how to put it right; to be read, and never changed.
+
+    Two that say the same are equal.
 
     Attributes:
         code: letters for the room and three digits, such as ``XAC101``; never reused for another meaning.
@@ -39,13 +42,48 @@ class Diagnostic:
         source: the text that the span is in, for an excerpt; None where it was not kept.
     """
 
-    code: str
-    message: Phrase
-    span: Span | None = None
-    severity: Severity = Severity.ERROR
-    notes: tuple[Note, ...] = ()
-    hint: Phrase | None = None
-    source: SourceText | None = None
+    __slots__ = ("code", "hint", "message", "notes", "severity", "source", "span")
+
+    def __init__(  # by hand: to import dataclasses takes as long as to expand a small file
+        self,
+        code: str,
+        message: Phrase,
+        span: Span | None = None,
+        severity: Severity = Severity.ERROR,
+        notes: tuple[Note, ...] = (),
+        hint: Phrase | None = None,
+        source: SourceText | None = None,
+    ) -> None:
+        self.code = code
+        self.message = message
+        self.span = span
+        self.severity = severity
+        self.notes = notes
+        self.hint = hint
+        self.source = source
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Diagnostic) and self._said() == other._said()
+
+    def __hash__(self) -> int:
+        return hash((self.code, self.message, self.span))
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._said().items())})"
+
+    def but(self, **changes: Any) -> Self:
+        """The same diagnostic with other values for some attributes.
+
+        Raises:
+            TypeError: for a name that is none of its attributes.
+        """
+        return type(self)(**{**self._all(), **changes})
+
+    def _said(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in Diagnostic.__slots__}
+
+    def _all(self) -> dict[str, Any]:
+        return self._said()
 
     @property
     def placed_message(self) -> Phrase:

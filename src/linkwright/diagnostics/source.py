@@ -7,11 +7,10 @@ only when somebody asks for a `Span`.
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class Span:
+class Span(NamedTuple):
     """A place in a file: lines and columns count from 1, columns count characters, the end is exclusive."""
 
     file: str

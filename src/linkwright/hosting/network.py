@@ -6,7 +6,6 @@ import asyncio
 import os
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, joined, phrase, translated
@@ -141,7 +140,7 @@ class SharedNames:
         hint = phrase(
             "give one of them another domain, as in ROS_DOMAIN_ID={other} linkwright launch ...", other=domain + 1
         )
-        return replace(Diagnostic("LAUNCH148", message, hint=hint), severity=Severity.WARNING)
+        return Diagnostic("LAUNCH148", message, hint=hint).but(severity=Severity.WARNING)
 
 
 def _listed(names: list[str]) -> Phrase:

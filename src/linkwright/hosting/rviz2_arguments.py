@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
@@ -99,4 +98,4 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
 
 
 def _remark(message: Phrase, hint: Phrase | None = None) -> Diagnostic:
-    return replace(Diagnostic("LAUNCH144", message, hint=hint), severity=Severity.WARNING)
+    return Diagnostic("LAUNCH144", message, hint=hint).but(severity=Severity.WARNING)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 
 from linkwright.assignments import parse_assignments
 from linkwright.diagnostics import (
@@ -78,9 +77,7 @@ def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagno
     """The error about a missing argument; its hint names the one that was given with nearly the same name."""
     near = nearest(name, undeclared, limit=1)
     return (
-        replace(error, hint=phrase("'{near}' is given: did you mean '{name}'?", near=near[0], name=name))
-        if near
-        else error
+        error.but(hint=phrase("'{near}' is given: did you mean '{name}'?", near=near[0], name=name)) if near else error
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -154,7 +154,7 @@ def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppression
                 raise ValueError(f"{rule.code} reported a finding of {diagnostic.code}")
             found.append(_with_trail(diagnostic))
     unread = subject.meshes.unread.diagnostics if subject.meshes.unread else ()
-    return [*_without_repetitions(found), *(replace(each, severity=Severity.INFO) for each in unread)]
+    return [*_without_repetitions(found), *(each.but(severity=Severity.INFO) for each in unread)]
 
 
 def _may_run(rule: Rule, subject: Subject) -> bool:
@@ -217,7 +217,7 @@ def as_set(diagnostics: Iterable[Diagnostic], settings: Settings) -> Iterator[Di
     for diagnostic in judged_files(judged(diagnostics)):
         if _is_wanted(diagnostic, settings):
             severity = settings.severity_of(diagnostic.code, diagnostic.severity)
-            yield diagnostic if severity is diagnostic.severity else replace(diagnostic, severity=severity)
+            yield diagnostic if severity is diagnostic.severity else diagnostic.but(severity=severity)
 
 
 def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
@@ -260,7 +260,7 @@ def _with_trail(diagnostic: Diagnostic) -> Diagnostic:
     from linkwright.xacro.origin import origin_of
 
     trail = origin_of(diagnostic.element).trail
-    return replace(diagnostic, notes=(*diagnostic.notes, *trail))
+    return diagnostic.but(notes=(*diagnostic.notes, *trail))
 
 
 def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
@@ -285,5 +285,5 @@ def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
                 count,
             )
         )
-        kept[index] = replace(kept[index], notes=(*kept[index].notes, note))
+        kept[index] = kept[index].but(notes=(*kept[index].notes, note))
     return kept

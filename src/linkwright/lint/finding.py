@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from typing import Any
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, SourceText, Span
 from linkwright.lint.fix import Fix
 from linkwright.xmltree import Element
 
 
-@dataclass(frozen=True, slots=True)
 class Finding(Diagnostic):
     """A diagnostic of a rule.
 
@@ -18,5 +17,23 @@ class Finding(Diagnostic):
         element: the element it is about; the engine adds the macro calls and includes that produced it.
     """
 
-    fix: Fix | None = None
-    element: Element | None = field(default=None, compare=False, repr=False)
+    __slots__ = ("element", "fix")
+
+    def __init__(
+        self,
+        code: str,
+        message: Phrase,
+        span: Span | None = None,
+        severity: Severity = Severity.ERROR,
+        notes: tuple[Note, ...] = (),
+        hint: Phrase | None = None,
+        source: SourceText | None = None,
+        fix: Fix | None = None,
+        element: Element | None = None,
+    ) -> None:
+        super().__init__(code, message, span, severity, notes, hint, source)
+        self.fix = fix
+        self.element = element
+
+    def _all(self) -> dict[str, Any]:
+        return {**self._said(), "fix": self.fix, "element": self.element}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
@@ -33,7 +32,7 @@ def _of_built(diagnostic: Diagnostic) -> Diagnostic | None:
     if package is None or not is_made_later(package, path.relative_to(package.folder).as_posix()):
         return None
     hint = phrase("the build or a program makes it; what needs it is left out until then")
-    return replace(diagnostic, severity=Severity.INFO, hint=hint)
+    return diagnostic.but(severity=Severity.INFO, hint=hint)
 
 
 def _of_package_folder(diagnostic: Diagnostic) -> Diagnostic | None:
@@ -45,7 +44,7 @@ def _of_package_folder(diagnostic: Diagnostic) -> Diagnostic | None:
         return None
     beside = Path(os.path.relpath(package.folder / written, folder)).as_posix()
     hint = phrase("xacro looks from the folder of this file: write '{path}'", path=beside)
-    return replace(diagnostic, severity=Severity.WARNING, hint=hint)
+    return diagnostic.but(severity=Severity.WARNING, hint=hint)
 
 
 def _path(diagnostic: Diagnostic) -> Path:

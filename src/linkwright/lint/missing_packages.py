@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
@@ -30,7 +29,7 @@ def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
             yield each
             continue
         hint = phrase("install '{name}', or check it together with this package; what needs it is left out", name=name)
-        yield replace(each, severity=Severity.WARNING, hint=hint)
+        yield each.but(severity=Severity.WARNING, hint=hint)
 
 
 def _beside(package: PackageContext) -> Iterator[PackageContext]:

@@ -84,7 +84,7 @@ def _with_others(first: Diagnostic, others: list[Diagnostic]) -> Diagnostic:
     if len(others) > _MOST_NOTES:
         notes += (Note(phrase("and {count} more", count=len(others) - _MOST_NOTES)),)
     message = phrase("{message} (and {count} more)", message=first.message, count=len(others))
-    return replace(first, message=message, notes=(*first.notes, *notes))
+    return first.but(message=message, notes=(*first.notes, *notes))
 
 
 def _steps(sdf: Sdf) -> Iterator[Diagnostic]:
@@ -155,7 +155,7 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
             )
             named = (each for each in element.walk() if each.tag in _ADDRESSES)
             place = next((each for each in named if each.text().strip() == geometry.uri), element)
-            yield replace(_warning("SDF162", message, place, found.hint), severity=found.severity)
+            yield _warning("SDF162", message, place, found.hint).but(severity=found.severity)
 
 
 def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
@@ -177,11 +177,11 @@ def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
         return
     if found.mass <= 0:
         finding = (_NEGATIVE_MASS if found.mass < 0 else _ZERO_MASS).finding(link.name, found)
-        yield replace(finding, hint=phrase("masses are in kg and positive"))
+        yield finding.but(hint=phrase("masses are in kg and positive"))
     flaw = flaw_of(found)
     if flaw is not None and flaw.kind in _FLAWS:
         hint = phrase("a solid box has m (a2 + b2) / 12 about each axis, with a and b its edges across the axis")
-        yield replace(_FLAWS[flaw.kind].finding(link.name, found, flaw), hint=hint)
+        yield _FLAWS[flaw.kind].finding(link.name, found, flaw).but(hint=hint)
 
 
 def _size(shape: Visual | Collision) -> Iterator[Diagnostic]:

@@ -191,7 +191,7 @@ class _Resolver:
         except LinkwrightError as error:
             found = error.diagnostics
         note = Note(phrase("included here"), include.element.span() if include.element else None)
-        self.diagnostics += [replace(each, notes=(*each.notes, note)) for each in found]
+        self.diagnostics += [each.but(notes=(*each.notes, note)) for each in found]
         self._readings[path] = reading
         return reading
 

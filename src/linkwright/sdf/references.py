@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, joined, phrase
 from linkwright.sdf.frames import FrameError, Frames
@@ -48,7 +47,7 @@ def _check(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
         )
         for part in parts:
             # libsdformat looks these up only when they are needed, and goes on without.
-            yield from (replace(each, severity=Severity.WARNING) for each in _pose(part.pose, part.element, frames))
+            yield from (each.but(severity=Severity.WARNING) for each in _pose(part.pose, part.element, frames))
     for joint in owner.joints:
         yield from _joint(joint, frames)
     yield from _circles((*owner.frames, *links, *owner.joints, *owner.models), frames)

@@ -6,7 +6,6 @@ Blanks and comments before the XML declaration and bytes that are not UTF-8 do n
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, phrase
 from linkwright.xmltree import Document
@@ -44,9 +43,9 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
         if found.code != _EMPTY:
             raise
         hint = phrase('a world begins with <sdf version="...">; was the file saved?')
-        raise LinkwrightError(replace(found, hint=hint)) from None
+        raise LinkwrightError(found.but(hint=hint)) from None
     told = (*warnings, *more)
-    return document, tuple(replace(each, severity=Severity.INFO) if each.code == _NOT_XML else each for each in told)
+    return document, tuple(each.but(severity=Severity.INFO) if each.code == _NOT_XML else each for each in told)
 
 
 def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
@@ -58,4 +57,4 @@ def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
         if found.code != _NOT_TEXT or b"\0" in data:
             raise
         hint = phrase("it is read as Latin-1; save the file as UTF-8")
-        return data.decode("latin-1"), [replace(found, severity=Severity.WARNING, hint=hint)]
+        return data.decode("latin-1"), [found.but(severity=Severity.WARNING, hint=hint)]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase, term
 from linkwright.schema.rules import Version
@@ -90,7 +89,7 @@ class Findings:
         """Add a note to a finding, the latest one that is equal."""
         for index in range(len(self._found) - 1, -1, -1):
             if self._found[index] == finding:
-                self._found[index] = replace(finding, notes=(*finding.notes, note))
+                self._found[index] = finding.but(notes=(*finding.notes, note))
                 return
 
     def in_order(self) -> tuple[Diagnostic, ...]:

@@ -9,16 +9,15 @@ import sys
 from _thread import allocate_lock  # what threading.Lock is, without the rest of it
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from time import thread_time
+from typing import NamedTuple
 
 from linkwright.diagnostics import phrase
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree.collection import seldom_collected
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
+class Limits(NamedTuple):
     """Bounds of one expansion; the defaults are far above what any real robot needs.
 
     Attributes:

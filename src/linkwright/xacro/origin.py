@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import groupby
+from typing import NamedTuple
 
 from linkwright.diagnostics import Note, Span, phrase
 from linkwright.xmltree import Element
@@ -40,8 +40,7 @@ class Frame:
         return Note(what, self.site.span())
 
 
-@dataclass(frozen=True, slots=True)
-class Origin:
+class Origin(NamedTuple):
     """Where an element of an expansion comes from.
 
     Attributes:

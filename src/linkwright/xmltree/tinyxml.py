@@ -9,7 +9,6 @@ after the first. Such files work for their users, so they are read, with a warni
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import NamedTuple
 from xml.parsers.expat import ExpatError, ParserCreate
 from xml.parsers.expat.errors import XML_ERROR_TAG_MISMATCH, codes
@@ -128,13 +127,13 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
         found = error.diagnostics[0]
         if found.code == _UNDECLARED:
             document = parse(source.text, source.name, blanks=False, read_as=read_as, any_prefix=True)
-            return document, (replace(found, severity=Severity.WARNING),)
+            return document, (found.but(severity=Severity.WARNING),)
         end = _end_of_root(found, read_as)
         if end is not None and _is_passed_over(read_as[end:]):
             told, read_as = _passed_over(source, end, readers), read_as[:end] + blanked(read_as[end:])
         else:
             told, read_as = (
-                replace(found, severity=Severity.WARNING, notes=(Note(readers),)),
+                found.but(severity=Severity.WARNING, notes=(Note(readers),)),
                 _repaired(source, error, read_as),
             )
         try:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note
 from linkwright.diagnostics.phrase import Phrase, Wording, term
@@ -35,8 +34,7 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
     if lang == "en":
         return diagnostic
     words = wording(lang)
-    return replace(
-        diagnostic,
+    return diagnostic.but(
         message=_said(diagnostic.message, words),
         notes=tuple(Note(_said(note.message, words), note.span) for note in diagnostic.notes),
         hint=_said(diagnostic.hint, words) if diagnostic.hint else diagnostic.hint,

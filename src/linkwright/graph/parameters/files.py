@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -196,7 +195,7 @@ class _Reader:
         except _NestedListError as error:
             (finding,) = error.diagnostics
             note = Note(phrase("the parameter is left out"))
-            warning = replace(finding, severity=Severity.WARNING, notes=(note,))
+            warning = finding.but(severity=Severity.WARNING, notes=(note,))
             self._rules.left_out.append((pattern, warning))
             self._pass_rest_of_list()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, foreign, phrase
@@ -64,7 +63,7 @@ class Omissions:
         if self._command is None or not _is_missing(error):
             return error.diagnostics
         note = Note(phrase("to run what can run without it: {command}", command=foreign(self._command)))
-        return (*others, replace(last, notes=(*last.notes, note)))
+        return (*others, last.but(notes=(*last.notes, note)))
 
 
 def note_that_nothing_is_left(error: LinkwrightError) -> None:
@@ -72,7 +71,7 @@ def note_that_nothing_is_left(error: LinkwrightError) -> None:
     *others, last = error.diagnostics
     if _is_missing(error) and last.span is not None:
         note = Note(phrase("the launch file itself needs it: without it there are no parts that could be left out"))
-        error.diagnostics = (*others, replace(last, notes=(*last.notes, note)))
+        error.diagnostics = (*others, last.but(notes=(*last.notes, note)))
 
 
 def _is_missing(error: LinkwrightError) -> bool:

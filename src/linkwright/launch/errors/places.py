@@ -8,7 +8,7 @@ import sys
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from types import CodeType, FrameType
@@ -194,7 +194,7 @@ def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
         return error
     source = place.source()
     span = place.span(source)
-    error.diagnostics = tuple(replace(each, span=span, source=source) for each in error.diagnostics)
+    error.diagnostics = tuple(each.but(span=span, source=source) for each in error.diagnostics)
     return error
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -154,7 +153,7 @@ class IncludeLaunchDescription(Action):
         if self.place is not None and self._source.location_path is not None:
             note = Note(phrase("included from here"), self.place.span(self.place.source()))
             error.diagnostics = tuple(
-                each if note in each.notes else replace(each, notes=(*each.notes, note)) for each in error.diagnostics
+                each if note in each.notes else each.but(notes=(*each.notes, note)) for each in error.diagnostics
             )
         return error
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -298,7 +297,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
 def _warn_without_model(error: LookupError) -> None:
     message = phrase("MoveIt's parameters have no URDF; it is taken from the topic /robot_description")
     for found in getattr(error, "diagnostics", ()):
-        warning = replace(found, severity=Severity.WARNING, notes=(*found.notes, Note(message)))
+        warning = found.but(severity=Severity.WARNING, notes=(*found.notes, Note(message)))
         print_diagnostics([warning], sys.stderr)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -315,7 +314,7 @@ class MeshLibrary:
         self._told.add(found.message)
         span = element.span() if element is not None else None
         source = element.source if element is not None else None
-        self.diagnostics.append(replace(found, span=span, source=source))
+        self.diagnostics.append(found.but(span=span, source=source))
 
 
 def _bounded(path: Path, count: int) -> None:
