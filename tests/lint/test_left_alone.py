@@ -500,6 +500,33 @@ def test_settings_that_no_launch_file_reads_are_not_missed(tmp_path, file, launc
     assert [each.severity.name for each in found] == [severity]
 
 
+@pytest.mark.parametrize(
+    ("data", "codes"),
+    [
+        ("(os.path.join('lib', name), [name + '/driver.py'])", []),
+        ("('lib/p', ['p/driver.py'])", []),
+        ("('share/p', ['p/driver.py'])", ["LW844"]),
+    ],
+)
+def test_a_program_that_setup_py_copies_is_an_executable(tmp_path, data, codes):
+    (tmp_path / "package.xml").write_text(
+        MANIFEST.format(more="<export><build_type>ament_python</build_type></export>")
+    )
+    (tmp_path / "setup.py").write_text(
+        "import os\nfrom setuptools import setup\n\nname = 'p'\n"
+        f"setup(name=name, packages=[name], data_files=[{data}], entry_points={{'console_scripts': []}})\n"
+    )
+    for folder in ("p", "launch"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "p/driver.py").write_text("")
+    (tmp_path / "launch/p.launch.py").write_text(
+        "from launch_ros.actions import Node\n\n\n"
+        "def generate_launch_description():\n    Node(package='p', executable='driver.py')\n"
+    )
+    found = examine_package(tmp_path, Settings(select=("LW844",))).diagnostics
+    assert [each.code for each in found] == codes
+
+
 @pytest.mark.parametrize("big", ["a", "b"])
 def test_of_two_parts_that_are_not_connected_one_is_told(told, big):
     text = robot(f'<link name="a"/><link name="b"/>{moving("c", "", parent=big)}')

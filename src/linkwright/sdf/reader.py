@@ -26,6 +26,7 @@ _FRAME = "frame"
 """The frame that everything with a pose could have in SDF 1.5 and 1.6."""
 _VERSION = re.compile(r"1\.([0-9]{1,2})").fullmatch
 _NEWEST_FLAT_MINOR = 7
+_NEWEST_LENIENT_MINOR = 6
 _DEEPEST = 200
 """Elements in elements; a model of ten models in each other has twenty."""
 _NAMED = frozenset({"world", "model", "link", "joint", "frame", "light", "actor"})
@@ -128,6 +129,7 @@ def read(document: Document) -> Reading:
         _explain_root(root, report)
         return Reading(None, report.in_order())
     _check_version(root, report)
+    report.is_of_classic = _minor(root) <= _NEWEST_LENIENT_MINOR
     if is_too_deep(root, report):
         return Reading(None, report.in_order())
     sdf: Sdf = read_element(upgraded(root, SDF) if is_old(root) else root, SDF, report)
@@ -217,8 +219,13 @@ def _is_let_be(element: Element, rule: ElementRule) -> bool:
 
 def _is_flat(root: Element) -> bool:
     """Whether names may contain '::': up to SDF 1.7, where included models became part of the including one."""
+    return _minor(root) <= _NEWEST_FLAT_MINOR
+
+
+def _minor(root: Element) -> int:
+    """The number behind the point of a file's version; of one that is not known, that of the newest."""
     found = _VERSION(root.attributes.get("version", "").strip())
-    return found is not None and int(found[1]) <= _NEWEST_FLAT_MINOR
+    return NEWEST[1] if found is None else int(found[1])
 
 
 def _check_names(element: Element, report: SdfReport, *, flat: bool) -> None:

@@ -30,10 +30,12 @@ def described(element: Element) -> Phrase:
 class SdfReport(Findings):
     """Collects the findings of one reading, and words the mistakes that the reader of elements meets."""
 
-    __slots__ = ("_misspelt",)
+    __slots__ = ("_misspelt", "is_of_classic")
 
     def __init__(self) -> None:
         super().__init__(NEWEST)
+        self.is_of_classic = False
+        """Whether the file is of a version before 1.7, for Gazebo classic, which takes more than newer libsdformat."""
         self._misspelt: list[Element] = []
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
@@ -66,6 +68,10 @@ class SdfReport(Findings):
         if taken is not None and isfinite(taken):
             self.warning("SDF121", message, element, None if inside else attribute.name, hint=hint)
             return int(taken) if attribute.type is INTEGER else taken
+        if self.is_of_classic and attribute.type in COUNTS and (filled := _filled(text, COUNTS[attribute.type])):
+            note = Note(phrase("Gazebo classic reads missing numbers as 0; newer Gazebo refuses the file"))
+            self.warning("SDF121", message, element, None if inside else attribute.name, notes=(note,), hint=hint)
+            return attribute.type.read(filled)
         self.error("SDF121", message, element, None if inside else attribute.name, hint=hint)
         return UNREADABLE
 
@@ -160,7 +166,18 @@ class SdfReport(Findings):
             message = phrase(
                 "{kind} '{name}' is defined twice", kind=term(kind), name=element.attributes.get("name", "")
             )
-        self.error("SDF110", message, element, "name", notes=notes, hint=phrase("give each a name of its own"))
+        is_taken = self.is_of_classic and {element.tag, first.tag} == {"link", "joint"}  # libsdformat's Model::Load
+        severity = Severity.WARNING if is_taken else Severity.ERROR
+        self._add(severity, "SDF110", message, element, "name", phrase("give each a name of its own"), notes)
+
+
+def _filled(text: str, count: int) -> str:
+    """Numbers with 0 for those that are missing; empty where it is not numbers that are missing."""
+    try:
+        found = numbers(text)
+    except ValueError:
+        return ""
+    return f"{text} {'0 ' * (count - len(found))}" if 0 < len(found) < count else ""
 
 
 def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Phrase:

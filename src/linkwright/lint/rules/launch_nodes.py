@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
@@ -257,7 +258,9 @@ def _own_executables(package: PackageContext) -> frozenset[str] | None:
         or "scripts=" in setup.source.text
     ):
         return None
-    return frozenset(entry.executable for entry in setup.entry_points)
+    folder = f"lib/{package.name}/"
+    copied = [file.destination for file in setup.installed_files(package.folder) if file.destination.startswith(folder)]
+    return frozenset((*(entry.executable for entry in setup.entry_points), *(Path(each).stem for each in copied)))
 
 
 def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
