@@ -61,7 +61,7 @@ def quaternion_from_rpy(rpy: Vector3) -> Quaternion:
 
 def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
     """Roll, pitch, yaw as urdfdom gives them; within 0.26 degrees of pitch = +-90 degrees roll is 0."""
-    x, y, z, w = (part + 0.0 for part in quaternion)  # no -0, for which half a turn would be one the other way
+    x, y, z, w = quaternion
     sin_pitch = -2 * (x * z - w * y)
     if sin_pitch <= -_GIMBAL_LOCK:
         return 0.0, -pi / 2, 2 * atan2(x, -y)
