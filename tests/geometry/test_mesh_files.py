@@ -46,3 +46,21 @@ def test_collada_keeps_what_wears_a_material_that_cannot_be_read(materials: str)
     worn = plain.replace('"n"', '"worn"').replace('"#g"/>', '"#g">' + bound)
     text = COLLADA.replace(plain, plain + worn).replace("<library_visual", materials + "<library_visual", 1)
     assert len(placed_meshes(text.encode(), "dae")) == 2
+
+
+@pytest.mark.parametrize(
+    ("proper", "loose"),
+    [
+        ('<node id="n"', '<node id="<STL_BINARY>" name="n"'),
+        ("<asset>", "<asset><!-- made -- by hand -->"),
+        ("<asset>", '<asset><contributor><author a="1"b="2">R&D</author></contributor>'),
+    ],
+    ids=["< in a value", "hyphens in a comment", "no blank between attributes, and &"],
+)
+@pytest.mark.parametrize("is_plain", [True, False])
+def test_collada_is_read_as_loosely_as_gazebo_reads_it(proper: str, loose: str, is_plain: bool) -> None:
+    assert proper in COLLADA
+    (expected,) = placed_meshes(COLLADA.encode(), "dae", is_plain=is_plain)
+    (found,) = placed_meshes(COLLADA.replace(proper, loose).encode(), "dae", is_plain=is_plain)
+    assert found.faces.tolist() == expected.faces.tolist()
+    assert found.mesh.vertices.tolist() == expected.mesh.vertices.tolist()

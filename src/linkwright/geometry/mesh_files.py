@@ -13,12 +13,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import Phrase, foreign, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.collada import read_collada
 from linkwright.geometry.mesh_faults import fault_in
 from linkwright.geometry.stl import read_stl
 from linkwright.geometry.wavefront import read_obj
+from linkwright.xmltree import Comment, write_element
+from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.tinyxml import parse_as_tinyxml
 
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
 """The formats that are read, as RViz and Gazebo read them."""
@@ -86,6 +89,9 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
     except ModuleNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - a parser of foreign bytes may raise anything
+        mended = _well_formed(data) if kind == "dae" else None
+        if mended is not None:
+            return placed_meshes(mended, kind, is_plain=is_plain, **options)
         raise BadMeshError(fault_in(data, kind) or said_by_parser(error)) from None
     if not found:
         raise BadMeshError(fault_in(data, kind) or phrase("it has no triangles"))
@@ -167,6 +173,22 @@ def _collada_scene(data: bytes, **options: Any) -> Any:
         return _scene(data, "dae", ignore_broken=False, **options)
     except DaeError:
         return _scene(_without_broken_materials(data), "dae", ignore_broken=True, **options)
+
+
+def _well_formed(data: bytes) -> bytes | None:
+    """A COLLADA file as XML where it has what XML forbids and Gazebo and RViz read all the same; None for others.
+
+    Exporters write such files: assimp names the nodes of an STL ``<STL_BINARY>``.
+    """
+    try:
+        document, forgiven = parse_as_tinyxml(decode(data, "<mesh>"), "<mesh>", foreign(""))
+    except LinkwrightError:
+        return None
+    if not forgiven:
+        return None
+    for element in document.root.walk():
+        element.children = [each for each in element.children if not isinstance(each, Comment)]
+    return write_element(document.root).encode()
 
 
 def _without_broken_materials(data: bytes) -> bytes:
