@@ -313,6 +313,31 @@ def test_a_model_of_another_name_is_no_misspelling(tmp_path, name):
     assert sun.severity.name == "INFO"
 
 
+@pytest.mark.parametrize(
+    ("address", "found"),
+    [
+        ("model://worlds/yard/shed.sdf", "arena/worlds/yard/shed.sdf"),
+        ("model://models/hut/meshes/hut.stl", "arena/sim/models/hut/meshes/hut.stl"),
+        ("model://hut", "arena/sim/models/hut"),
+        ("model://tent", "arena/tent"),
+        ("model://worlds", None),
+    ],
+)
+def test_a_model_is_found_from_every_folder_of_the_package_around_a_file(tmp_path, address, found):
+    """Launch files put one of these folders into the variables of Gazebo."""
+    files = ["worlds/yard/shed.sdf", "sim/models/hut/model.sdf", "sim/models/hut/meshes/hut.stl", "tent/model.sdf"]
+    write(
+        tmp_path,
+        {
+            "arena/package.xml": "<package><name>arena</name></package>",
+            **{f"arena/{file}": BOX for file in files},
+        },
+    )
+    finder = ResourceFinder(PackageFinder(start=tmp_path / "arena/tent", environment={}), {})
+    place = finder.file(address, tmp_path / "arena/sim/models/hut/config")
+    assert (None if isinstance(place, Missing) else place.relative_to(tmp_path).as_posix()) == found
+
+
 def test_a_misspelt_model_is_a_warning(tmp_path):
     write(tmp_path, {"crate/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})

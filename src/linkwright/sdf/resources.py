@@ -13,7 +13,7 @@ from urllib.parse import unquote, urlsplit
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Severity, did_you_mean, joined, phrase, quoted
 from linkwright.diagnostics.misspellings import misspelling_of
-from linkwright.packages import PackageFinder
+from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.finder import shipped_folder
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
@@ -79,7 +79,8 @@ class ResourceFinder:
     3. the folders that hold packages, so that ``model://PACKAGE/PATH`` works as in gz,
     4. the folder ``models`` of each package,
     5. our own: ``ground_plane`` and ``sun``,
-    6. the folder of the file that names it and the one around that, and ``models`` in both.
+    6. the folder of the file that names it and those around it, up to that of its package, and ``models`` in each:
+       launch files put one of these into the variables.
 
     ``file://PATH`` without a third slash is below one of these, or below the folder around one, as in Gazebo classic,
     or in ``models``, ``media/models`` or ``Media/models`` there.
@@ -94,6 +95,7 @@ class ResourceFinder:
     def __init__(self, packages: PackageFinder, environment: Mapping[str, str] | None = None) -> None:
         self._packages = packages
         self._environment = os.environ if environment is None else environment
+        self._near: dict[Path, tuple[Path, ...]] = {}
 
     def file(self, address: str, beside: Path) -> Path | Missing:
         """The existing file or folder of a URI, or why there is none.
@@ -133,7 +135,7 @@ class ResourceFinder:
         for folder in self._folders:
             with suppress(OSError):
                 for place in sorted(folder.iterdir()):
-                    if (place / CONFIG).is_file() or (place / _MODEL_FILE).is_file():
+                    if _is_model(place):
                         found.setdefault(place.name, place)
         return found
 
@@ -209,16 +211,19 @@ class ResourceFinder:
     def _in_folders(self, address: str, path: str, beside: Path) -> Path | Missing:
         if not path:
             return Missing(phrase("'{uri}' names no model", uri=address), phrase("write model://MODEL"))
-        near = (beside, beside.absolute().parent)
-        for folder in (*self._folders, *near, *(each / "models" for each in near)):
-            if (folder / path).exists():
-                return folder / path
+        if beside not in self._near:
+            self._near[beside] = _around(beside.absolute())
+        near = self._near[beside]
+        for folder in (*self._folders, *near[:2], *(each / "models" for each in near), *near[2:]):
+            found = folder / path
+            if found.exists() and (folder not in near[2:] or "/" in path or _is_model(found)):
+                return found
         name, _, rest = path.partition("/")
         for folder in self._folders:
             if (folder / name).is_dir() and (_is_ours(beside) or not _is_ours(folder)):
                 return _no_file(folder / path)
         reason = phrase("there is no model '{name}' on the search path", name=name)
-        renamed = next((each for each in near if rest and (each / rest).exists()), None)
+        renamed = next((each for each in near[:2] if rest and (each / rest).exists()), None)
         if renamed is not None:
             here = renamed.absolute().name
             return Missing(reason, phrase("the folder that holds '{path}' is called '{name}'", path=rest, name=here))
@@ -256,6 +261,18 @@ class ResourceFinder:
             yield Path(given)
         home = Path(self._environment.get("HOME") or Path.home())
         yield from (home / ".gz" / "fuel", home / ".ignition" / "fuel")
+
+
+def _is_model(folder: Path) -> bool:
+    return (folder / CONFIG).is_file() or (folder / _MODEL_FILE).is_file()
+
+
+def _around(folder: Path) -> tuple[Path, ...]:
+    """A folder and those around it: up to the one of its package, or one more where it lies in none."""
+    package = enclosing_package(folder)
+    around = (folder, *folder.parents)
+    last = 1 if package is None else max(1, around.index(package[1]))
+    return around[: last + 1]
 
 
 def model_file(folder: Path) -> Path | Missing:
