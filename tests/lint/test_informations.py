@@ -128,3 +128,44 @@ def test_a_colour_that_nobody_tells_from_the_first_of_its_name_is_an_information
     grey = '<visual>{}<material name="grey"><color rgba="{}"/></material></visual>'
     visuals = "".join(grey.format(BOX, colour) for colour in ("0.7 0.7 0.7 1", second))
     assert severity_of("LW501", moving("3").replace("<inertial>", visuals + "<inertial>")) == severity
+
+
+@pytest.mark.parametrize(("kind", "severity"), [("fixed", "INFO"), ("continuous", "WARNING")])
+def test_a_description_of_frames_alone_needs_no_shapes(severity_of, kind, severity):
+    assert severity_of("LW102", ARM.replace("fixed", kind)) == severity
+
+
+@pytest.mark.parametrize(("name", "severity"), [("叶片", "INFO"), ("left arm", "WARNING")])
+def test_letters_beyond_ascii_are_found_where_blanks_are_not(severity_of, name, severity):
+    mesh = f'<visual><geometry><mesh filename="package://p/{name}.stl"/></geometry></visual>'
+    assert severity_of("LW427", f'{ARM}<link name="b">{mesh}</link>') == severity
+
+
+@pytest.mark.parametrize(
+    ("names", "used", "severity"),
+    [
+        ("d4_depth_px d4_depth_py d4_depth_pz", 2, "INFO"),
+        ("d4_depth_px d4_depth_py d4_depth_pz", 1, "WARNING"),
+        ("d4_depth_px d4_depth_py d4_depth_pz d4_depth_qx d4_depth_qy", 2, "WARNING"),
+        ("depth_px depth_py depth_pz", 2, "WARNING"),
+        ("d4_wheel_radios d4_wheel_radius d4_wheel_width", 2, "WARNING"),
+    ],
+)
+def test_a_table_of_dimensions_may_be_complete(tmp_path, names, used, severity):
+    first, *others = names.split()
+    text = "".join(f'<xacro:property name="{name}" value="0.2"/>' for name in (first, *others))
+    links = "".join(f'<link name="l_${{{name}}}_{name}"/>' for name in others[:used])
+    prefix = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    (tmp_path / "r.urdf.xacro").write_text(f'<robot name="r" {prefix}>{text}{links}</robot>')
+    found = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
+    assert [each.severity.name for each in found if f"'{first}'" in str(each.message)] == [severity]
+
+
+@pytest.mark.parametrize(("depends", "severity"), [("gazebo_ros", "INFO"), ("ros_gz_sim", "WARNING")])
+def test_a_world_named_world_is_fine_for_gazebo_classic(tmp_path, depends, severity):
+    manifest = f"<package><name>p</name><exec_depend>{depends}</exec_depend></package>"
+    (tmp_path / "package.xml").write_text(manifest)
+    (tmp_path / "worlds").mkdir()
+    (tmp_path / "worlds" / "w.world").write_text('<sdf version="1.6"><world name="world"/></sdf>')
+    found = examine(tmp_path / "worlds" / "w.world").diagnostics
+    assert [each.severity.name for each in found if each.code == "SDF111"] == [severity]

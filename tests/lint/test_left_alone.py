@@ -64,6 +64,13 @@ def test_a_centre_of_mass_far_from_its_shapes_is_told_of_once(told, origin, code
     assert told(robot(f'<link name="base"/>{moving("a", inside)}'), "LW322", "LW323") == codes
 
 
+@pytest.mark.parametrize(("moment", "codes"), [("0.002", ["LW315"]), ("0.00{}", ["LW322"] * 3)])
+def test_a_centre_of_mass_is_not_told_of_beside_an_inertia_that_was_copied(told, moment, codes):
+    shape = '<visual><origin xyz="0 0 0.{0}"/><geometry><box size="0.1 0.1 0.{0}"/></geometry></visual>'
+    links = (moving(f"l{n}", shape.format(n) + inertial(1, moment.format(n))) for n in (4, 5, 6))
+    assert told(robot(f'<link name="base"/>{"".join(links)}'), "LW315", "LW322") == codes
+
+
 @pytest.mark.parametrize(("root", "codes"), [("world", []), ("floor", ["LW325"])])
 def test_the_inertia_of_what_is_fixed_to_the_world(told, root, codes):
     stand = f'<link name="stand">{BOX.format(1)}{inertial(1000, 0.01)}</link>'

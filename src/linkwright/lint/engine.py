@@ -11,6 +11,7 @@ from linkwright.descriptions import Description, Packages, examine_world, is_wor
 from linkwright.descriptions import examine as examine_description
 from linkwright.descriptions.description import TRUE_OF_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
+from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.finding import Finding
 from linkwright.lint.missing_files import judged_files
 from linkwright.lint.missing_packages import judged
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
 
 _PREFIX_MISSING, _NO_LINKS = "LW720", "URDF106"
+_NO_PACKAGE, _NO_PACKAGE_OF_MESHES = "PKG101", "LW423"
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,10 +127,11 @@ def _examine_world(
         return Checked(path, None, (*trouble, *as_set(error.diagnostics, settings)), None)
     said = list(described.diagnostics)
     if described.sdf is not None:
-        from linkwright.lint.worlds import check_sdf, one_for_each_world
+        from linkwright.lint.worlds import check_sdf, for_classic, one_for_each_world
         from linkwright.sdf.resources import ResourceFinder
 
-        said = one_for_each_world([*said, *check_sdf(described.sdf, ResourceFinder(finder))])
+        said = [*for_classic([*said, *check_sdf(described.sdf, ResourceFinder(finder))], path)]
+        said = one_for_each_world(said)
     found = in_order(as_set(said, settings), str(path))
     return Checked(path, None, (*trouble, *found), None, described.sdf)
 
@@ -247,10 +250,21 @@ def _without_replaced(diagnostics: list[Diagnostic], settings: Settings) -> list
 
 
 def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """The diagnostics but that there are no links, where the tags that were to make them lack the prefix of xacro."""
+    """The diagnostics but those that follow from another.
+
+    There are no links where the tags that were to make them lack the prefix of xacro, and no meshes of a package that
+    an include did not find either.
+    """
     found = list(diagnostics)
     is_explained = any(each.code == _PREFIX_MISSING for each in found)
-    return [each for each in found if not (is_explained and each.code == _NO_LINKS)]
+    missing = {as_phrase(each.message).arguments.get("name") for each in found if each.code == _NO_PACKAGE}
+
+    def follows(each: Diagnostic) -> bool:
+        if each.code == _NO_PACKAGE_OF_MESHES:
+            return as_phrase(each.message).arguments.get("package") in missing
+        return is_explained and each.code == _NO_LINKS
+
+    return [each for each in found if not follows(each)]
 
 
 def _with_trail(diagnostic: Diagnostic) -> Diagnostic:

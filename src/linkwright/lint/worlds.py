@@ -12,6 +12,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.lint.package import find_package
 from linkwright.lint.rules.inertia import NegativeMass, ZeroMass
 from linkwright.lint.rules.inertia_tensor import (
     ExcessiveProduct,
@@ -38,6 +39,9 @@ _FLAWS = {
 _ADDRESSES = ("uri", "filename")
 _LEFT_OUT = frozenset({"SDF160", "SDF162"})
 """Findings on models and meshes that are not on this machine; what is missing there is one thing to mend."""
+_RESERVED = "SDF111"
+"""A reserved name; a warning where Gazebo classic takes it."""
+_PACKAGES_OF_CLASSIC = ("gazebo_ros", "gazebo_ros_pkgs", "gazebo_plugins", "gazebo_dev", "gazebo_ros2_control")
 _MOST_NOTES = 10
 _ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
 
@@ -75,6 +79,16 @@ def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
     return [
         _with_others(each, groups[each.code, each.severity][1:]) if each.code in _LEFT_OUT else each for each in kept
     ]
+
+
+def for_classic(found: Iterable[Diagnostic], path: Path) -> Iterator[Diagnostic]:
+    """The findings on a world; what gz alone refuses is an information in a package for Gazebo classic."""
+    package = find_package(path.absolute().parent)
+    manifest = None if package is None else package.manifest
+    is_classic = manifest is not None and any(map(manifest.declares, _PACKAGES_OF_CLASSIC))
+    for each in found:
+        is_taken = is_classic and each.code == _RESERVED and each.severity is Severity.WARNING
+        yield each.but(severity=Severity.INFO) if is_taken else each
 
 
 def _with_others(first: Diagnostic, others: list[Diagnostic]) -> Diagnostic:

@@ -22,7 +22,7 @@ class PlaceholderInertia(Rule):
 
     A tensor of ones on everything is a placeholder from a tutorial. For a link of a few hundred grams it is thousands
     of times too large, and the robot moves as if in honey. What depends on size and mass cannot be the same for all.
-    The rule speaks where at least half of the links share such a tensor; other rules then leave its size and a missing
+    The rule speaks where at least half of the links share such a tensor; other rules then leave its size and the
     centre of mass to it. Where a comment on the line or above it says why, the finding is an information.
 
     ## Example
@@ -59,7 +59,7 @@ class PlaceholderInertia(Rule):
             )
 
 
-LEFT_TO_PLACEHOLDERS = frozenset({"LW323", "LW324", "LW325"})
+LEFT_TO_PLACEHOLDERS = frozenset({"LW322", "LW323", "LW324", "LW325"})
 """The rules that say nothing of a link whose inertia `PlaceholderInertia` reports."""
 
 

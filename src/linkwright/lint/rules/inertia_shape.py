@@ -204,7 +204,7 @@ class CenterOutside(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         margin = self.option(subject, "margin", float)
-        for link, inertial, bounds in subject.extents.measured:
+        for link, inertial, bounds in _without_placeholders(subject):
             center = inertial.origin.xyz
             if max(map(abs, center)) > _BEYOND_BELIEF or _is_at_the_joint(subject, link, inertial):
                 continue

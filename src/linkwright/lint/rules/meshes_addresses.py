@@ -215,8 +215,9 @@ class AwkwardName(Rule):
 
     ## Why
 
-    RViz fetches meshes through a library for web addresses, where a blank is not allowed, and non-ASCII letters are
-    compared byte by byte, so the same name typed on a Mac is another one on Linux.
+    RViz fetches meshes through a library for web addresses, where a blank is not allowed. Non-ASCII letters are
+    compared byte by byte, so the same name typed on a Mac is another one on Linux; as the file is found on the computer
+    that it comes from, those are an information.
 
     ## Example
 
@@ -247,6 +248,7 @@ class AwkwardName(Rule):
                     use.element,
                     "filename",
                     hint=phrase("rename the file with letters, digits and underscores"),
+                    severity=None if " " in name else Severity.INFO,
                 )
 
 

@@ -30,7 +30,8 @@ class NothingToSee(Rule):
 
     ## Use instead
 
-    Give the links a `<visual>`. If the description is only for frames, ignore the rule in its file.
+    Give the links a `<visual>`. Where nothing moves and no link holds anything, the description is probably meant for
+    frames alone, such as those between two cameras, and the finding is an information.
     """
 
     code = "LW102"
@@ -47,12 +48,14 @@ class NothingToSee(Rule):
             link.element is not None and (link.element.first("visual") or link.element.first("collision"))
             for link in robot.links.values()
         ):
+            is_of_frames = all(joint.type == "fixed" for joint in robot.joints.values())
             yield self.report(
                 phrase(
                     "none of the {count} links of robot '{name}' has a shape", count=len(robot.links), name=robot.name
                 ),
                 subject.root,
                 hint=phrase("give the links a <visual>"),
+                severity=Severity.INFO if is_of_frames else None,
             )
 
 

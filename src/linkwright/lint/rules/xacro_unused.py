@@ -40,7 +40,8 @@ class UnusedProperty(XacroRule):
     Only properties of the checked file and those inside macros are looked at: a file of properties for several robots
     holds more than one of them needs. Constants of mathematics, such as `PI`, stand by for who needs them. One that is
     evaluated at once, with `lazy_eval="false"`, and calls `xacro.fatal`,
-    `error`, `warning` or `message` is there for what it says.
+    `error`, `warning` or `message` is there for what it says. One of a table of dimensions, such as `d415_cam_depth_px`
+    beside `d415_cam_depth_py` and `d415_cam_depth_pz`, which are used, is an information: the table is complete.
 
     ## Example
 
@@ -79,6 +80,7 @@ class UnusedProperty(XacroRule):
                     "name",
                     hint=_hint(name, facts.names),
                     fix=remove_element(element, safe=False),
+                    severity=Severity.INFO if _is_of_table(definition, file, facts.names) else None,
                 )
 
 
@@ -315,6 +317,15 @@ def _speaks(element: Element) -> bool:
     """Whether a property is evaluated where it is defined and tells the user something then."""
     lazy = element.attributes.get("lazy_eval", "true").strip() not in ("false", "False", "0")
     return (not lazy or "scope" in element.attributes) and bool(_SPEAKING.search(element.attributes.get("value", "")))
+
+
+def _is_of_table(definition: Definition, file: FileFacts, used: frozenset[str]) -> bool:
+    """Whether a property is one of several in a file whose names differ in the last word, most of which are used."""
+    table, _, _ = definition.name.rpartition("_")
+    if "_" not in table or misspelling_of(definition.name, used) is not None:
+        return False
+    others = {each.name for each in file.properties if each.name.rpartition("_")[0] == table} - {definition.name}
+    return len(others & used) >= max(2, len(others - used) + 1)
 
 
 def _is_mathematics(value: str) -> bool:
