@@ -320,12 +320,62 @@ def test_what_tests_need_has_errors_only_in_a_folder(here, capsys):
 
 @pytest.mark.parametrize(
     ("folder", "is_told"),
-    [("old", False), ("my_Backup_2024", False), ("Discard", False), ("gold", True), ("old_town", True)],
+    [
+        ("old", False),
+        ("bak", False),
+        ("my_Backup_2024", False),
+        ("Discard", False),
+        ("vendor", False),
+        ("third-party", False),
+        ("gold", True),
+        ("old_town", True),
+        ("vendors_arm", True),
+    ],
 )
 def test_what_is_put_aside_has_errors_only_in_a_folder(here, capsys, folder, is_told):
     write(here, {f"p/{folder}/r.urdf": LONG_AXIS})
     main(["check", *ONLY, "p"])
     assert ("LW221" in capsys.readouterr().err) is is_told
+
+
+@pytest.mark.parametrize(("folder", "count"), [("urdf", 1), ("vendor", 0)])
+def test_a_package_that_only_a_vendors_copy_names_is_not_missed_in_a_folder(here, capsys, folder, count):
+    include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'
+    write(here, {f"{folder}/r.urdf.xacro": f'<robot name="r" {XACRO}>{include}<link name="a"/></robot>'})
+    main(["check", ".", "--format", "concise"])
+    assert capsys.readouterr().out.count("PKG101") == count
+
+
+def test_a_package_that_an_include_misses_is_not_missed_once_more_by_meshes(here, capsys):
+    mesh = '<visual><geometry><mesh filename="package://{}/a.stl"/></geometry></visual>'
+    links = "".join(f'<link name="{name}">{mesh.format(name)}</link>' for name in ("far_description", "other"))
+    include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'
+    write(here, {"r.urdf.xacro": f'<robot name="r" {XACRO}>{include}{links}</robot>'})
+    main(["check", ".", "--format", "concise"])
+    told = [line for line in capsys.readouterr().out.splitlines() if "PKG101" in line or "LW423" in line]
+    assert [("far_description" in line, "PKG101" in line) for line in told] == [(True, True), (False, False)]
+
+
+def test_what_a_xacro_file_says_is_not_said_again_of_the_urdf_made_of_it(here, capsys):
+    joint = LONG_AXIS.partition("<joint")[2]
+    chain = LONG_AXIS.replace('"arm_joint"', '"a"') + "".join(
+        f'<link name="l{name}"/><joint{joint}'.replace("arm_joint", name).replace("arm_link", f"l{name}")
+        for name in ("b", "c")
+    )
+    chain = chain.replace("</robot>", "") + "</robot>"
+    drifted = chain.replace("0 0 2", "0 0 3", 1)
+    write(
+        here,
+        {
+            "package.xml": "<package><name>p</name></package>",
+            "xacro/r.urdf.xacro": chain.replace("<robot", f"<robot {XACRO}"),
+            "urdf/r.urdf": drifted,
+            "urdf/other.urdf": chain.replace('"c"', '"d"'),
+        },
+    )
+    main(["check", ".", "--format", "concise", *ONLY])
+    places = [line.partition(":")[0] for line in capsys.readouterr().out.splitlines() if "LW221" in line]
+    assert sorted(places) == ["urdf/other.urdf"] * 3 + ["urdf/r.urdf"] + ["xacro/r.urdf.xacro"] * 3
 
 
 @pytest.mark.parametrize(("source", "is_told"), [("r.urdf.xacro", False), ("other.urdf.xacro", True)])
