@@ -338,6 +338,20 @@ def test_what_is_put_aside_has_errors_only_in_a_folder(here, capsys, folder, is_
     assert ("LW221" in capsys.readouterr().err) is is_told
 
 
+@pytest.mark.parametrize(("folder", "is_told"), [("launch", True), ("launch/past", False), ("launch/old", False)])
+def test_of_launch_files_that_are_put_aside_a_folder_check_tells_errors_only(here, capsys, folder, is_told):
+    text = """from launch_ros.actions import Node
+from ament_index_python.packages import get_package_share_directory
+import os
+def generate_launch_description():
+    return LaunchDescription([Node(package="p", parameters=[
+        os.path.join(get_package_share_directory("p"), "config", "lost.yaml")])])
+"""
+    write(here, {"p/package.xml": "<package><name>p</name></package>", f"p/{folder}/a.launch.py": text})
+    main(["check", ".", "--format", "concise"])
+    assert ("LW842" in capsys.readouterr().out) is is_told
+
+
 @pytest.mark.parametrize(("folder", "count"), [("urdf", 1), ("vendor", 0)])
 def test_a_package_that_only_a_vendors_copy_names_is_not_missed_in_a_folder(here, capsys, folder, count):
     include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'

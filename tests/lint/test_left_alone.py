@@ -571,6 +571,43 @@ def test_a_file_that_another_program_finds_from_the_packages_folder(tmp_path, na
     assert ("write 'arm.xacro'" in (found.hint or "")) is (severity == "WARNING")
 
 
+def test_files_that_another_program_finds_from_the_packages_folder_are_one_finding_for_each_that_includes_them(
+    tmp_path,
+):
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
+    (tmp_path / "urdf").mkdir()
+    for name in ("arm", "leg", "head"):
+        (tmp_path / f"urdf/{name}.xacro").write_text("<robot/>")
+    includes = "".join(f'<xacro:include filename="urdf/{name}.xacro"/>' for name in ("arm", "leg", "head", "tail"))
+    (tmp_path / "urdf/r.urdf.xacro").write_text(robot(f'<link name="a"/>{includes}', PREFIX))
+    found = [each for each in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if each.code == "XML101"]
+    assert [(each.severity.name, str(each.message).partition("(")[2]) for each in found] == [
+        ("WARNING", "and 2 more)"),
+        ("ERROR", ""),
+    ]
+
+
+@pytest.mark.parametrize("declaring", ["p", "beside"])
+def test_a_package_of_meshes_that_a_package_beside_declares_is_only_not_here(tmp_path, declaring):
+    for name in ("p", "beside"):
+        (tmp_path / name).mkdir()
+        more = "<exec_depend>arm_description</exec_depend>" if name == declaring else ""
+        (tmp_path / name / "package.xml").write_text(MANIFEST.format(more=more))
+    mesh = '<visual><geometry><mesh filename="package://{}/a.stl"/></geometry></visual>'
+    links = (f'<link name="{name}">{mesh.format(name)}</link>' for name in ("arm_description", "far_description"))
+    (tmp_path / "p/r.urdf").write_text(robot("".join(links)))
+    found = examine(tmp_path / "p/r.urdf").diagnostics
+    assert [each.severity.name for each in found if each.code == "LW423"] == ["INFO", "WARNING"]
+
+
+def test_what_an_include_that_is_not_here_may_define_is_not_missing(told):
+    coloured = '<visual><geometry><box size="1 1 1"/></geometry><material name="dark"/></visual>'
+    include = '<xacro:include filename="$(find far_description)/colours.xacro"/>'
+    link = f'<link name="a">{coloured}</link>'
+    assert told(robot(link), "URDF160") == ["URDF160"]
+    assert told(robot(include + link, PREFIX), "URDF160") == []
+
+
 @pytest.mark.parametrize(("more", "codes"), [("", ["LW102"]), ('<ros2_control name="c" type="system"/>', [])])
 def test_hardware_on_a_bench_has_no_shapes(told, more, codes):
     assert told(robot(f'<link name="base"/>{moving("a", "")}{more}'), "LW102") == codes

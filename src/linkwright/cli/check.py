@@ -48,7 +48,7 @@ _GIVEN_BY_USERS = "XAC214"
 _ONCE = "PKG101"
 """A package that is not here is one thing to mend, however many files name it."""
 _ASIDE = re.compile(
-    r"tests?\d*|(.+[_-])?(old|bak|deprecated|discard(ed)?|(archived?|backups?)([_-].*)?)"
+    r"tests?\d*|(.+[_-])?(old|bak|past|deprecated|discard(ed)?|(archived?|backups?)([_-].*)?)"
     r"|vendor(ed)?|(third|3rd)[_-]?party",
     re.IGNORECASE,
 )
@@ -216,7 +216,8 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
         _add(found, (*each.trouble, *said))
     for folder in targets.packages:
         settings, trouble = words.settings(folder)
-        _add(found, (*trouble, *examine_package(folder, settings, words.finder(folder / MANIFEST)).diagnostics))
+        said = examine_package(folder, settings, words.finder(folder / MANIFEST)).diagnostics
+        _add(found, (*trouble, *(each for each in said if not _is_of_aside(each, paths))))
     return list(found.values()), checked if len(paths) == 1 and not paths[0].is_dir() else None
 
 
@@ -264,6 +265,13 @@ def _of_a_folder(said: Iterable[Diagnostic], *, is_aside: bool) -> Iterator[Diag
         is_info = each.severity is Severity.INFO
         if each.severity is Severity.ERROR or not (is_aside or (is_info and each.code in _OF_NAMED_FILES)):
             yield each
+
+
+def _is_of_aside(found: Diagnostic, paths: Sequence[Path]) -> bool:
+    """Whether a finding on a package is of a file that was put aside, and no error."""
+    if found.span is None or found.severity is Severity.ERROR:
+        return False
+    return _is_put_aside(Path(found.span.file), [path.absolute() for path in paths])
 
 
 def _is_put_aside(file: Path, paths: Sequence[Path]) -> bool:

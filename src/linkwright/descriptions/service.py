@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Union
 
-from linkwright.descriptions.description import TEXT_NAME, Description
+from linkwright.descriptions.description import TEXT_NAME, TRUE_OF_PARTS, Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, has_errors, phrase
 from linkwright.urdf import Reading, Robot, read
 from linkwright.urdf.plaintext import parse_as_urdfdom
@@ -115,10 +115,17 @@ def _as_it_stands(
     *,
     is_told: bool = False,
 ) -> Description:
-    """The description that urdfdom makes of a document which nobody expands; `is_told` where the remarks say so."""
+    """The description that urdfdom makes of a document which nobody expands; `is_told` where the remarks say so.
+
+    Then what the file lacks may be in what xacro would add to it, such as the colours of an included file.
+    """
     reading = read(document)
-    said = tuple(each for each in reading.diagnostics if not (is_told and each.code == _LEFT_OVER))
+    said = tuple(each for each in reading.diagnostics if not is_told or _holds_unexpanded(each))
     return Description(name, document, Reading(reading.robot, (*remarks, *said)), overlay=overlay)
+
+
+def _holds_unexpanded(found: Diagnostic) -> bool:
+    return found.severity is Severity.ERROR or (found.code in TRUE_OF_PARTS and found.code != _LEFT_OVER)
 
 
 def _has_open_names(robot: Robot) -> bool:

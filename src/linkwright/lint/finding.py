@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, SourceText, Span
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, SourceText, Span, phrase
 from linkwright.lint.fix import Fix
 from linkwright.xmltree import Element
+
+_MOST_NOTES = 10
 
 
 class Finding(Diagnostic):
@@ -37,3 +40,14 @@ class Finding(Diagnostic):
 
     def _all(self) -> dict[str, Any]:
         return {**self._said(), "fix": self.fix, "element": self.element}
+
+
+def with_others(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
+    """A finding that stands for others of one cause, with these in its notes."""
+    if not others:
+        return first
+    notes = tuple(Note(each.message, each.span) for each in others[:_MOST_NOTES])
+    if len(others) > _MOST_NOTES:
+        notes += (Note(phrase("and {count} more", count=len(others) - _MOST_NOTES)),)
+    message = phrase("{message} (and {count} more)", message=first.message, count=len(others))
+    return first.but(message=message, notes=(*first.notes, *notes))

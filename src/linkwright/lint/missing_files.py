@@ -8,6 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.diagnostics.phrase import as_phrase
+from linkwright.lint.finding import with_others
 from linkwright.lint.made_files import is_made_later
 from linkwright.lint.package import find_package
 
@@ -17,13 +18,18 @@ _MISSING = "XML101"
 def judged_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """The diagnostics; a missing file that the build makes is an information.
 
-    One that is found from the folder of the package, where a program of its own may look, is a warning.
+    Those that are found from the folder of the package, where a program of its own may look, are one warning for each
+    file that includes them.
     """
+    elsewhere: dict[str, list[Diagnostic]] = {}
     for each in diagnostics:
         if each.code != _MISSING or each.span is None or each.severity is not Severity.ERROR:
             yield each
+        elif (found := None if (built := _of_built(each)) else _of_package_folder(each)) is not None:
+            elsewhere.setdefault(each.span.file, []).append(found)
         else:
-            yield _of_built(each) or _of_package_folder(each) or each
+            yield built or each
+    yield from (with_others(first, others) for first, *others in elsewhere.values())
 
 
 def _of_built(diagnostic: Diagnostic) -> Diagnostic | None:

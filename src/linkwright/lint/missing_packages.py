@@ -25,18 +25,15 @@ def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
             packages[folder] = find_package(folder)
         package = packages[folder]
         name = str(as_phrase(each.message).arguments.get("name", ""))
-        if package is None or not any(_declares(beside, name) for beside in (package, *_beside(package))):
+        if package is None or not is_declared(package, name):
             yield each
             continue
         hint = phrase("install '{name}', or check it together with this package; what needs it is left out", name=name)
         yield each.but(severity=Severity.WARNING, hint=hint)
 
 
-def _beside(package: PackageContext) -> Iterator[PackageContext]:
-    """The packages in the folder that a package is in; who builds one of them builds them all."""
-    for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")):
-        yield PackageContext(manifest.parent)
-
-
-def _declares(package: PackageContext, name: str) -> bool:
-    return package.manifest is not None and package.manifest.declares(name)
+def is_declared(package: PackageContext, name: str) -> bool:
+    """Whether a package, or one beside it, declares another; who builds one of them builds them all."""
+    beside = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))
+    manifests = (each.manifest for each in (package, *beside))
+    return any(manifest is not None and manifest.declares(name) for manifest in manifests)

@@ -10,8 +10,9 @@ from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.lint.finding import with_others
 from linkwright.lint.package import find_package
 from linkwright.lint.rules.inertia import NegativeMass, ZeroMass
 from linkwright.lint.rules.inertia_tensor import (
@@ -42,7 +43,6 @@ _LEFT_OUT = frozenset({"SDF160", "SDF162"})
 _RESERVED = "SDF111"
 """A reserved name; a warning where Gazebo classic takes it."""
 _PACKAGES_OF_CLASSIC = ("gazebo_ros", "gazebo_ros_pkgs", "gazebo_plugins", "gazebo_dev", "gazebo_ros2_control")
-_MOST_NOTES = 10
 _ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
 
 
@@ -77,7 +77,7 @@ def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
             kept.append(each)
         group.append(each)
     return [
-        _with_others(each, groups[each.code, each.severity][1:]) if each.code in _LEFT_OUT else each for each in kept
+        with_others(each, groups[each.code, each.severity][1:]) if each.code in _LEFT_OUT else each for each in kept
     ]
 
 
@@ -89,16 +89,6 @@ def for_classic(found: Iterable[Diagnostic], path: Path) -> Iterator[Diagnostic]
     for each in found:
         is_taken = is_classic and each.code == _RESERVED and each.severity is Severity.WARNING
         yield each.but(severity=Severity.INFO) if is_taken else each
-
-
-def _with_others(first: Diagnostic, others: list[Diagnostic]) -> Diagnostic:
-    if not others:
-        return first
-    notes = tuple(Note(each.message, each.span) for each in others[:_MOST_NOTES])
-    if len(others) > _MOST_NOTES:
-        notes += (Note(phrase("and {count} more", count=len(others) - _MOST_NOTES)),)
-    message = phrase("{message} (and {count} more)", message=first.message, count=len(others))
-    return first.but(message=message, notes=(*first.notes, *notes))
 
 
 def _steps(sdf: Sdf) -> Iterator[Diagnostic]:
@@ -117,7 +107,7 @@ def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
             yield from _inertial(link, link.inertial)
     sizes = [each for shape in shapes_of(replace(model, models=())) for each in _size(shape)]
     if sizes:
-        yield _with_others(sizes[0], sizes[1:])
+        yield with_others(sizes[0], sizes[1:])
     for inner in model.models:
         yield from _model(inner, static=static)
 
@@ -142,7 +132,7 @@ def _axes(models: Iterable[Model]) -> Iterator[Diagnostic]:
                 yield found
     if fixed:
         first, *others = fixed.values()
-        yield _with_others(first, others)
+        yield with_others(first, others)
 
 
 def _axes_of(joint: Joint) -> tuple[tuple[Axis | None, str], ...]:

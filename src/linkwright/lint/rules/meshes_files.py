@@ -10,6 +10,7 @@ from linkwright.diagnostics.pointers import is_pointer_file
 from linkwright.lint.fix import replace_value
 from linkwright.lint.made_files import is_ignored_by_git
 from linkwright.lint.meshes import MeshUse
+from linkwright.lint.missing_packages import is_declared
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.meshes_addresses import HOME, KNOWN, file_hint, malformed, normal, written
 from linkwright.lint.subject import Subject
@@ -75,7 +76,7 @@ class UnknownPackage(Rule):
 
     Without the package there is no mesh. Either its name is misspelt, or the workspace that holds it is not there or
     not sourced, or a folder such as `meshes` stands where the package's name belongs. It is an information where
-    `package.xml` declares the package: it is only not here.
+    `package.xml`, or that of a package beside, declares the package: it is only not here.
 
     ## Example
 
@@ -118,8 +119,8 @@ class UnknownPackage(Rule):
                 len(uses),
                 package=package,
             )
-            manifest = subject.package.manifest if subject.package is not None else None
-            severity = Severity.INFO if manifest is not None and manifest.declares(package) else None
+            is_elsewhere = subject.package is not None and is_declared(subject.package, package)
+            severity = Severity.INFO if is_elsewhere else None
             yield self.report(message, uses[0].element, "filename", hint=hints[package], severity=severity)
 
 
