@@ -169,3 +169,11 @@ def test_a_world_named_world_is_fine_for_gazebo_classic(tmp_path, depends, sever
     (tmp_path / "worlds" / "w.world").write_text('<sdf version="1.6"><world name="world"/></sdf>')
     found = examine(tmp_path / "worlds" / "w.world").diagnostics
     assert [each.severity.name for each in found if each.code == "SDF111"] == [severity]
+
+
+@pytest.mark.parametrize(("beside", "severity"), [('<mujoco model="r"/>', "INFO"), ("<launch/>", "WARNING")])
+def test_a_description_beside_a_model_for_mujoco_has_relative_addresses(severity_of, tmp_path, beside, severity):
+    (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
+    (tmp_path / "r.xml").write_text(f"<!-- made by hand -->\n{beside}")
+    mesh = '<visual><geometry><mesh filename="assets/a.stl"/></geometry></visual>'
+    assert severity_of("LW421", f'{ARM}<link name="b">{mesh}</link>') == severity

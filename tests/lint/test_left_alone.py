@@ -450,6 +450,20 @@ def test_a_gripper_that_presses_has_no_soft_limit_where_it_is_closed(told, lower
     assert told(robot(f'<link name="base"/><link name="a"/>{joint}'), "LW240") == codes
 
 
+@pytest.mark.parametrize(
+    ("origin", "hint"),
+    [("0 0 0.1", "the middle of the visuals is at 1.05 2 3.15 in the link frame"), ("0 0 0", "give both the same")],
+)
+def test_a_mesh_off_its_own_origin_needs_another_origin_for_its_collision(tmp_path, origin, hint):
+    corners = "".join(f"vertex {corner}\n" for corner in ("1 2 3", "1.1 2 3", "1 2 3.1"))
+    (tmp_path / "a.stl").write_text(f"solid a\nfacet normal 0 1 0\nouter loop\n{corners}endloop\nendfacet\nendsolid\n")
+    seen = '<visual><origin xyz="0 0 0.1"/><geometry><mesh filename="a.stl"/></geometry></visual>'
+    felt = f'<collision><origin xyz="{origin}"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{seen}{felt}</link>'))
+    (found,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW412",))).diagnostics
+    assert str(found.hint).startswith(hint)
+
+
 @pytest.mark.parametrize(("far", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
 def test_a_shape_that_is_far_away_is_told_of_once(told, far, codes):
     seen = f'<visual><origin xyz="{far} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'

@@ -14,11 +14,13 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.sources import IGNORE_MARKERS, SKIPPED_FOLDERS
 from linkwright.xacro import sources
 from linkwright.xmltree import Element
+from linkwright.xmltree.tinyxml import COMMENT
 
 _URDF, _XACRO = ".urdf", ".xacro"
 _WHOLE = (_URDF, ".world", ".sdf")
 """Endings of files that describe something by themselves."""
 _EMPTY_FILE = "XML105"
+_COMMENT = re.compile(rf"{COMMENT}|<\?xml\s[^>]*\?>")
 _WEB_PAGE = "package.json"
 """What the folder of a program in JavaScript has."""
 _OTHER_FORMATS = (".srdf.xacro", ".sdf.xacro", ".world.xacro", ".launch.xacro")
@@ -116,7 +118,7 @@ def _is_part(path: Path) -> bool:
     try:
         root = sources.read(str(path)).root
     except LinkwrightError as error:
-        return any(diagnostic.code == _EMPTY_FILE for diagnostic in error.diagnostics)
+        return _is_empty(path, error)
     if path.suffix != _URDF:
         return False
     if root.tag != "robot":
@@ -124,6 +126,13 @@ def _is_part(path: Path) -> bool:
     is_empty = next(root.elements(), None) is None
     is_named = "name" in root.attributes
     return not _has_content(root) and not (is_empty and is_named and _EXPANDED not in _text(path))
+
+
+def _is_empty(path: Path, error: LinkwrightError) -> bool:
+    """Whether a file that is no XML has nothing but comments in it: its author has yet to write it, or put it aside."""
+    if any(diagnostic.code == _EMPTY_FILE for diagnostic in error.diagnostics):
+        return True
+    return not _COMMENT.sub("", _text(path).lstrip("\ufeff")).strip()
 
 
 def _included_names(text: str) -> Iterator[str]:
@@ -148,8 +157,7 @@ def _describes_robot(path: Path) -> bool:
     try:
         root = sources.read(str(path)).root
     except LinkwrightError as error:
-        # An empty file is one that its author has yet to write; anything else the check will tell.
-        return all(diagnostic.code != _EMPTY_FILE for diagnostic in error.diagnostics)
+        return not _is_empty(path, error)  # anything else the check will tell
     return root.tag == "robot" and "name" in root.attributes and _has_content(root)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
+from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, Span, phrase
 from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
@@ -165,8 +165,16 @@ class CollisionApart(Rule):
                     ),
                     link.collisions[0].element,
                     notes=[Note(phrase("the first visual is here"), _place(link.visuals[0]))],
-                    hint=phrase("give both the same <origin>"),
+                    hint=_origin_hint(link, seen),
                 )
+
+
+def _origin_hint(link: Link, seen: Bounds) -> Phrase:
+    """What to do about a collision away from its visual: with one <origin> for both, a mesh lies off its own origin."""
+    if link.visuals[0].origin.xyz != link.collisions[0].origin.xyz:
+        return phrase("give both the same <origin>")
+    center = " ".join(f"{part:.3g}" for part in seen.center)
+    return phrase("the middle of the visuals is at {center} in the link frame", center=center)
 
 
 class CollisionSize(Rule):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os.path
 import re
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, display_path, joined, phrase
@@ -20,6 +21,8 @@ HOME = re.compile(
     r"(?:file://(?:localhost)?)?(/home/[^/]+|/Users/[^/]+|/root|[A-Za-z]:[\\/]Users[\\/][^\\/]+|/opt/ros/[^/]+)[\\/]"
 )
 _INSTALLED = re.compile(r".*?/opt/ros/[^/]+/share/(.+)")
+_MUJOCO, _HEAD = b"<mujoco", 4_000
+"""The root of a model for MuJoCo, which stands among the first bytes of its file."""
 KNOWN = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx", ".3ds", ".mesh")
 """What RViz reads."""
 
@@ -84,7 +87,7 @@ class RelativePath(Rule):
 
     What it is relative to is up to the tool: the folder of the URDF for some, the current folder for others. RViz
     gets the description as a text from a topic, knows no folder, and shows nothing. In a file that lies in no ROS
-    package, as for simulators that know no packages, the finding is an information.
+    package, or beside a model for MuJoCo, as for simulators that know no packages, the finding is an information.
 
     ## Example
 
@@ -104,10 +107,10 @@ class RelativePath(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for use in subject.meshes.uses:
+        relative = [use for use in subject.meshes.uses if _is_relative(use.mesh.filename)]
+        is_for_ros = relative and subject.package and not _is_beside_mujoco(subject.path.parent)
+        for use in relative:
             uri = use.mesh.filename
-            if not uri.strip() or is_portable(uri) or "\\" in uri:
-                continue
             better = _as_package_uri(subject.meshes.path(use))
             yield self.report(
                 phrase("the mesh path '{uri}' is relative, which RViz cannot resolve", uri=uri),
@@ -115,8 +118,19 @@ class RelativePath(Rule):
                 "filename",
                 hint=phrase("write '{better}'", better=better or "package://PACKAGE/PATH"),
                 fix=replace_value(use.element, "filename", better, safe=False) if better else None,
-                severity=None if subject.package else Severity.INFO,
+                severity=None if is_for_ros else Severity.INFO,
             )
+
+
+def _is_relative(uri: str) -> bool:
+    return bool(uri.strip()) and not is_portable(uri) and "\\" not in uri
+
+
+def _is_beside_mujoco(folder: Path) -> bool:
+    """Whether a folder holds models for MuJoCo, whose descriptions of robots have addresses relative to it."""
+    with suppress(OSError):
+        return any(_MUJOCO in file.read_bytes()[:_HEAD] for file in folder.glob("*.xml"))
+    return False
 
 
 class HomePath(Rule):

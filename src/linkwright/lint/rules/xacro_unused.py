@@ -225,7 +225,7 @@ class UnusedMacroParameter(XacroRule):
     ## Why
 
     Every call has to give it a value, and no value makes a difference. Where a parameter is meant for a macro that is
-    called inside, it has to be handed on.
+    called inside, it has to be handed on. Mostly it is left from an earlier version, which harms nobody.
 
     ## Example
 
@@ -246,6 +246,7 @@ class UnusedMacroParameter(XacroRule):
 
     code = "LW705"
     name = "unused-macro-parameter"
+    severity = Severity.INFO
     needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
