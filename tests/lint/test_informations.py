@@ -177,3 +177,13 @@ def test_a_description_beside_a_model_for_mujoco_has_relative_addresses(severity
     (tmp_path / "r.xml").write_text(f"<!-- made by hand -->\n{beside}")
     mesh = '<visual><geometry><mesh filename="assets/a.stl"/></geometry></visual>'
     assert severity_of("LW421", f'{ARM}<link name="b">{mesh}</link>') == severity
+
+
+@pytest.mark.parametrize(
+    ("more", "shape", "severity"),
+    [("", "", "INFO"), ("<gazebo/>", "", "WARNING"), ("", f"<visual>{BOX}</visual>", "WARNING")],
+)
+def test_what_moves_without_shape_and_simulator_needs_no_inertia(severity_of, more, shape, severity):
+    robot = moving("3") + f'<link name="command">{shape}</link>'
+    joint = '<joint name="k" type="continuous"><parent link="base"/><child link="command"/></joint>'
+    assert severity_of("LW301", robot + joint + more) == severity

@@ -729,3 +729,43 @@ def test_a_round_limit_to_both_sides_of_a_slide_means_no_end(told, lower, upper,
     slide = moving("cart", "").replace("continuous", "prismatic")
     limit = f'<limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>'
     assert told(robot(f'<link name="base"/>{slide.replace("</joint>", limit)}'), "LW213") == ["LW213"] * count
+
+
+ROVER = """<link name="rocker"><visual><geometry><box size="0.4 0.02 0.02"/></geometry></visual></link>
+<joint name="left_hip" type="revolute"><parent link="base"/><child link="{rocker}"/><axis xyz="{axis}"/>
+<origin xyz="0 0.2 0"/><limit lower="-0.3" upper="0.3" effort="1" velocity="1"/></joint>"""
+WHEEL = """<link name="{0}_wheel"><visual><origin rpy="1.5707963 0 0"/>
+<geometry><cylinder radius="0.1" length="0.05"/></geometry></visual></link>
+<joint name="{0}_wheel" type="continuous"><parent link="{1}"/><child link="{0}_wheel"/>
+<origin xyz="{2} 0 {3}"/><axis xyz="0 1 0"/></joint>"""
+
+
+@pytest.mark.parametrize(("axis", "codes"), [("0 1 0", []), ("0 0 1", ["LW390"])])
+def test_wheels_on_a_rocker_find_the_ground_by_themselves(told, axis, codes):
+    wheels = WHEEL.format("front", "rocker", 0.2, 0) + WHEEL.format("rear", "base", -0.2, 0.05)
+    rocker = ROVER.format(rocker="rocker", axis=axis)
+    assert told(robot(f'<link name="base"/>{rocker}{wheels}'), "LW390") == codes
+
+
+@pytest.mark.parametrize(("between", "codes"), [(False, ["LW641"]), (True, [])])
+def test_what_carries_wheels_is_no_wheel(told, between, codes):
+    carrier = ROVER.replace('name="rocker"', 'name="left_wheel_connector"').format(
+        rocker="left_wheel_connector", axis="0 1 0"
+    )
+    ends = '<parent link="left_wheel_connector"/><child link="leg"/>'
+    leg = f'<link name="leg"/><joint name="leg" type="fixed">{ends}</joint>'
+    wheel = WHEEL.format("front", "leg" if between else "base", 0.2, 0)
+    assert told(robot(f'<link name="base"/>{carrier}{leg}{wheel}'), "LW641") == codes
+
+
+@pytest.mark.parametrize(("parent", "codes"), [("world", []), ("base", ["LW226"])])
+def test_a_robot_may_stand_anywhere_in_its_world(told, parent, codes):
+    joint = f'<joint name="j" type="fixed"><origin xyz="33 17 2"/><parent link="{parent}"/><child link="a"/></joint>'
+    assert told(robot(f'<link name="{parent}"/><link name="a"/>{joint}'), "LW226") == codes
+
+
+def test_of_two_joints_with_one_name_it_is_not_told_that_their_link_has_two(told):
+    joint = '<joint name="{}" type="fixed"><parent link="base"/><child link="a"/></joint>'
+    links = '<link name="base"/><link name="a"/>'
+    assert told(robot(links + joint.format("j") + joint.format("j")), "URDF1") == ["URDF110"]
+    assert told(robot(links + joint.format("j") + joint.format("k")), "URDF1") == ["URDF151"]

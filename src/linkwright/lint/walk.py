@@ -46,6 +46,8 @@ def is_for_simulation(subject: Subject) -> bool:
     return next(subject.elements("gazebo"), None) is not None or any(map(_SIMULATORS.search, plugins))
 
 
+SURROUNDINGS = frozenset(("world", "map", "odom"))
+"""Links that are the surroundings: what is fixed to them does not move, and may be anywhere in them."""
 BOUNDED = ("revolute", "prismatic")
 """The types of joints that have bounds."""
 UNBOUNDED = 1000.0

@@ -10,7 +10,18 @@ from linkwright.diagnostics import Note, Phrase, Severity, counted, did_you_mean
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule
 from linkwright.sdf.poses import WORLD
 from linkwright.sdf.unread import homes_of
-from linkwright.sdf.values import COUNTS, INTEGER, NUMBER, TIME, TRUTH, beginning, numbers
+from linkwright.sdf.values import (
+    COUNTS,
+    INTEGER,
+    NUMBER,
+    TIME,
+    TRUTH,
+    VECTOR2,
+    VECTOR3,
+    beginning,
+    beginning_of_vector,
+    numbers,
+)
 from linkwright.urdf.findings import Findings
 from linkwright.urdf.values import number_hint, vector_hint
 from linkwright.xmltree import Element
@@ -59,7 +70,8 @@ class SdfReport(Findings):
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
         """Report an invalid value; the default is used in its place.
 
-        Where one number is wanted, libsdformat takes what the text begins with, and leaves the rest: a warning.
+        Where one number or a vector is wanted, libsdformat takes what the text begins with, and leaves the rest: a
+        warning.
         """
         inside = attribute is rule.text
         text = element.text().strip() if inside else element.attributes[attribute.name]
@@ -68,6 +80,9 @@ class SdfReport(Findings):
         if taken is not None and isfinite(taken):
             self.warning("SDF121", message, element, None if inside else attribute.name, hint=hint)
             return int(taken) if attribute.type is INTEGER else taken
+        if attribute.type in (VECTOR2, VECTOR3) and (begun := beginning_of_vector(text, COUNTS[attribute.type])):
+            self.warning("SDF121", message, element, None if inside else attribute.name, hint=hint)
+            return begun
         if self.is_of_classic and attribute.type in COUNTS and (filled := _filled(text, COUNTS[attribute.type])):
             note = Note(phrase("Gazebo classic reads missing numbers as 0; newer Gazebo refuses the file"))
             self.warning("SDF121", message, element, None if inside else attribute.name, notes=(note,), hint=hint)

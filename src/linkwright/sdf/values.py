@@ -17,6 +17,8 @@ from linkwright.geometry.vectors import Vector3
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule, ValueType
 
 _NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.IGNORECASE)
+_STREAMED = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+"""A number as C++ reads it from a stream."""
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
 
 Color = tuple[float, float, float, float]
@@ -56,6 +58,12 @@ def beginning(text: str) -> float | None:
     """Return the number that a text begins with, which libsdformat takes alone (``std::stod``); None where none is."""
     found = _NUMBER.match(text.strip())
     return None if found is None else float(found[0])
+
+
+def beginning_of_vector(text: str, count: int) -> tuple[float, ...] | None:
+    """Return the numbers that a text begins with, which libsdformat takes alone (``>>``); None for too few."""
+    found = re.match(rf"\s*{_STREAMED}(?:\s+{_STREAMED}){{{count - 1}}}", text)
+    return None if found is None else tuple(map(float, found[0].split()))
 
 
 def _integer(text: str) -> int:

@@ -10,6 +10,7 @@ from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
+from linkwright.lint.walk import SURROUNDINGS
 from linkwright.urdf import Collision, Link, Visual
 from linkwright.xmltree import Element
 
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
     from linkwright.geometry.bounds import Bounds
     from linkwright.urdf.bodies import Bodies, Body
 
-
-_WORLD = frozenset(("world", "map", "odom"))
-"""Links that are the surroundings: what is fixed to them does not move."""
 
 _FAR = 20.0
 """In m; of what lies farther away, LW405 says that."""
@@ -60,7 +58,7 @@ class MissingCollision(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         bodies = subject.bodies
-        movable = [body for body in bodies.all if _WORLD.isdisjoint(body.links)]
+        movable = [body for body in bodies.all if SURROUNDINGS.isdisjoint(body.links)]
         seen = [body for body in movable if any(link.visuals for link in bodies.members(body))]
         lacking = [body for body in seen if not any(_has_collision(link.element) for link in bodies.members(body))]
         if 2 * len(lacking) > len(seen):

@@ -35,7 +35,8 @@ class MissingInertial(Rule):
 
     Gazebo drops a link without mass, together with the joint that moves it, and dynamics libraries give it none. A
     link fixed to another one needs no inertia of its own, because simulators merge the two; so the rule looks at
-    links that move as one.
+    links that move as one. Where nothing says that the robot is simulated, one without shapes, such as a command that a
+    driver reads, is an information.
 
     ## Example
 
@@ -71,8 +72,8 @@ class MissingInertial(Rule):
         robot = subject.robot
         if robot is None:
             return
-        some = any(link.inertial for link in robot.links.values())
-        if not some and not is_for_simulation(subject):
+        some, is_simulated = any(link.inertial for link in robot.links.values()), is_for_simulation(subject)
+        if not some and not is_simulated:
             return
         why = phrase("others have one") if some else phrase("the robot is made for simulation")
         for body in subject.bodies.all:
@@ -91,6 +92,9 @@ class MissingInertial(Rule):
                 "name",
                 notes=notes,
                 hint=phrase("`linkwright inertia` computes it from the link's shapes"),
+                severity=None
+                if is_simulated or any(link.visuals or link.collisions for link in links)
+                else Severity.INFO,
             )
 
 

@@ -11,7 +11,7 @@ from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import joints, parts, shown, values
+from linkwright.lint.walk import SURROUNDINGS, joints, parts, shown, values
 from linkwright.urdf.values import looks_like_degrees
 from linkwright.xmltree import Element
 
@@ -22,7 +22,7 @@ class OriginFar(Rule):
     ## Why
 
     Lengths are in metres. An arm whose elbow is 400 m from its shoulder was exported in millimetres; RViz shows nothing
-    where the robot should be.
+    where the robot should be. A robot may stand anywhere in its `world`.
 
     ## Example
 
@@ -47,7 +47,7 @@ class OriginFar(Rule):
         farthest = self.option(subject, "farthest", float)
         for joint, _, origin in parts(subject, "origin"):
             xyz = values(origin, "xyz")
-            if len(xyz) != 3:
+            if len(xyz) != 3 or joint.parent in SURROUNDINGS:
                 continue
             distance = sqrt(sum(part * part for part in xyz))
             if distance > farthest:

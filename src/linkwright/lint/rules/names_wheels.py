@@ -17,7 +17,7 @@ from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.vectors import dot, length, subtracted
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.urdf import Collision, Cylinder, Joint, Link, Vector3, Visual
+from linkwright.urdf import Collision, Cylinder, Joint, Link, Robot, Vector3, Visual
 
 _NO_WHEEL = re.compile(
     r"steer|swivel|knuckle|suspension|caster|castor|drop|arm|hub|axle|mount|fork|plate|holder|base|shaft|rocker|bogie"
@@ -52,6 +52,14 @@ def wheels(subject: Subject, type_of_joint: str = "continuous") -> Iterator[Whee
             if size > 0:
                 unit = (axis[0] / size, axis[1] / size, axis[2] / size)
                 yield Wheel(joint, robot.links[joint.child], frame, unit)
+
+
+def joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
+    """The joints between a joint and the root, from below."""
+    moving = {each.child: each for each in robot.joints.values()}
+    while (above := moving.get(joint.parent)) is not None:
+        yield above
+        joint = above
 
 
 def is_wheel(joint: Joint) -> bool:
@@ -131,7 +139,8 @@ class WheelHasLimits(Rule):
 
     A revolute joint stops at its limits, so the wheel turns once and stands. A wheel turns without end, which is what
     `continuous` means. A joint that steers the wheel has limits by right: it is told by its axis, which is not that of
-    the wheel's cylinder, or, where the wheel has no cylinder, does not lie to the side.
+    the wheel's cylinder, or, where the wheel has no cylinder, does not lie to the side. A part that
+    carries wheels, such as the arm of a rover, is no wheel.
 
     ## Example
 
@@ -157,10 +166,11 @@ class WheelHasLimits(Rule):
         robot = subject.robot
         if robot is None:
             return
-        turning = {joint.parent for joint in robot.joints.values() if joint.type == "continuous"}
+        turning = [joint for joint in robot.joints.values() if joint.type == "continuous"]
+        carrying = {each.parent for joint in turning for each in (joint, *joints_above(robot, joint))}
         for wheel in wheels(subject, "revolute"):
             joint = wheel.joint
-            if joint.child in turning or "wheel" not in joint.child.lower() or _is_wide(joint):
+            if joint.child in carrying or "wheel" not in joint.child.lower() or _is_wide(joint):
                 continue
             if joint.element is None or not _rolls(wheel):
                 continue

@@ -12,11 +12,11 @@ from math import hypot, sqrt
 from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, Note, Span, phrase
-from linkwright.geometry.placement import Placement, placement
+from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.polygon import turn
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.names_wheels import wheels
+from linkwright.lint.rules.names_wheels import joints_above, wheels
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Cylinder, Link, Robot, Sphere, Vector3
 
@@ -72,7 +72,8 @@ class WheelsNotLevel(Rule):
     ## Why
 
     A driven wheel in the air turns without moving the robot, and a robot that stands on two wheels and one corner of
-    its body turns in circles. The lowest points of all wheels and casters lie in one plane, unless something springs.
+    its body turns in circles. The lowest points of all wheels and casters lie in one plane. What hangs on a joint that
+    lifts it, such as the rockers of a rover, finds the ground by itself, and is left alone.
 
     ## Example
 
@@ -94,10 +95,11 @@ class WheelsNotLevel(Rule):
         tolerance = self.option(subject, "tolerance", float)
         driven = [contact for contact in found if contact.is_wheel]
         ground = min(contact.place[2] for contact in driven)
+        lowest = min(driven, key=lambda each: each.place[2]).link
+        springing = _springing(subject)
         for contact in found:
             gap = contact.place[2] - ground
-            if abs(gap) > tolerance:
-                lowest = min(driven, key=lambda each: each.place[2]).link
+            if abs(gap) > tolerance and springing.isdisjoint((contact.link.name, lowest.name)):
                 where = phrase("above") if gap > 0 else phrase("below")
                 yield self.report(
                     phrase(
@@ -112,6 +114,22 @@ class WheelsNotLevel(Rule):
                     notes=[Note(phrase("'{name}' is defined here", name=lowest.name), _place(lowest))],
                     hint=phrase("check the heights of their joints, and the radii"),
                 )
+
+
+def _springing(subject: Subject) -> set[str]:
+    """The wheels and casters that a joint between them and the body can lift; one that steers turns about z."""
+    robot, frames = subject.robot, subject.frames
+    found: set[str] = set()
+    if robot is None:
+        return found
+    for joint in robot.joints.values():
+        for above in joints_above(robot, joint):
+            if above.type == "fixed" or above.child not in frames:
+                continue
+            level = hypot(*turned(frames[above.child].rotation, above.axis)[:2])
+            if (level > _LEVEL) is (above.type != "prismatic"):
+                found.add(joint.child)
+    return found
 
 
 class CenterBeyondWheels(Rule):
