@@ -338,6 +338,25 @@ def test_what_is_put_aside_has_errors_only_in_a_folder(here, capsys, folder, is_
     assert ("LW221" in capsys.readouterr().err) is is_told
 
 
+@pytest.mark.parametrize(("parent", "is_told"), [("lb", False), ("lost", True)])
+def test_a_part_that_a_robot_of_its_package_includes_no_more_is_no_broken_robot(here, capsys, parent, is_told):
+    joint = '<joint name="{0}" type="fixed"><parent link="base_link"/><child link="l{0}"/></joint>'
+    chain = LONG_AXIS.replace("</robot>", "") + "".join(f'<link name="l{name}"/>{joint.format(name)}' for name in "bc")
+    camera = f'<joint name="camera" type="fixed"><parent link="{parent}"/><child link="camera"/></joint>'
+    red = '<visual><geometry><box size="1 1 1"/></geometry><material name="red"/></visual>'
+    write(
+        here,
+        {
+            "package.xml": "<package><name>p</name></package>",
+            "r.urdf.xacro": chain.replace("<robot", f"<robot {XACRO}") + "</robot>",
+            "camera.xacro": f'<robot name="r" {XACRO}><link name="camera">{red}</link>{camera}</robot>',
+        },
+    )
+    main(["check", ".", "--format", "concise"])
+    told = capsys.readouterr().out
+    assert ("URDF150" in told, "URDF160" in told) == (is_told, is_told)
+
+
 @pytest.mark.parametrize(("folder", "is_told"), [("launch", True), ("launch/past", False), ("launch/old", False)])
 def test_of_launch_files_that_are_put_aside_a_folder_check_tells_errors_only(here, capsys, folder, is_told):
     text = """from launch_ros.actions import Node

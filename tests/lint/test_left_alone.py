@@ -464,6 +464,16 @@ def test_a_mesh_off_its_own_origin_needs_another_origin_for_its_collision(tmp_pa
     assert str(found.hint).startswith(hint)
 
 
+@pytest.mark.parametrize(("size", "codes"), [(60, ["LW433"]), (40, ["LW412", "LW413"])])
+def test_a_mesh_in_millimetres_is_told_of_once(told, size, codes):
+    facet = f"facet normal 0 0 1\nouter loop\nvertex 5 0 0\nvertex {5 + size} 0 0\nvertex 5 {size} 0\nendloop\nendfacet"
+    seen = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
+    felt = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    text = robot(f'<link name="a">{seen}{felt}</link>')
+    found = told(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
+    assert sorted(found) == codes
+
+
 @pytest.mark.parametrize(("far", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
 def test_a_shape_that_is_far_away_is_told_of_once(told, far, codes):
     seen = f'<visual><origin xyz="{far} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'

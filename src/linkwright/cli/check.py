@@ -27,6 +27,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.diagnostics.alike import alike_together
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
+from linkwright.diagnostics.phrase import as_phrase
 from linkwright.diagnostics.translation import localized
 
 if TYPE_CHECKING:
@@ -47,6 +48,9 @@ _GIVEN_BY_USERS = "XAC214"
 """An environment variable without a value: whoever starts the robot sets it."""
 _ONCE = "PKG101"
 """A package that is not here is one thing to mend, however many files name it."""
+_NO_LINK = "URDF150"
+_OF_WHOLE_ROBOTS = frozenset({_NO_LINK, "URDF152", "URDF160"})
+"""Findings on what a file lacks that may be in the one that includes it."""
 _ASIDE = re.compile(
     r"tests?\d*|(.+[_-])?(old|bak|past|deprecated|discard(ed)?|(archived?|backups?)([_-].*)?)"
     r"|vendor(ed)?|(third|3rd)[_-]?party",
@@ -213,6 +217,8 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
         if each.file not in targets.named:
             is_aside = _is_put_aside(each.file, paths) or _is_generated(each.file, targets.files)
             said = _without_said_of_source(each, examined, _of_a_folder(said, is_aside=is_aside))
+            if _is_unused_part(each, examined):
+                said = (one for one in said if one.code not in _OF_WHOLE_ROBOTS)
         _add(found, (*each.trouble, *said))
     for folder in targets.packages:
         settings, trouble = words.settings(folder)
@@ -232,13 +238,10 @@ class _Examined(NamedTuple):
 
 def _parts(checked: Checked) -> _Parts | None:
     """The package of a robot and the names of its links and joints, by which one made by xacro is recognised."""
-    from linkwright.packages import enclosing_package
-
-    robot = checked.robot
-    package = enclosing_package(checked.path.absolute().parent)
+    robot, package = checked.robot, _package_of(checked.path)
     if robot is None or package is None or len(robot.joints) < _FEWEST_JOINTS:
         return None
-    return package[1], frozenset(robot.links), frozenset(robot.joints)
+    return package, frozenset(robot.links), frozenset(robot.joints)
 
 
 def _without_said_of_source(
@@ -249,6 +252,22 @@ def _without_said_of_source(
     told = {(each.code, each.message) for other in same for each in other.said}
     is_made = examined.file.suffix == ".urdf" and examined.parts is not None
     return (each for each in said if not (is_made and (each.code, each.message) in told))
+
+
+def _is_unused_part(examined: _Examined, others: Sequence[_Examined]) -> bool:
+    """Whether a xacro file has joints on links of another robot of its package, which may include it again."""
+    missing = {as_phrase(each.message).arguments.get("name") for each in examined.said if each.code == _NO_LINK}
+    if not missing or examined.file.suffix != ".xacro":
+        return False
+    folder = _package_of(examined.file)
+    return any(each.parts is not None and each.parts[0] == folder and missing <= each.parts[1] for each in others)
+
+
+def _package_of(file: Path) -> Path | None:
+    from linkwright.packages import enclosing_package
+
+    package = enclosing_package(file.absolute().parent)
+    return None if package is None else package[1]
 
 
 def _of_a_folder(said: Iterable[Diagnostic], *, is_aside: bool) -> Iterator[Diagnostic]:

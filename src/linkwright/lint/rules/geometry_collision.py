@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
@@ -9,9 +10,11 @@ from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, Span, phr
 from linkwright.lint.extents import MARKER
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
+from linkwright.lint.rules.geometry import is_scenery
+from linkwright.lint.rules.meshes import Millimetres
 from linkwright.lint.subject import Subject
 from linkwright.lint.walk import SURROUNDINGS
-from linkwright.urdf import Collision, Link, Visual
+from linkwright.urdf import Collision, Link, Mesh, Visual
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
@@ -148,10 +151,7 @@ class CollisionApart(Rule):
     name = "collision-apart"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link in _doubly_shaped(subject):
-            seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
-            if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:
-                continue
+        for link, seen, felt in _comparable(subject):
             gap = seen.gap(felt)
             is_apart = _FAR > gap > max(0.25 * min(seen.diagonal, felt.diagonal), 1e-3)
             if is_apart and not _is_moved_to_a_child(subject, link, felt):
@@ -204,10 +204,7 @@ class CollisionSize(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
-        for link in _doubly_shaped(subject):
-            seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
-            if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:
-                continue
+        for link, seen, felt in _comparable(subject):
             ratio = felt.diagonal / seen.diagonal
             if not 1 / factor <= ratio <= factor:
                 yield self.report(
@@ -245,6 +242,20 @@ def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
 def _doubly_shaped(subject: Subject) -> Iterator[Link]:
     """The links that have visuals and collisions."""
     return (link for link in subject.links if link.visuals and link.collisions)
+
+
+def _comparable(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
+    """The links with the boxes around their visuals and their collisions, but for specks and meshes in millimetres."""
+    largest = math.inf if is_scenery(subject) else Millimetres().option(subject, "largest", float)
+    for link in _doubly_shaped(subject):
+        seen, felt = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
+        if seen is None or felt is None or min(seen.diagonal, felt.diagonal) < MARKER:
+            continue
+        shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
+        meshes = [shape for shape in shapes if isinstance(shape.geometry, Mesh)]
+        found = [bounds for bounds in map(subject.extents.shape_bounds, meshes) if bounds is not None]
+        if all(max(bounds.size) <= largest for bounds in found):
+            yield link, seen, felt
 
 
 def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
