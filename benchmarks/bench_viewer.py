@@ -18,13 +18,17 @@ from dataclasses import dataclass
 from typing import Any
 
 import aiohttp
+import numpy as np
+import psutil
 
 from benchmarks.data_scenes import Frames, at_rate
 from benchmarks.measure import Row
 from benchmarks.robots import tree_robot
+from linkwright.bag import History
+from linkwright.bag.stillness import content_of
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, Graph
-from linkwright.messages import String
+from linkwright.messages import String, TFMessage, TransformBatch, get_message, serialize
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
@@ -177,6 +181,37 @@ async def _drained(socket: aiohttp.ClientWebSocketResponse) -> None:
         return
 
 
+def standing() -> Row:
+    """What a process grows by that keeps an hour of a simulated robot at rest, which trembles by rounding."""
+    now_ns = 0
+    history = History(256_000_000, lambda: now_ns)
+
+    def keep(topic: str, message: Any) -> None:
+        data = serialize(message)
+        history.add(topic, data, content=content_of(message.TYPE_NAME, data))
+
+    clock = get_message("rosgraph_msgs/msg/Clock")()
+    process = psutil.Process()
+    before = 0
+    for tick in range(61 * 60 * 100):
+        now_ns = tick * 10_000_000
+        clock.clock.sec, clock.clock.nanosec = divmod(now_ns, 1_000_000_000)
+        keep("/clock", clock)
+        pose = [0.1 + 1e-13 * (tick % 7), 0, 0.05, 0, 0, 0, 1]
+        for topic, every, parts in (
+            ("/tf", 2, ["base"]),
+            ("/tf", 3, ["left", "right"]),
+            ("/world_poses", 3, ["a", "b"]),
+        ):
+            if tick % every == 0:
+                poses = np.array([pose] * len(parts))
+                keep(topic, TFMessage(batch=TransformBatch(("odom",) * len(parts), tuple(parts), now_ns, poses)))
+        if tick == 60 * 100:  # the first minute fills what is kept once
+            before = process.memory_info().rss
+    history.close()
+    return Row("growth in an hour of a simulated robot at rest", (process.memory_info().rss - before) / 1e6, "MB", "2")
+
+
 def moving(links: int, target: str, pages: tuple[tuple[int, str], ...]) -> list[Row]:
     """What frames that move cost with nobody, one or many watching, and how old they are when they come."""
     what = f"{links} links at {RATE} Hz"
@@ -203,4 +238,5 @@ def rows() -> list[Row]:
         )
         took, size = asyncio.run(opening(joints))
         table.append(Row(f"page opens, {joints} joints, {size / 1024:.0f} KiB", took, "ms"))
+    table.append(standing())
     return table

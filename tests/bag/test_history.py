@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from linkwright.bag import History, shrinking
+from linkwright.bag.saving import in_simulated_time, last_reset_ns
 from linkwright.bag.shrinking import whole
 from linkwright.bag.stillness import content_of
 from linkwright.messages import TFMessage, TransformBatch, deserialize, get_message, serialize
@@ -15,6 +16,7 @@ from tests.waiting import wait_until
 
 SECOND = 1_000_000_000
 JointState = get_message("sensor_msgs/msg/JointState")
+SimulatedTime = get_message("rosgraph_msgs/msg/Clock")
 
 
 class Clock:
@@ -213,6 +215,99 @@ def test_transforms_of_each_publisher_stand_still_by_themselves() -> None:
         found = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], second * SECOND)]
         newest = {batch.children[0]: batch.poses[0][0] for batch in found}
         assert newest == {"wheel": 0.0, "robot": second}
+
+
+def transforms(history: History, clock: Clock, x: float) -> None:
+    """A transform now."""
+    data = serialize(
+        TFMessage(batch=TransformBatch(("base",), ("robot",), clock.ns, np.array([[x, 0, 0, 0, 0, 0, 1.0]])))
+    )
+    history.add("/tf", data, content=content_of(TFMessage.TYPE_NAME, data))
+
+
+def tick(history: History, clock: Clock, told_ns: int) -> None:
+    """A message of a simulated clock now."""
+    time = SimulatedTime()
+    time.clock.sec, time.clock.nanosec = divmod(told_ns, SECOND)
+    data = serialize(time)
+    history.add("/clock", data, content=content_of(SimulatedTime.TYPE_NAME, data))
+
+
+def told_at(history: History, second: float) -> float:
+    """The simulated time at a time, both in seconds."""
+    ((_, _, data),) = history.state_at(["/clock"], int(second * SECOND))
+    time = deserialize(data, SimulatedTime).clock
+    return time.sec + time.nanosec / SECOND
+
+
+def test_a_simulated_robot_that_trembles_by_rounding_stands_still() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    for number in range(6000):
+        clock.ns = number * SECOND // 100
+        transforms(history, clock, 0.1 + 1e-12 * (number % 3))
+    assert history.count == 12
+
+
+def test_a_robot_that_creeps_is_kept_within_a_nanometre() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    for number in range(3000):
+        clock.ns = number * SECOND // 100
+        transforms(history, clock, number * 1e-10)
+    for second in (0.5, 7.0, 12.34, 29.98):
+        found = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], int(second * SECOND))]
+        assert found[-1].poses[0][0] == pytest.approx(second * 1e-8, abs=2e-9)
+
+
+def test_a_clock_alone_takes_two_messages_in_ten_seconds_and_tells_each_time_between_them() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    for number in range(6000):
+        clock.ns = number * SECOND // 100
+        tick(history, clock, 5 * SECOND + clock.ns // 2)
+    assert history.count == 12
+    for second in (0.0, 0.5, 7.25, 29.99, 59.99):
+        assert told_at(history, second) == pytest.approx(5 + second / 2, abs=0.01)
+
+
+def test_a_clock_is_kept_as_it_came_while_something_moves() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    for number in range(500):
+        clock.ns = number * SECOND // 100
+        transforms(history, clock, number / 100)
+        tick(history, clock, clock.ns)
+    assert history.count == 1000
+
+
+def test_a_clock_that_begins_anew_is_seen_to() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    for number in range(800):
+        clock.ns = number * SECOND // 100
+        tick(history, clock, clock.ns % (4 * SECOND))
+    part = history.part(0, clock.ns)
+    assert last_reset_ns(part) == 4 * SECOND
+    assert told_at(history, 3.99) == pytest.approx(3.99)
+    assert told_at(history, 4.0) == 0.0
+
+
+def test_messages_between_which_a_clock_ran_alone_have_the_simulated_times_that_they_came_at() -> None:
+    clock = Clock()
+    history = History(10**8, clock)
+    for number in range(1000):
+        clock.ns = number * SECOND // 100
+        tick(history, clock, SECOND + clock.ns)
+        if number in (333, 667):
+            transforms(history, clock, number)
+    moved = [stamp for name, stamp, _ in in_simulated_time(history.part(0, clock.ns)) if name == "/tf"]
+    assert moved[:2] == [int(4.33 * SECOND), int(7.67 * SECOND)]
+
+
+def test_bytes_that_are_no_clock_have_no_content() -> None:
+    for data in (b"", b"\0\1\0\0", b"\0\0\0\0" + bytes(8)):
+        assert content_of(SimulatedTime.TYPE_NAME, data) is None
 
 
 def test_events_without_a_stamp_are_all_kept() -> None:

@@ -1,8 +1,9 @@
 """The messages of the last minutes in memory, within a number of bytes, as a recording that can be played.
 
-Two things make minutes of it. What stands still is kept sparsely: of messages that repeat but for their stamps the
-first, and a second one that is always the newest. Of large messages, pictures and clouds, the older ones are thinned
-when the room is full: the further back, the further apart.
+Three things make minutes of it. What stands still is kept sparsely: of messages that repeat but for their stamps the
+first, and a second one that is always the newest. Of a simulated clock, the messages beside those of other topics are
+kept. Of large messages, pictures and clouds, the older ones are thinned when the room is full: the further back, the
+further apart.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from heapq import heappop, heappush
 
 from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS, TRANSFORMS_NS, Recorded
 from linkwright.bag.shrinking import Packed, Shrinker, whole
-from linkwright.bag.stillness import Content
+from linkwright.bag.stillness import Content, clock_between
+from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import TFMessage, deserialize
 
 _SECOND = 1_000_000_000
@@ -78,19 +80,21 @@ class _Track:
         """Keep a message in the place of an equal one, if there is such; returns the bytes that it takes more, or None.
 
         The first message of a run stays, and so does the time of the second, which is always the newest: whoever asks
-        for a time in between gets the state of then, with a stamp that is not too old.
+        for a time in between gets the state of then, with a stamp that is not too old. Of a clock the second has the
+        newest time, too: between the two it ran evenly, see `clock_at`.
         """
         run = self._runs.get(content.what)
-        if run is None or run.state != content.state or stamp_ns - run.since_ns >= _STILL_NS:
-            self._runs[content.what] = _Run(stamp_ns, content.state)
+        if run is None or not run.content.is_repeated_by(content) or stamp_ns - run.since_ns >= _STILL_NS:
+            self._runs[content.what] = _Run(stamp_ns, content)
             return None
         place = None if run.second is None else self._place(run.second)
-        if place is None:
+        is_clock = content.told_ns is not None
+        if place is None or (is_clock and place != len(self.kept) - 1):
             run.second = number
             self._lasting.add(number)
             return None
-        stamp_ns, number, replaced = self.kept[place]
-        self.kept[place] = stamp_ns, number, data
+        came_ns, number, replaced = self.kept[place]
+        self.kept[place] = stamp_ns if is_clock else came_ns, number, data
         self.size += len(data) - len(replaced)
         return len(data) - len(replaced)
 
@@ -164,6 +168,15 @@ class _Track:
         end = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
         return self.kept[max(self.first, end - count) : end]
 
+    def clock_at(self, at_ns: int) -> list[_Kept]:
+        """The last message of a clock up to a time; where it came for many, the time that it would have told then."""
+        before = self.until(at_ns, 1)
+        place = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
+        if not before or place == len(self.kept) or self.kept[place][1] not in self._lasting:
+            return before
+        (began_ns, number, earlier), (end_ns, _, later) = before[0], self.kept[place]
+        return [(at_ns, number, clock_between(earlier, later, (at_ns - began_ns) / (end_ns - began_ns)))]
+
     def between(self, start_ns: int, end_ns: int) -> list[_Kept]:
         """The messages from one time to another, both included."""
         begin = bisect_left(self.kept, (start_ns,), lo=self.first)
@@ -173,11 +186,11 @@ class _Track:
 class _Run:
     """Messages of a topic with one content: since when they come, and the number of the second."""
 
-    __slots__ = ("second", "since_ns", "state")
+    __slots__ = ("content", "second", "since_ns")
 
-    def __init__(self, since_ns: int, state: bytes) -> None:
+    def __init__(self, since_ns: int, content: Content) -> None:
         self.since_ns = since_ns
-        self.state = state
+        self.content = content
         self.second: int | None = None
 
 
@@ -207,6 +220,8 @@ class History:
         self._tracks: dict[str, _Track] = {}
         self._oldest: list[tuple[int, str, _Track]] = []
         self._largest: _Track | None = None
+        self._told_ns = 0
+        self._changes = 0
         self._shrinker = Shrinker(self._replace)
 
     def add(self, topic: str, data: bytes, at_ns: int | None = None, content: Content | None = None) -> None:
@@ -222,11 +237,15 @@ class History:
             track = self._tracks.get(topic)
             if track is None:
                 track = self._tracks[topic] = _Track(topic)
+            if content is not None and content.told_ns is not None:
+                content = self._as_time_passes(content, content.told_ns)
             more = None if content is None else track.repeat(self._newest_ns, self.count, data, content)
             if more is not None:
                 self.size += more
                 return
             track.append(self._newest_ns, self.count, data)
+            if content is None or content.told_ns is None:
+                self._changes += 1
             self._queue(track)
             if self._largest is None or track.size > self._largest.size:
                 self._largest = track
@@ -240,6 +259,13 @@ class History:
     def close(self) -> None:
         """Stop packing; the messages are kept as they are."""
         self._shrinker.close()
+
+    def _as_time_passes(self, content: Content, told_ns: int) -> Content:
+        """The content of a clock: it repeats itself while nothing else comes and time does not begin anew."""
+        if told_ns < self._told_ns:
+            self._changes += 1
+        self._told_ns = told_ns
+        return content._replace(state=b"%d" % self._changes)
 
     def _make_room(self) -> bool:
         """Thin what is large, or drop the oldest message of all; returns whether there was anything."""
@@ -305,7 +331,8 @@ class History:
                     near_ns = at_ns - TRANSFORMS_NS
                     kept = track.lasting(near_ns - _STILL_NS, near_ns - 1) + track.between(near_ns, at_ns)
                 else:
-                    kept = track.until(at_ns, sys.maxsize if name == STATIC_TRANSFORMS else 1)
+                    count = sys.maxsize if name == STATIC_TRANSFORMS else 1
+                    kept = track.clock_at(at_ns) if name == CLOCK_TOPIC else track.until(at_ns, count)
                     before = [each for each in track.before.values() if each[0] <= at_ns]
                     if name == STATIC_TRANSFORMS:
                         kept = before + kept
