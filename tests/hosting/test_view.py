@@ -6,6 +6,7 @@ import asyncio
 import io
 import re
 import socket
+import threading
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -63,6 +64,47 @@ async def test_the_viewer_comes_first(tmp_path: Path) -> None:
         await until("Robot initialized")
         printed = await until("joint_state_publisher_gui-2]: started")
         assert names_started(printed) == ["viewer-3", "robot_state_publisher-1", "joint_state_publisher_gui-2"]
+
+
+async def test_the_address_is_told_before_the_viewer_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "m.urdf").write_text(GOOD)
+    out, told = io.StringIO(), []
+    monkeypatch.setattr("linkwright.hosting.node_host.load_viewer", lambda: told.append(out.getvalue()))
+    options = HostOptions(port=0, open_browser=False, network=False)
+    finder = PackageFinder(start=tmp_path, environment={})
+    view = ModelView(XacroCall(tmp_path / "m.urdf"), finder, options, LaunchLog(out, err := io.StringIO()))
+    running = asyncio.create_task(view.run(None))
+    await eventually(lambda: "joint_state_publisher_gui-2]: started" in err.getvalue())
+    view.interrupt("the test is over")
+    assert await running
+    assert told == [out.getvalue()]
+    assert told[0].count("Viewer: http://127.0.0.1:") == 1
+
+
+async def test_a_view_that_ends_while_its_viewer_is_loaded_starts_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "m.urdf").write_text(GOOD)
+    loop = asyncio.get_running_loop()
+    ended = threading.Event()
+
+    def end() -> None:
+        view.interrupt("the test is over")
+        ended.set()
+
+    def load() -> None:
+        loop.call_soon_threadsafe(end)
+        ended.wait()
+
+    monkeypatch.setattr("linkwright.hosting.node_host.load_viewer", load)
+    options = HostOptions(port=0, open_browser=False, network=False)
+    finder = PackageFinder(start=tmp_path, environment={})
+    view = ModelView(XacroCall(tmp_path / "m.urdf"), finder, options, LaunchLog(out := io.StringIO(), io.StringIO()))
+    assert await view.run(None)
+    assert names_started(out.getvalue()) == []
+    port = int(re.search(r":(\d+)/", out.getvalue())[1])
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", port))
 
 
 async def test_with_foxglove_a_bridge_is_started_too(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from linkwright.hosting.launch_log import SCREEN, output_destinations
 from linkwright.hosting.network import Network, SharedNames
 from linkwright.hosting.plans import HostedPlan, Supervisor
 from linkwright.hosting.simulator_reload import follow_files
-from linkwright.hosting.viewer_host import ViewerHost
+from linkwright.hosting.viewer_host import ViewerHost, load_viewer
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph, LogRecord, Node
@@ -106,6 +106,18 @@ class NodeHost:
         """Start nothing of what was planned."""
         self._planned.clear()
 
+    async def give_out_pages(self) -> None:
+        """Give out the pages of the viewers that are planned, and load meanwhile what these are made of.
+
+        A server that cannot listen is told of when its viewer is started.
+        """
+        planned = [plan for plan in self._planned if plan.is_viewer]
+        for plan in planned:
+            with suppress(LinkwrightError):
+                await self._viewers.give_out_page(plan)
+        if planned:
+            await asyncio.to_thread(load_viewer)
+
     async def start_planned(self) -> None:
         """Start what was planned, viewers first. Between two nodes the loop gets its turn."""
         if not self._planned:
@@ -155,6 +167,7 @@ class NodeHost:
         self.close_nodes()
         for plan in self._viewers.plans():
             await self._stop_viewer(plan, self._viewers.take(plan))
+        await self._viewers.close()
         self.network.close()
         if self._shared_names is not None:
             self._shared_names.close()

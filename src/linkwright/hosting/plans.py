@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.hosting.last_minutes import DEFAULT_HISTORY
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
 
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
+    from linkwright.graph.parameters.rules import ParameterRules
     from linkwright.hosting.reload import LiveReload
     from linkwright.hosting.xacro_calls import Descriptions
     from linkwright.nodes import NodeOptions
@@ -46,7 +46,7 @@ class HostedPlan:
         destinations: where its lines on stdout (1) and stderr (2) go, see `linkwright.hosting.launch_log`.
         respawns: how often it is started again when it has done its work; without end if negative.
         respawn_delay: seconds to wait before that.
-        for_others: parameters for further nodes that it makes, by their names.
+        for_others: parameters for further nodes that it makes, by their names; None for none.
         environment: the environment variables that it has, those of the moment when the plan was made.
         waits: whether, if it cannot start with its model, it starts as soon as the model file is repaired.
     """
@@ -66,7 +66,7 @@ class HostedPlan:
     respawns: int = 0
     respawn_delay: float = 0.0
     waits: bool = True
-    for_others: ParameterRules = field(default_factory=ParameterRules)
+    for_others: ParameterRules | None = None
     environment: Mapping[str, str] = field(default_factory=lambda: dict(os.environ))
 
     @property
@@ -96,6 +96,7 @@ class HostedPlan:
 
     def node_options(self, library: DescriptionLibrary) -> NodeOptions:
         """How to start it; `library` is the readings of robot descriptions that the process shares."""
+        from linkwright.graph.parameters.rules import ParameterRules
         from linkwright.nodes import NodeOptions
 
         return NodeOptions(
@@ -105,7 +106,7 @@ class HostedPlan:
             remappings=self.remappings,
             arguments=self.arguments,
             library=library,
-            for_others=self.for_others,
+            for_others=self.for_others or ParameterRules(),
             environment=self.environment,
         )
 

@@ -127,8 +127,10 @@ class ModelView:
                 self._plan_others()
                 if foxglove is not None:
                     self._plan("foxglove_bridge", "foxglove_bridge", {"port": foxglove})
-                await self.host.start_planned()
-                self.reload.start()
+                await self.host.give_out_pages()
+                if not self._is_over.is_set():
+                    await self.host.start_planned()
+                    self.reload.start()
             await self._is_over.wait()
             self._end_recording()  # before what takes time: nothing more is recorded
             self.ending = True

@@ -9,13 +9,14 @@ import threading
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.hosting.plans import HostedPlan, Supervisor
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph
     from linkwright.nodes import RunningNode
     from linkwright.viewer import Viewer
+    from linkwright.viewer.web.page_server import PageServer
 
 _CLOSE_SECONDS = 0.8
 
@@ -31,6 +32,7 @@ class ViewerHost:
     def __init__(self, session: Supervisor) -> None:
         self._session = session
         self._viewers: dict[str, tuple[HostedPlan, Viewer]] = {}
+        self._servers: dict[str, PageServer] = {}
         self._findings: list[Diagnostic] = []
         self._at_given_port = ""
 
@@ -59,6 +61,28 @@ class ViewerHost:
         for _, viewer in self._viewers.values():
             _attach_panel(viewer, running)
 
+    async def give_out_page(self, plan: HostedPlan) -> None:
+        """Say where a viewer is going to be: its page is fetched while the viewer is made.
+
+        Raises:
+            LinkwrightError: VIEW101 to VIEW103, it cannot listen there.
+        """
+        from linkwright.viewer.web.page_server import PageServer
+
+        server = PageServer(self._session.options.host, self._port_for(plan))
+        try:
+            await server.open()
+        except LinkwrightError:
+            self._release_port(plan)
+            raise
+        self._servers[plan.process_name] = server
+        self._announce(server)
+
+    def _announce(self, server: PageServer) -> None:
+        self._session.log.announce(f"Viewer: {server.url}")
+        if self._session.options.open_browser and not server.pages_wait:
+            _open_in_browser(server.url)
+
     async def start(
         self, plan: HostedPlan, graph: Graph, nodes: list[RunningNode], *, with_world: bool = False
     ) -> None:
@@ -75,6 +99,7 @@ class ViewerHost:
         """
         from linkwright.viewer import Viewer, find_unsaved
         from linkwright.viewer.guests import GuestRecordings
+        from linkwright.viewer.web.page_server import PageServer
 
         session = self._session
         if plan.viewer_config is not None:
@@ -88,13 +113,16 @@ class ViewerHost:
             from linkwright.hosting.world_config import show_world
 
             show_world(config)
+        server = self._servers.pop(plan.process_name, None)
+        is_given_out = server is not None
+        if server is None:
+            server = PageServer(session.options.host, self._port_for(plan))
         viewer = Viewer(
             graph,
             library=session.descriptions.library,
             finder=session.finder,
             config=config,
-            host=session.options.host,
-            port=self._port_for(plan),
+            server=server,
             title=session.options.title,
             options=plan.node_options(session.descriptions.library),
             history=session.options.history,
@@ -104,12 +132,10 @@ class ViewerHost:
         self._viewers[plan.process_name] = plan, viewer
         if plan.viewer_started is not None:
             plan.viewer_started(viewer)
-        session.log.announce(f"Viewer: {viewer.url}")
-        if session.options.open_browser:
-            if viewer.pages_wait:
-                session.spawn(self._open_unless_back(viewer))
-            else:
-                _open_in_browser(viewer.url)
+        if not is_given_out:
+            self._announce(server)
+        if session.options.open_browser and server.pages_wait:
+            session.spawn(self._open_unless_back(viewer))
         instead = "RViz" if plan.owner is not None else "Gazebo's window"
         session.log.say(
             plan.process_name, f"started in the launcher's process: the viewer in the browser stands in for {instead}"
@@ -134,11 +160,19 @@ class ViewerHost:
         self._at_given_port = plan.process_name
         return port
 
-    def take(self, plan: HostedPlan) -> Viewer:
-        """A viewer that is to be ended, which this host then holds no longer."""
+    def _release_port(self, plan: HostedPlan) -> None:
         if plan.process_name == self._at_given_port:
             self._at_given_port = ""
+
+    def take(self, plan: HostedPlan) -> Viewer:
+        """A viewer that is to be ended, which this host then holds no longer."""
+        self._release_port(plan)
         return self._viewers.pop(plan.process_name)[1]
+
+    async def close(self) -> None:
+        """Stop giving out pages whose viewers were never made."""
+        while self._servers:
+            await self._servers.popitem()[1].close()
 
     async def stop(self, plan: HostedPlan, viewer: Viewer) -> None:
         """End a viewer; what was not saved is kept first, before anything can take its time."""
@@ -147,6 +181,12 @@ class ViewerHost:
             await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
         except asyncio.TimeoutError:
             self._session.log.caution(plan.process_name, "a browser did not let go of its connection in time")
+
+
+def load_viewer() -> None:
+    """Load the modules of viewers, which takes longer than all that starts before them; may run in another thread."""
+    import linkwright.viewer.guests
+    import linkwright.viewer.viewer  # noqa: F401 - only loaded
 
 
 def _attach_panel(viewer: Viewer, running: RunningNode) -> None:

@@ -25,9 +25,9 @@ from linkwright.viewer.protocol.message import ServerMessage, encode
 from linkwright.viewer.protocol.session import PROTOCOL_VERSION, Hello
 from linkwright.viewer.published_topics import PublishedTopics
 from linkwright.viewer.visualization.manager import Managers, VisualizationManager
-from linkwright.viewer.web.access import Gate
 from linkwright.viewer.web.audience import Audience, Page
 from linkwright.viewer.web.outbox import Payload
+from linkwright.viewer.web.page_server import PageServer
 
 if TYPE_CHECKING:
     from linkwright.bag import BagReader, Playback
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from linkwright.graph import Node
     from linkwright.nodes.joint_panel import JointPanel
     from linkwright.viewer.live_history import LiveHistory
-    from linkwright.viewer.web.kept_tokens import PortToken
-    from linkwright.viewer.web.server import WebServer
     from linkwright.viewer.web.uploads import Guests
 
 _NAME = "rviz2"
@@ -57,6 +55,7 @@ class Viewer:
         config: displays, options and view.
         host: the address to listen on; any but this machine's loopback address lets others in who know the token.
         port: 0 for any; None for 7448 or the next free one.
+        server: the server, which may give out the page already; None for one at `host` and `port`.
         title: the title of the page.
         options: the node's name, remappings, parameters and ROS arguments.
         history: the bytes of received messages that are kept, for pages to go back to the last minutes; 0 for none.
@@ -78,6 +77,7 @@ class Viewer:
         config: RvizConfig,
         host: str = "127.0.0.1",
         port: int | None = None,
+        server: PageServer | None = None,
         title: str = "",
         options: NodeOptions | None = None,
         history: int = 0,
@@ -86,10 +86,9 @@ class Viewer:
         self._history = history
         self._beside = beside
         self.guests: Guests | None = None
-        self._host, self._port, self._title = host, port, title
-        self._url = ""
+        self._server = server or PageServer(host, port)
+        self._title = title
         self._run = secrets.token_hex(8)
-        self._kept: tuple[int, PortToken] | None = None
         self._node, _ = create_node(graph, options or NodeOptions(), _NAME)
         frame = self._node.declare_parameter(
             _FIXED_FRAME,
@@ -99,7 +98,7 @@ class Viewer:
         config.options.set(("Fixed Frame",), frame.value)
         self._receivers: dict[type, Callable[[Page, Any], object]] = {}
         self._audience = Audience(self._opening, self._receivers, self._page_gone, self._node.get_logger())
-        shared: dict[str, Any] = {}
+        shared: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
         if beside is not None:  # what the server gives out, by names that none of its viewers has twice
             served = beside.context
             shared = {"meshes": served.meshes, "downloads": served.downloads, "display_ids": served.display_ids}
@@ -120,7 +119,6 @@ class Viewer:
         self.live: LiveHistory | None = None
         for feature in make_features(self):
             self._take_in(feature)
-        self._server: WebServer | None = None
 
     # --- life --------------------------------------------------------------------------------------------------
 
@@ -132,64 +130,48 @@ class Viewer:
         """
         try:
             if self._beside is None:
-                await self._serve()
+                await self._listen()
             if self._history:
                 self.live = self._timeline.keep(self._history)
             self.managers.shared.start()
             self._is_started = True
             for feature in self._features:
                 feature.start()
+            if self._beside is None:
+                self._server.show(self._audience, self.guests)
         except BaseException:  # cancelled, too: whoever ends the program does not know this viewer yet
             self._node.destroy_node()
-            if self._server is not None:
-                await self._server.close()
+            await self._server.close()
             raise
 
-    async def _serve(self) -> None:
-        from linkwright.viewer.web.kept_tokens import keep_token, new_token
-        from linkwright.viewer.web.server import WebServer, is_open_to_others, listen
-
-        listener = listen(self._host, self._port)
-        is_open = is_open_to_others(listener)
-        if self._port != 0 and not is_open:
-            port = listener.getsockname()[1]
-            self._kept = port, keep_token(port)
-        gate = Gate(self._host, self._kept[1].token if self._kept else new_token())
-        self._server = WebServer(gate, self._audience, self.context.meshes, self.context.downloads, guests=self.guests)
-        self._url = await self._server.start(listener)
-        if is_open:
+    async def _listen(self) -> None:
+        if not self._server.url:
+            await self._server.open()
+        if self._server.is_open_to_others:
+            host = self._server.host
             self._node.get_logger().warning(
-                f"Listening on '{self._host}': whoever reaches it and knows the token can see and move the robot"
+                f"Listening on '{host}': whoever reaches it and knows the token can see and move the robot"
             )
 
     async def close(self) -> None:
         """Close the connections to pages, leave the graph and stop listening."""
-        self._leave_token()
+        self._server.leave_token(pages_wait=len(self._audience) > 0)
         async with AsyncExitStack() as stack:  # each of these is done, also where one before it fails
             stack.callback(self._node.destroy_node)
             stack.callback(self.context.published.close)
             if self._beside is not None:
                 stack.push_async_callback(self._audience.close)
-            if self._server is not None:
-                stack.push_async_callback(self._server.close)
-                self._server = None
+            stack.push_async_callback(self._server.close)
             stack.callback(self.managers.close)
             for feature in reversed(self._features):
                 stack.callback(feature.close)
             if self.guests is not None:
                 stack.push_async_callback(self.guests.close)
 
-    def _leave_token(self) -> None:
-        if self._kept is not None:
-            from linkwright.viewer.web.kept_tokens import leave_token
-
-            (port, kept), self._kept = self._kept, None
-            leave_token(port, kept.token, pages_wait=len(self._audience) > 0)
-
     @property
     def pages_wait(self) -> bool:
         """Whether pages of the program that was ended at this port before look for this one."""
-        return self._kept is not None and self._kept[1].pages_wait
+        return self._server.pages_wait
 
     def keep_unsaved(self) -> list[Diagnostic]:
         """Keep unsaved edits of pages, before the program ends; returns the notices about it."""
@@ -199,7 +181,7 @@ class Viewer:
     @property
     def url(self) -> str:
         """The address to open in a browser, token included; empty before `start`."""
-        return self._url
+        return self._server.url
 
     @property
     def audience(self) -> Audience:

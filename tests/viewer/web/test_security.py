@@ -312,7 +312,7 @@ async def test_a_thousand_connections_trouble_nobody(served):
         await is_served(client)
         # Those that say nothing make room for one who shows the token.
         assert (await raw(served.viewer, mesh_url(served.viewer)))[:2] == (200, "solid arm")
-        await eventually(lambda: served.viewer._server._admission._count <= MAXIMUM_CONNECTIONS)
+        await eventually(lambda: served.viewer._server.web._admission._count <= MAXIMUM_CONNECTIONS)
         assert memory() - before < 64 << 20
         for each in knocking:
             each.close()
@@ -373,7 +373,7 @@ async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_
     """The page is for everybody: its files are in memory once, and its readers make room for who has the token."""
     (tmp_path / "assets").mkdir()
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (4 << 20))
-    server = served.viewer._server
+    server = served.viewer._server.web
     monkeypatch.setattr(server, "_page_folder", tmp_path)
     monkeypatch.setattr("linkwright.viewer.web.server._HEARTBEAT", 600.0)  # the page answers only while it is read
     address = urlsplit(served.viewer.url)
@@ -402,7 +402,7 @@ async def test_who_reads_the_page_slowly_is_waited_for(served, tmp_path, monkeyp
     monkeypatch.setattr("linkwright.viewer.web.access.PATIENCE", 0.1)
     (tmp_path / "assets").mkdir()
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (16 << 20))
-    monkeypatch.setattr(served.viewer._server, "_page_folder", tmp_path)
+    monkeypatch.setattr(served.viewer._server.web, "_page_folder", tmp_path)
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     writer.write(f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\nConnection: close\r\n\r\n".encode())

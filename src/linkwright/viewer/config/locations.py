@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, phrase
 from linkwright.viewer.config import file as configuration_file
 from linkwright.viewer.config.file import FileForm
-from linkwright.viewer.protocol.configuration import Folder
 from linkwright.whole_files import write_whole_file
 
 if TYPE_CHECKING:
     from linkwright.viewer.config.rviz_config import RvizConfig
+    from linkwright.viewer.protocol.configuration import Folder
 
 
 ENDING = ".rviz"
@@ -91,6 +91,8 @@ def list_folder(text: str | None, folder: Path) -> Folder:
             )
         ) from None
     parent = None if path.parent == path else str(path.parent)
+    from linkwright.viewer.protocol.configuration import Folder  # not above: tokens of pages need only the folder
+
     return Folder(str(path), parent, sorted(folders)[:_MOST_ENTRIES], sorted(files)[:_MOST_ENTRIES])
 
 

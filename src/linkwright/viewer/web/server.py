@@ -19,14 +19,13 @@ from urllib.parse import quote
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.http_server import SERVER_LOGGER, web
 from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
-from linkwright.viewer.web.audience import Page, language_asked
 from linkwright.viewer.web.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
-from linkwright.viewer.web.uploads import Guests, Uploads
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping
 
     from linkwright.viewer.web.audience import Audience
+    from linkwright.viewer.web.uploads import Guests, Uploads
 
 PAGE_FOLDER = Path(__file__).parent.parent / "page"
 """The folder into which ``frontend/`` is built."""
@@ -87,34 +86,31 @@ MOST_UNSENT = 16 * 1024
 _NOT_SENT_LOW_WATER: int | None = getattr(socket, "TCP_NOTSENT_LOWAT", None)
 
 
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """What pages are let in to: the audience that takes their sockets, and who shows the recordings that they give."""
+
+    audience: Audience
+    guests: Guests | None
+    uploads: Uploads | None
+
+
 class WebServer:
-    """Serves one viewer.
+    """Serves one viewer, and before there is one the files of the page.
 
     Args:
         gate: checks requests.
-        audience: takes the WebSockets.
         meshes: the folders that may be read.
         downloads: files that were made for pages.
         page_folder: the built page.
-        guests: shows the recordings that pages give; None where none are taken.
     """
 
-    def __init__(
-        self,
-        gate: Gate,
-        audience: Audience,
-        meshes: MeshFolders,
-        downloads: Downloads,
-        page_folder: Path = PAGE_FOLDER,
-        guests: Guests | None = None,
-    ) -> None:
+    def __init__(self, gate: Gate, meshes: MeshFolders, downloads: Downloads, page_folder: Path = PAGE_FOLDER) -> None:
         self._gate = gate
-        self._audience = audience
         self._meshes = meshes
         self._downloads = downloads
         self._page_folder = page_folder
-        self._guests = guests
-        self._uploads = None if guests is None else Uploads(guests)
+        self._shown: asyncio.Future[_Shown] = asyncio.get_running_loop().create_future()
         self._runner: web.AppRunner | None = None
         self._listening: asyncio.Server | None = None
         self._admission: Admission | None = None
@@ -130,9 +126,9 @@ class WebServer:
         application.router.add_get("/ws", self._socket, allow_head=False)
         application.router.add_get("/mesh/{key}/{path:.+}", self._mesh)
         application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
-        if self._uploads is not None:
-            self._uploads.add_routes(application.router, self._shielded)
-            application.router.add_post("/export/{key}/{name}", self._shielded(partial(self._show_kept, self._uploads)))
+        for method, path, take in _UPLOADS:
+            application.router.add_route(method, path, self._shielded(partial(self._upload, take)))
+        application.router.add_post("/export/{key}/{name}", self._shielded(partial(self._upload, self._show_kept)))
         application.router.add_get("/{path:.+}", self._page_file)
         self._runner = web.AppRunner(
             application,
@@ -158,14 +154,29 @@ class WebServer:
             raise
         return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
 
+    def show(self, audience: Audience, guests: Guests | None = None) -> None:
+        """Let pages in, those that wait too.
+
+        Args:
+            audience: takes the WebSockets.
+            guests: shows the recordings that pages give; None where none are taken.
+        """
+        from linkwright.viewer.web.uploads import Uploads
+
+        self._shown.set_result(_Shown(audience, guests, None if guests is None else Uploads(guests)))
+
     async def close(self) -> None:
         """Close the connections to pages and stop."""
         if self._listening is not None:
             self._listening.close()
             self._listening = None
-        await self._audience.close()
-        if self._uploads is not None:
-            self._uploads.close()
+        if not self._shown.done():
+            self._shown.cancel()
+        elif not self._shown.cancelled():
+            shown = self._shown.result()
+            await shown.audience.close()
+            if shown.uploads is not None:
+                shown.uploads.close()
         if self._runner is not None:
             await self._runner.cleanup()
             self._runner = None
@@ -284,6 +295,23 @@ class WebServer:
             body=file.data, headers={"Content-Type": file.content_type, "Content-Disposition": _attached(file.name)}
         )
 
+    async def _upload(
+        self, take: Callable[[Uploads, web.Request], Awaitable[web.Response]], request: web.Request
+    ) -> web.Response:
+        uploads = (await self._viewer()).uploads
+        if uploads is None:
+            raise web.HTTPNotFound(text="This program takes no recordings.\n")
+        return await take(uploads, request)
+
+    async def _viewer(self) -> _Shown:
+        """What pages are let in to, as soon as it is there."""
+        try:
+            return await asyncio.shield(self._shown)
+        except asyncio.CancelledError:
+            if not self._shown.cancelled():
+                raise  # who asks is gone
+            raise web.HTTPServiceUnavailable(text="The program ends.\n") from None
+
     async def _show_kept(self, uploads: Uploads, request: web.Request) -> web.Response:
         """Show a recording that this program made: its file is here already."""
         kept = self._downloads.path(request.match_info["key"])
@@ -304,7 +332,10 @@ class WebServer:
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         if not self._gate.is_shown_token(request.query):
             return _without_token()
-        audience = self._audience_of(request)
+        shown = await self._viewer()
+        from linkwright.viewer.web.audience import Page, language_asked
+
+        audience = _audience_of(shown, request)
         if audience.is_full:
             return web.Response(status=503, text="Too many pages are open.\n")
         socket = web.WebSocketResponse(
@@ -324,11 +355,21 @@ class WebServer:
         await audience.attend(page, socket)
         return socket
 
-    def _audience_of(self, request: web.Request) -> Audience:
-        """The pages of the recording that a page names; where that is no longer shown, those of the viewer itself."""
-        key = request.query.get("recording", "")
-        found = None if self._guests is None or not key else self._guests.audience(key)
-        return self._audience if found is None else found
+
+_UPLOADS: tuple[tuple[str, str, Callable[[Uploads, web.Request], Awaitable[web.Response]]], ...] = (
+    ("POST", "/recordings", lambda uploads, request: uploads.announce(request)),
+    ("PUT", "/recordings/{key}/{number:[0-9]{1,4}}", lambda uploads, request: uploads.take(request)),
+    ("POST", "/recordings/{key}", lambda uploads, request: uploads.open(request)),
+    ("DELETE", "/recordings/{key}", lambda uploads, request: uploads.give_up(request)),
+)
+"""Method, address and handler of what pages ask for to give a recording."""
+
+
+def _audience_of(shown: _Shown, request: web.Request) -> Audience:
+    """The pages of the recording that a page names; where that is no longer shown, those of the viewer itself."""
+    key = request.query.get("recording", "")
+    found = None if shown.guests is None or not key else shown.guests.audience(key)
+    return shown.audience if found is None else found
 
 
 def _is_from_here(request: web.Request) -> bool:

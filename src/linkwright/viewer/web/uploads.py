@@ -24,8 +24,6 @@ from linkwright.http_server import web
 from linkwright.viewer.web.audience import language_asked
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
-
     from linkwright.viewer.web.audience import Audience
 
 PATIENCE = 60.0
@@ -106,24 +104,6 @@ class Uploads:
         self._uploads: dict[str, _Upload] = {}
         self._sweeping: asyncio.TimerHandle | None = None
 
-    def add_routes(
-        self,
-        router: web.UrlDispatcher,
-        shielded: Callable[
-            [Callable[[web.Request], Awaitable[web.Response]]], Callable[[web.Request], Awaitable[web.StreamResponse]]
-        ],
-    ) -> None:
-        """Add the routes of uploads.
-
-        Args:
-            router: the server's router.
-            shielded: wraps a handler so that it refuses requests without the token.
-        """
-        router.add_post("/recordings", shielded(self._announce))
-        router.add_put("/recordings/{key}/{number:[0-9]{1,4}}", shielded(self._take))
-        router.add_post("/recordings/{key}", shielded(self._open))
-        router.add_delete("/recordings/{key}", shielded(self._give_up))
-
     def close(self) -> None:
         """Remove what was uploaded."""
         if self._sweeping is not None:
@@ -141,7 +121,8 @@ class Uploads:
 
     # --- requests ----------------------------------------------------------------------------------------------
 
-    async def _announce(self, request: web.Request) -> web.Response:
+    async def announce(self, request: web.Request) -> web.Response:
+        """Answer what is to come with a key for it, or with why there is no room."""
         try:
             announced = msgspec.json.decode(await request.read(), type=_Announcement)
         except msgspec.DecodeError as error:
@@ -176,7 +157,8 @@ class Uploads:
         self._sweep_later()
         return web.json_response({"key": key})
 
-    async def _take(self, request: web.Request) -> web.Response:
+    async def take(self, request: web.Request) -> web.Response:
+        """Take one of the files."""
         upload = self._uploads.get(request.match_info["key"])
         number = int(request.match_info["number"])
         if upload is None or number >= len(upload.announced.files) or number in upload.whole or upload.busy:
@@ -199,7 +181,8 @@ class Uploads:
         upload.whole.add(number)
         return web.Response(status=204)
 
-    async def _open(self, request: web.Request) -> web.Response:
+    async def open(self, request: web.Request) -> web.Response:
+        """Show a recording whose files have come."""
         upload = self._uploads.get(request.match_info["key"])
         if upload is None or len(upload.whole) != len(upload.announced.files):
             raise web.HTTPNotFound(text="Nothing of that name is there.\n")
@@ -213,7 +196,8 @@ class Uploads:
         self._uploads.pop(request.match_info["key"], None)
         return web.json_response({"recording": shown})
 
-    async def _give_up(self, request: web.Request) -> web.Response:
+    async def give_up(self, request: web.Request) -> web.Response:
+        """Remove what has come of a recording."""
         self._remove(request.match_info["key"])
         return web.Response(status=204)
 

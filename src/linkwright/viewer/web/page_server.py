@@ -1,0 +1,79 @@
+"""The server of a viewer from the moment at which it listens: it gives out the page before there is a viewer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from linkwright.viewer.web.access import Gate
+from linkwright.viewer.web.files import Downloads, MeshFolders
+from linkwright.viewer.web.kept_tokens import PortToken, keep_token, leave_token, new_token
+
+if TYPE_CHECKING:
+    from linkwright.viewer.web.audience import Audience
+    from linkwright.viewer.web.server import WebServer
+    from linkwright.viewer.web.uploads import Guests
+
+
+class PageServer:
+    """Listens at an address, with the token that its pages know.
+
+    Args:
+        host: the address to listen on; any but this machine's loopback address lets others in who know the token.
+        port: 0 for any; None for 7448 or the next free one.
+
+    Attributes:
+        host: where it listens.
+        meshes: the folders that pages may read from.
+        downloads: files that were made for pages.
+        url: the address to open in a browser, token included; empty before `open`.
+        is_open_to_others: whether other machines can reach it.
+        web: serves requests; None before `open`.
+    """
+
+    def __init__(self, host: str, port: int | None) -> None:
+        self.meshes = MeshFolders()
+        self.downloads = Downloads()
+        self.url = ""
+        self.is_open_to_others = False
+        self.web: WebServer | None = None
+        self.host, self._port = host, port
+        self._kept: tuple[int, PortToken] | None = None
+
+    async def open(self) -> None:
+        """Listen, and give out the page; whoever asks for more waits for `show`.
+
+        Raises:
+            LinkwrightError: VIEW101 to VIEW103, it cannot listen where it should.
+        """
+        from linkwright.viewer.web.server import WebServer, is_open_to_others, listen
+
+        listener = listen(self.host, self._port)
+        self.is_open_to_others = is_open_to_others(listener)
+        if self._port != 0 and not self.is_open_to_others:
+            port = listener.getsockname()[1]
+            self._kept = port, keep_token(port)
+        gate = Gate(self.host, self._kept[1].token if self._kept else new_token())
+        self.web = WebServer(gate, self.meshes, self.downloads)
+        self.url = await self.web.start(listener)
+
+    def show(self, audience: Audience, guests: Guests | None) -> None:
+        """Let pages in, see `WebServer.show`."""
+        if self.web is not None:
+            self.web.show(audience, guests)
+
+    @property
+    def pages_wait(self) -> bool:
+        """Whether pages of the program that was ended at this port before look for this one."""
+        return self._kept is not None and self._kept[1].pages_wait
+
+    def leave_token(self, *, pages_wait: bool) -> None:
+        """Note, as the program ends, whether its pages wait for the next one."""
+        if self._kept is not None:
+            (port, kept), self._kept = self._kept, None
+            leave_token(port, kept.token, pages_wait=pages_wait)
+
+    async def close(self) -> None:
+        """Close the connections to pages and stop listening."""
+        web, self.web = self.web, None
+        if web is not None:
+            await web.close()
