@@ -54,6 +54,7 @@ SAVES = 15
 TURNS = 30
 SECONDS = 10.0
 PAGES = 4
+STAMP = "() => window.linkwright.stamp"
 SETTLES = 3.0
 """Until a page has found how finely it can draw."""
 CORE = "% of a core"
@@ -198,6 +199,20 @@ def images(browser: PlainBrowser) -> list[Row]:
     return [Row(f"server, {what}", share, CORE), Row(f"page, {what}, shown", rate, "1/s", "30")]
 
 
+def demo(browser: PlainBrowser, description: Path) -> list[Row]:
+    """`make demo`: a robot with laser and camera in a simulated world; how fast both the world and the page go."""
+    words = ("sim", "playground", str(description / "urdf" / "mbot_gazebo.xacro"), "laser:=true", "camera:=true")
+    with started(*words) as (process, _, _), watched(browser, viewer_url(process)) as page:
+        time.sleep(SETTLES)
+        begin = page.evaluate(STAMP)
+        rate = rate_of(frames_drawn, page, SECONDS)
+        passed = page.evaluate(STAMP) - begin
+    return [
+        Row("page, `make demo`, frames drawn", rate, "1/s", "20"),
+        Row("simulated time in a second, `make demo` with its page", passed / SECONDS, "s", "1"),
+    ]
+
+
 def nothing(browser: Browser, model: Path) -> list[Row]:
     """A robot that stands still: its nodes publish on, the page draws nothing, and no panel costs anything."""
     with started("view", str(model)) as (process, _, _), ExitStack() as stack:
@@ -250,6 +265,7 @@ def rows() -> list[Row]:
             *data(plain, "points", "100 000 points at 10 Hz", page_rate="10", peer="points"),
             *data(plain, "markers", "1000 markers at 10 Hz", page_rate="10"),
             *images(plain),
+            *demo(plain, package),
             *data(plain, "scan", "500 links at 30 Hz and a scan"),
             *recordings(plain),
             *still,

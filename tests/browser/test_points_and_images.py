@@ -219,6 +219,29 @@ def test_an_image_has_a_panel_of_its_own(live, open_page):
     assert page.locator(".picture-panel").count() == 1
 
 
+def layers(page: Any) -> list[str]:
+    """The layers of which the browser composes the page, by the attributes of their elements."""
+    tools = page.context.new_cdp_session(page)
+    told: list[list[dict[str, Any]]] = []
+    tools.on("LayerTree.layerTreeDidChange", lambda event: told.append(event.get("layers", [])))
+    tools.send("DOM.enable")
+    tools.send("LayerTree.enable")
+    wait_until(lambda: page.evaluate("1") and any(told))
+    nodes = [layer["backendNodeId"] for layer in next(filter(None, reversed(told))) if "backendNodeId" in layer]
+    found = [tools.send("DOM.describeNode", {"backendNodeId": node})["node"] for node in nodes]
+    tools.detach()
+    return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in found]
+
+
+def test_a_picture_is_composed_without_painting_the_page_around_it(live, open_page):
+    viewer = live(config(entry("Image", Topic={"Value": "/image"})))
+    page = open_page(viewer, wait=False)
+    viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
+    until(page, "lw.displays[0]?.drawn?.width === 40")
+    own = ("CANVAS height 20 width 40", "CANVAS data-engine", "DIV class orientation")
+    becomes(lambda: [any(each.startswith(what) for each in layers(page)) for what in own], [True, True, True])
+
+
 def test_a_compressed_image_is_read_by_the_browser(live, open_page):
     viewer = live(config(entry("Image", Topic={"Value": "/image/compressed"})))
     page = open_page(viewer, wait=False)
