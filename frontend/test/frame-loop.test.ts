@@ -43,6 +43,16 @@ describe("the frame loop", () => {
     expect(loop.framesPerSecond(now)).toBeNull();
   });
 
+  it("does not draw the first frames more coarsely for the time that programs take to be compiled", () => {
+    const details: number[] = [];
+    const loop = new FrameLoop(({ share }) => {
+      details.push(share);
+      if (details.length <= 6) now += 300;
+    });
+    run(6000, () => loop.invalidate());
+    expect(new Set(details)).toEqual(new Set([1]));
+  });
+
   it("keeps to the rate", () => {
     const loop = new FrameLoop(() => undefined);
     loop.rate = 30;

@@ -8,6 +8,8 @@ const IDLE_AFTER_MS = 600;
 const LATE_MS = 12;
 /** So many more late frames than timely ones make moving pictures coarser. */
 const LATE_FRAMES = 4;
+/** So many frames at the beginning tell nothing of the pace: they wait for programs that are compiled. */
+const FIRST_FRAMES = 6;
 /** So many timely frames without a late one let them be finer again; twice as many the next time. */
 const TIMELY_FRAMES = 300;
 /** After a coarse frame, how long nothing must move until a fine one is drawn. */
@@ -115,7 +117,7 @@ export class FrameLoop {
     this.besides.clear();
     for (const show of besides) show();
     if (this.requestedAt === null) return;
-    this.judge(now - Math.max(this.requestedAt, due));
+    if (this.count >= FIRST_FRAMES) this.judge(now - Math.max(this.requestedAt, due));
     this.requestedAt = null;
     // The first frame must come soon.
     const level = Math.max(this.level, this.count > 0 ? 0 : 1);
