@@ -13,6 +13,8 @@ import time
 from contextlib import ExitStack
 from pathlib import Path
 
+import psutil
+import yaml
 from playwright.sync_api import Browser
 
 from benchmarks import peers
@@ -213,6 +215,31 @@ def demo(browser: PlainBrowser, description: Path) -> list[Row]:
     ]
 
 
+def many_displays(browser: Browser, model: Path, count: int = 240) -> Row:
+    """The processor time of the server until the page has drawn a file of many displays, to which nobody publishes."""
+    kinds = ("MarkerArray", "PointCloud2", "Path", "Marker", "Pose", "Image", "LaserScan", "Map")
+    displays = [
+        {
+            "Class": f"rviz_default_plugins/{kinds[number % len(kinds)]}",
+            "Name": f"display {number}",
+            "Enabled": True,
+            "Topic": {"Value": f"/topic_{number}"},
+        }
+        for number in range(count)
+    ]
+    used = []
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "many.rviz"
+        file.write_text(yaml.safe_dump({"Visualization Manager": {"Displays": displays}}))
+        for _ in range(RUNS):
+            with started("view", str(model), "-d", str(file)) as (process, _, _):
+                ready = f"window.linkwright?.displays.length === {count} && window.linkwright.settled"
+                with opened(browser, viewer_url(process), ready):
+                    times = psutil.Process(process.pid).cpu_times()
+                    used.append(times.user + times.system)
+    return row(f"server, opening a .rviz of {count} displays, processor time", used, "s", "1.5 s")
+
+
 def nothing(browser: Browser, model: Path) -> list[Row]:
     """A robot that stands still: its nodes publish on, the page draws nothing, and no panel costs anything."""
     with started("view", str(model)) as (process, _, _), ExitStack() as stack:
@@ -254,7 +281,7 @@ def rows() -> list[Row]:
             *start_up(browser, "launch", str(package / "launch" / "display.launch.py")),
             *latencies(browser, package),
         ]
-        still = nothing(browser, model)
+        still = [*nothing(browser, model), many_displays(browser, model)]
     with plain_chromium() as plain:
         return [
             *starts,

@@ -20,7 +20,8 @@ interface Shown {
 /** rviz_default_plugins/Marker and MarkerArray */
 export class MarkersDrawing implements Drawing {
   readonly root = new Group();
-  private readonly solids = new SolidMarkers(this.root);
+  /** Null until there is a marker for them: of a file's hundred such displays few are ever sent one. */
+  private solids: SolidMarkers | null = null;
   private readonly shown = new Map<string, Shown>();
   private hidden = new Set<string>();
   private solidsStale = false;
@@ -122,7 +123,7 @@ export class MarkersDrawing implements Drawing {
 
   inspect(): object {
     const box = new Box3();
-    this.solids.expandBox(box);
+    this.solids?.expandBox(box);
     for (const { object } of this.shown.values()) if (object?.root.visible === true) box.expandByObject(object.root);
     const shapes: Record<string, string> = {};
     for (const [id, { marker }] of this.shown) if (!this.hidden.has(marker.namespace)) shapes[id] = marker.shape;
@@ -131,7 +132,7 @@ export class MarkersDrawing implements Drawing {
 
   dispose(): void {
     this.dataForgotten();
-    this.solids.dispose();
+    this.solids?.dispose();
   }
 
   private forgetOutlines(): void {
@@ -196,13 +197,13 @@ export class MarkersDrawing implements Drawing {
 
   private arrangeSolids(): void {
     this.solidsStale = false;
-    this.solids.begin();
+    this.solids?.begin();
     for (const { marker, object, pose: own } of this.shown.values()) {
       if (object || this.hidden.has(marker.namespace)) continue;
       const pose = new Matrix4();
-      if (this.place(marker, own, pose)) this.solids.add(marker, pose);
+      if (this.place(marker, own, pose)) (this.solids ??= new SolidMarkers(this.root)).add(marker, pose);
     }
-    this.solids.end();
+    this.solids?.end();
   }
 }
 
