@@ -23,7 +23,7 @@ from linkwright.sdf.sensors import Sensor
 from linkwright.sdf.states import State
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.sdf.worlds import Road, World
-from linkwright.sdf.writer import save
+from linkwright.sdf.writer import save, save_model_of_world, save_world
 from tests.sdf.objects import objects
 from tests.sdf.worlds import model, read_sdf, world
 
@@ -120,6 +120,17 @@ def test_prefixes_are_declared():
     text = save(sdf)
     assert '<gz:policy a="1"/>' in text
     assert read_back(text) == replace(sdf, version="1.11")
+
+
+@pytest.mark.parametrize("inside", ["", '<plugin name="p" filename="f.so"><a>\n b\n</a></plugin><light name="l"/>'])
+@pytest.mark.parametrize("model", ["", '<model name="m"><link name="l"/><gz:policy a="1"/></model><model name="n"/>'])
+def test_a_world_of_models_that_are_written_already_is_the_text_of_the_whole(inside, model):
+    document, _ = parse_as_gazebo(f'<sdf version="1.9"><world name="w">{model}{inside}</world></sdf>', "m.world")
+    sdf = read(document).sdf
+    assert sdf is not None
+    [whole] = sdf.worlds
+    text = save_world(replace(whole, models=()), [save_model_of_world(each) for each in whole.models])
+    assert text == save(whole)
 
 
 def test_the_axis_of_an_old_file_is_in_the_frame_of_its_model():

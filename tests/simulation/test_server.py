@@ -12,7 +12,8 @@ from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.simulator import Simulator
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.sdf.writer import save
+from linkwright.sdf.writer import save_model_of_world as saved
+from linkwright.sdf.writer import save_world
 from linkwright.simulation.server import reports
 from tests.simulation.test_plugins import joint_states, robot
 from tests.simulation.worlds import box
@@ -256,12 +257,29 @@ async def test_the_world_is_told_to_who_comes_late_with_all_that_came(tmp_path):
 
 async def test_a_world_with_a_robot_is_written_once_at_the_start(tmp_path, monkeypatch):
     written: list[str] = []
-    monkeypatch.setattr(reports, "save", lambda world: written.append(save(world)) or written[-1])
+    monkeypatch.setattr(reports, "save_world", lambda *world: written.append(save_world(*world)) or written[-1])
     async with simulator(tmp_path, robot_description=URDF, robot_name="first") as it:
         worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
         await eventually(lambda: bool(worlds))
         assert [each.data for each in worlds] == written
         assert 'name="first"' in written[0]
+
+
+async def test_a_model_of_the_description_is_written_again_only_where_it_has_changed(tmp_path, monkeypatch):
+    written: list[str] = []
+    monkeypatch.setattr(reports, "save_model_of_world", lambda model: written.append(model.name) or saved(model))
+    async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as it:
+        worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+        assert written == ["one", "ground_plane"]
+        for name in ("two", "three"):
+            await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name=name, xml=URDF)
+        await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="two")
+        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="two", xml=URDF.replace("1 1 1", "2 2 2"))
+        await eventually(lambda: bool(worlds) and "<size>2 2 2</size>" in worlds[-1].data)
+        assert written == ["one", "ground_plane", "two", "three", "two"]
+        assert [line for line in worlds[-1].data.splitlines() if line.startswith("    <model")] == [
+            f'    <model name="{name}">' for name in ("one", "ground_plane", "three", "two")
+        ]
 
 
 async def test_actors_and_roads_are_told_as_models_that_look_like_them(tmp_path):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
+from linkwright import xmltree
 from linkwright.schema import ElementRule, write_element
-from linkwright.sdf.models import Model
+from linkwright.sdf.models import MODEL, Model
 from linkwright.sdf.reader import OPEN, WITHOUT_EFFECT
 from linkwright.sdf.worlds import SDF, Sdf, World
 from linkwright.xmltree import Document, Element, write
@@ -17,6 +18,44 @@ VERSION = "1.11"
 """The version of what is written: gz Harmonic, which comes with Jazzy, reads no newer one."""
 _PREFIX = "http://gazebosim.org/schema"
 """The namespace of prefixes that a file uses without declaring them, which Gazebo's readers allow."""
+_GAP = "\x01"
+"""The name of the model that stands for those written before: XML has no such character."""
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenModel:
+    """A model as a world has it.
+
+    Attributes:
+        text: its element.
+        prefixes: the prefixes of names in it.
+    """
+
+    text: str
+    prefixes: frozenset[str]
+
+
+def save_model_of_world(model: Model) -> WrittenModel:
+    """A model as text for `save_world`, without an include that is resolved."""
+    element = write_element(MODEL, model, _complete)
+    return WrittenModel(xmltree.write_element(element, depth=2), frozenset(_prefixes(element)))
+
+
+def save_world(world: World, models: Sequence[WrittenModel]) -> str:
+    """The text that `save` gives of a world with models that were written before.
+
+    Who writes a world after each of many changes writes only the models that have changed.
+
+    Args:
+        world: without models.
+        models: its models.
+    """
+    if not models:
+        return save(world)
+    root = _element(Sdf(VERSION, worlds=(replace(world, models=(Model(_GAP),)),)))
+    _declare(root, {prefix for each in models for prefix in each.prefixes})
+    before, _, after = write(Document(root)).partition(xmltree.write_element(Element("model", {"name": _GAP}), depth=2))
+    return "".join((before, *(each.text for each in models), after))
 
 
 def save(thing: Sdf | World | Model) -> str:
@@ -31,12 +70,23 @@ def save(thing: Sdf | World | Model) -> str:
         thing = Sdf(VERSION, worlds=(thing,))
     elif isinstance(thing, Model):
         thing = Sdf(VERSION, models=(thing,))
-    root = write_element(SDF, replace(thing, version=VERSION), _complete)
-    declared = {} if thing.element is None else thing.element.attributes
-    root.attributes |= {name: value for name, value in declared.items() if name.startswith("xmlns")}
-    for prefix in sorted(_prefixes(root)):
-        root.attributes.setdefault(f"xmlns:{prefix}", _PREFIX)
+    root = _element(thing)
+    _declare(root)
     return write(Document(root))
+
+
+def _element(sdf: Sdf) -> Element:
+    """The element of a whole file, with the namespaces that it declares itself."""
+    root = write_element(SDF, replace(sdf, version=VERSION), _complete)
+    declared = {} if sdf.element is None else sdf.element.attributes
+    root.attributes |= {name: value for name, value in declared.items() if name.startswith("xmlns")}
+    return root
+
+
+def _declare(root: Element, more: Iterable[str] = ()) -> None:
+    """Declare the prefixes that a file uses, and others."""
+    for prefix in sorted({*_prefixes(root), *more}):
+        root.attributes.setdefault(f"xmlns:{prefix}", _PREFIX)
 
 
 def _complete(element: Element, rule: ElementRule, instance: Any) -> None:

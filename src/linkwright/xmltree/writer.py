@@ -37,14 +37,18 @@ def write(document: Document) -> str:
     return "".join(pieces)
 
 
-def write_element(element: Element) -> str:
+def write_element(element: Element, depth: int = 0) -> str:
     """An element and what it holds as text, without an XML declaration.
+
+    Args:
+        element: the element.
+        depth: the number of elements around it, by which it is indented.
 
     Raises:
         LinkwrightError: XML301, see `write`.
     """
     pieces: list[str] = []
-    _write_nodes([element], pieces.append)
+    _write_nodes([element], pieces.append, _INDENT * depth)
     return "".join(pieces)
 
 
@@ -68,11 +72,10 @@ def tidied(root: Element) -> Element:
     return top
 
 
-def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None]) -> None:
+def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str = "") -> None:
     # A loop with its own stack: documents may be nested deeper than Python's calls.
     stack: list[tuple[Iterator[Node], str]] = []
     remaining = iter(nodes)
-    indent = ""
     while True:
         for node in remaining:
             if isinstance(node, Text):

@@ -6,22 +6,26 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.descriptions.conversion import with_addresses
+from linkwright.geometry.single import Transform
 from linkwright.graph import CLOCK_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import Header, String, Time, get_message
 from linkwright.messages.tf_message import TFMessage, TransformBatch
 from linkwright.sdf.frames import pose_of
+from linkwright.sdf.models import Model
 from linkwright.sdf.poses import WORLD, RawPose
-from linkwright.sdf.resources import Missing
-from linkwright.sdf.writer import save
+from linkwright.sdf.resources import Missing, ResourceFinder
+from linkwright.sdf.writer import WrittenModel, save_model_of_world, save_world
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.simulation import NANOSECONDS
 
+T = TypeVar("T")
 _LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _CLOCK, _STATE = "rosgraph_msgs/msg/Clock", "simulation_interfaces/msg/SimulationState"
 _METRICS = "gazebo_msgs/msg/PerformanceMetrics"
@@ -50,6 +54,8 @@ class Reports:
         self._names: tuple[str, ...] = ()
         self._bodies: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
         self._revision = -1
+        self._finder: ResourceFinder | None = None
+        self._written: dict[tuple[int, str, Transform], tuple[Model, WrittenModel]] = {}  # keeps the models of the ids
         self._posed = self._measured = 0.0
         server.on_reset.append(self._tell_time)
         server.simulation.call_every(round(NANOSECONDS / clock_rate) if clock_rate > 0 else 0, self._tell_time)
@@ -66,14 +72,26 @@ class Reports:
     def publish_description(self) -> None:
         """Publish the world as SDF, with all models at their initial poses, and files by their addresses."""
         simulation = self._server.simulation
-        models = tuple(
-            replace(each.model, name=each.name, pose=RawPose(pose_of(each.pose)), placement_frame="")
-            for each in simulation.scene.models.values()
-        )
-        figures = tuple(replace(each.model, pose=RawPose(pose_of(each.pose))) for each in simulation.scene.figures)
-        world = replace(simulation.world, models=(*models, *figures), actors=(), roads=())
-        world = with_addresses(world, Path.cwd(), self._address)
-        self._description.publish(String(data=save(world)))
+        if self._finder is not simulation.finder:
+            self._finder, self._written = simulation.finder, {}
+        figures = ((each.model, each.model.name, each.pose) for each in simulation.scene.figures)
+        models = [*((each.model, each.name, each.pose) for each in simulation.scene.models.values()), *figures]
+        self._written = {(id(model), name, pose): self._saved(model, name, pose) for model, name, pose in models}
+        world = replace(simulation.world, models=(), actors=(), roads=())
+        text = save_world(self._addressed(world), [written for _, written in self._written.values()])
+        self._description.publish(String(data=text))
+
+    def _saved(self, model: Model, name: str, pose: Transform) -> tuple[Model, WrittenModel]:
+        """A model of the description, which is written anew only where it is another one or stands elsewhere."""
+        known = self._written.get((id(model), name, pose))
+        if known is not None:
+            return known
+        placed = replace(model, name=name, pose=RawPose(pose_of(pose)), placement_frame="")
+        return model, save_model_of_world(self._addressed(placed))
+
+    def _addressed(self, part: T) -> T:
+        addressed: T = with_addresses(part, Path.cwd(), self._address)
+        return addressed
 
     def watch(self, factor: Callable[[], float]) -> None:
         """Publish poses and the real time factor, as often as configured in real time, while anybody subscribes."""
