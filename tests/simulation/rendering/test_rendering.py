@@ -10,6 +10,7 @@ from PIL import Image
 
 from linkwright.geometry.single import IDENTITY
 from linkwright.sdf.cameras import Camera, Clip, Distortion, Intrinsics, Picture
+from linkwright.simulation.rendering import opengl
 from linkwright.simulation.rendering.choice import WAYS, make_renderer
 from linkwright.simulation.rendering.optics import Optics, distorted, optics_of, undistorted
 from linkwright.simulation.rendering.renderer import Wanted
@@ -277,6 +278,60 @@ def test_all_ways_make_the_same_picture(make):
     apart = np.abs(exact.colour.astype(int) - other.colour.astype(int)).max(axis=-1)
     assert np.median(apart) <= 3
     assert (apart > 20).mean() < 0.02
+
+
+ROUND = "".join(
+    f'<model name="{name}"><static>true</static><pose>{pose}</pose><link name="link"><visual name="visual"><geometry>'
+    f"<{name}><radius>0.3</radius><length>0.8</length></{name}></geometry></visual></link></model>"
+    for name, pose in (("cylinder", "1.5 0.6 0 0.5 0.4 0"), ("capsule", "1.5 -0.6 0 0.5 -0.4 0"))
+)
+
+
+@pytest.fixture(params=opengl.BACKENDS)
+def drawn(request: pytest.FixtureRequest):
+    """Draws a world by OpenGL: gives the picture and how many triangles and quads were drawn."""
+
+    def draw(simulation: Simulation):
+        from OpenGL import GL
+
+        try:
+            renderer = make_renderer(simulation, request.param)
+        except Exception as error:  # noqa: BLE001 - a library that is not there fails in many ways
+            pytest.skip(f"no {request.param} here: {error}")
+        try:
+            renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR)
+            (query,) = GL.glGenQueries(1, np.zeros(1, np.uint32))
+            GL.glBeginQuery(GL.GL_PRIMITIVES_GENERATED, query)
+            picture = renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR | Wanted.DEPTH)
+            GL.glEndQuery(GL.GL_PRIMITIVES_GENERATED)
+            return picture, int(GL.glGetQueryObjectuiv(query, GL.GL_QUERY_RESULT))
+        finally:
+            renderer.close()
+
+    return draw
+
+
+def test_cylinders_look_as_those_of_mujoco_in_fewer_triangles(drawn, monkeypatch):
+    simulation = simulated(ROUND)
+    ours, few = drawn(simulation)
+    monkeypatch.setattr(opengl, "_BUILT_IN", 0)
+    theirs, many = drawn(simulation)
+    assert few < many / 2
+    apart = np.abs(ours.colour.astype(int) - theirs.colour).max(axis=-1)
+    assert (theirs.colour != theirs.colour[0, 0]).any(axis=-1).mean() > 0.1
+    assert (apart > 1).mean() < 1e-3
+    seen = np.isfinite(ours.depth) & np.isfinite(theirs.depth)
+    assert ours.depth[seen] == pytest.approx(theirs.depth[seen], abs=1e-3)
+    assert (np.isfinite(ours.depth) != seen).sum() < 20
+
+
+def test_cylinders_in_the_light_of_a_lamp_are_those_of_mujoco(drawn, monkeypatch):
+    simulation = simulated(ROUND, '<light name="lamp" type="point"><pose>0 1 1 0 0 0</pose></light>')
+    ours, count = drawn(simulation)
+    monkeypatch.setattr(opengl, "_BUILT_IN", 0)
+    theirs, same = drawn(simulation)
+    assert count == same
+    assert (ours.colour == theirs.colour).all()
 
 
 def test_a_lamp_lights_what_is_near(make):

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import sys
 import threading
-from collections.abc import Callable
 from ctypes.util import find_library
 from importlib import import_module
 from typing import Any
@@ -41,6 +40,10 @@ _QUADS, _LIT_QUADS = 1, 4
 """Into how many squares a side of a box is cut each way: light is computed at their corners."""
 _SLICES = 28
 """Into how many slices balls and cylinders are cut, as by MuJoCo; half as many stacks reach as near to a ball."""
+_COMPILE, _STRIP, _FAN = 0x1300, 0x5, 0x6
+"""OpenGL's GL_COMPILE, GL_TRIANGLE_STRIP and GL_TRIANGLE_FAN."""
+_BUILT_IN, _CYLINDER, _TUBE = 8, 3, 4
+"""The number of display lists of MuJoCo's shapes, and which of them are a cylinder and that of a capsule."""
 _SPARE_GEOMS = 100
 """Room in the list of what is drawn beside the geoms of the model."""
 
@@ -66,7 +69,7 @@ class OpenGlRenderer:
         self._size = (640, 480)
         self._gl = _context_class(backend)(*self._size)
         self._gl.make_current()
-        self._mask_colours: Callable[..., None] = import_module("OpenGL.raw.GL.VERSION.GL_1_0").glColorMask
+        self._functions: Any = import_module("OpenGL.raw.GL.VERSION.GL_1_0")
         self._option = mujoco.MjvOption()
         for groups in (
             "geomgroup",
@@ -134,6 +137,8 @@ class OpenGlRenderer:
             self._draw_context.free()
         self._draw_context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._draw_context)
+        if even and self._draw_context.rangeBuiltin == _BUILT_IN:
+            self._simplify_cylinders()
         self._draw_context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
         self._scene = mujoco.MjvScene(model=model, maxgeom=model.ngeom + _SPARE_GEOMS)
         flags = mujoco.mjtRndFlag
@@ -143,6 +148,30 @@ class OpenGlRenderer:
             geom for geom in range(model.ngeom) if is_endless(model, geom) and not _is_textured(model, geom)
         )
         self._revision = simulation.revision
+
+    def _simplify_cylinders(self) -> None:
+        """Draw cylinders in fewer triangles: MuJoCo cuts their sides into stacks and their ends into rings.
+
+        Those are for light that differs from place to place; else the picture is the same.
+        """
+        gl, first = self._functions, self._draw_context.baseBuiltin
+        turns = np.linspace(0.0, 2.0 * np.pi, _SLICES + 1)
+        circle = [*zip(np.cos(turns).tolist(), np.sin(turns).tolist(), strict=True)]
+        for shape, ends in ((_CYLINDER, (1, -1)), (_TUBE, ())):
+            gl.glNewList(first + shape, _COMPILE)
+            gl.glBegin(_STRIP)
+            for x, y in circle:
+                gl.glNormal3f(x, y, 0.0)
+                gl.glVertex3f(x, y, 1.0)
+                gl.glVertex3f(x, y, -1.0)
+            gl.glEnd()
+            for end in ends:
+                gl.glBegin(_FAN)
+                gl.glNormal3f(0.0, 0.0, end)
+                for x, y in circle[::end]:
+                    gl.glVertex3f(x, y, end)
+                gl.glEnd()
+            gl.glEndList()
 
     def _make_room(self, hole: Optics) -> None:
         width, height = max(self._size[0], hole.width), max(self._size[1], hole.height)
@@ -238,18 +267,19 @@ class OpenGlRenderer:
         near, far = np.float32(hole.near), np.float32(hole.far)
         raw *= far - near
         raw += near
-        np.divide(far * near, raw, out=raw)
-        np.copyto(raw, np.inf, where=nothing)
-        return colour, np.ascontiguousarray(raw[::-1])
+        distances = np.empty_like(raw)
+        np.divide(far * near, raw, out=distances[::-1])
+        np.copyto(distances, np.inf, where=nothing[::-1])
+        return colour, distances
 
     def _draw_without_colours(self, rect: Any) -> None:
         """Render depth only, without lighting or colours."""
         lights, self._scene.nlight = self._scene.nlight, 0
-        self._mask_colours(False, False, False, False)
+        self._functions.glColorMask(False, False, False, False)
         try:
             self._mujoco.mjr_render(rect, self._scene, self._draw_context)
         finally:
-            self._mask_colours(True, True, True, True)
+            self._functions.glColorMask(True, True, True, True)
             self._scene.nlight = lights
 
     def _draw_geoms(self, hole: Optics) -> Pixels:

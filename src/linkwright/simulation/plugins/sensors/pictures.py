@@ -43,19 +43,26 @@ class PixelNoise:
     def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
         self._noise = noise
         self._generator = generator
-        self._pool: Pixels = np.empty(0, np.int16)
+        self._more: Pixels = np.empty(0, np.uint8)  # what is added to each colour, and what is taken off it
+        self._less: Pixels = np.empty(0, np.uint8)
 
     def apply(self, colour: Pixels) -> Pixels:
         """A picture with noise on it."""
         noise = self._noise
         if noise.type == "none" or not (noise.stddev > 0 or noise.mean):
             return colour
-        if len(self._pool) < colour.size + _PLACES:
+        if len(self._more) < colour.size + _PLACES:
             drawn = self._generator.normal(noise.mean * 255, noise.stddev * 255, colour.size + _PLACES)
-            self._pool = np.clip(np.round(drawn), -255, 255).astype(np.int16)
+            drawn = np.clip(np.round(drawn), -255, 255)
+            self._more, self._less = (np.maximum(each, 0).astype(np.uint8) for each in (drawn, -drawn))
         start = int(self._generator.integers(_PLACES))
-        noisy = self._pool[start : start + colour.size].reshape(colour.shape) + colour
-        return np.clip(noisy, 0, 255, out=noisy).astype(np.uint8)
+        more, less = (each[start : start + colour.size].reshape(colour.shape) for each in (self._more, self._less))
+        noisy = np.maximum(colour, less)  # in bytes, in a sixth of the time of larger numbers that are clipped
+        noisy -= less
+        np.invert(noisy, out=noisy)  # and so with how much is missing to white
+        np.maximum(noisy, more, out=noisy)
+        noisy -= more
+        return np.invert(noisy, out=noisy)
 
 
 def fill_picture(message: Any, colour: Pixels, encoding: str) -> None:
