@@ -474,6 +474,21 @@ async def test_states_come_at_each_update_or_as_often_as_said(stand):
     assert message.reference.positions[0] == pytest.approx(0.45)
     assert (message.desired, message.actual) == (message.reference, message.feedback)
     assert message.output.positions[0] == pytest.approx(0.46)
+    assert message.error.positions[0] == message.reference.positions[0] - message.feedback.positions[0]
+
+
+async def test_the_errors_of_joints_that_are_held_are_computed_for_who_listens(stand, monkeypatch):
+    compare, compared = JointTrajectoryController._compare, []
+    monkeypatch.setattr(
+        JointTrajectoryController, "_compare", lambda self, wanted: compared.append(wanted) or compare(self, wanted)
+    )
+    arm = Arm(stand)
+    await arm.run(0.1)
+    assert compared == []
+    states = stand.heard("control_msgs/msg/JointTrajectoryControllerState", "/controller/controller_state")
+    await arm.run(0.02)
+    assert len(states) == len(compared) == 2
+    assert list(states[-1].error.positions) == [0.0, 0.0]
 
 
 async def test_the_state_at_a_time_can_be_asked_for(stand):

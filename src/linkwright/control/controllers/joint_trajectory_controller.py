@@ -103,7 +103,7 @@ class JointTrajectoryController(Controller[Parameters]):
         if not all(map(isfinite, self._current.positions)):
             raise ControllerError(phrase("the positions of the joints are not known yet"))
         self._last_command = self._current.copy()
-        self._error = MotionState([0.0] * len(said.joints))
+        self._computed_error: MotionState | None = MotionState([0.0] * len(said.joints))
         self._goal = None
         self._next_state_ns = self._next_feedback_ns = 0
         self._following: Sample | None = None
@@ -233,6 +233,13 @@ class JointTrajectoryController(Controller[Parameters]):
         given = [each.value for each in interfaces or ()]
         return given if given and all(map(isfinite, given)) else list(values)
 
+    @property
+    def _error(self) -> MotionState:
+        """The error at the last update; computed on demand: a controller that holds still needs it for its topics."""
+        if self._computed_error is None:
+            self._computed_error = self._compare(self._desired)
+        return self._computed_error
+
     def _compare(self, desired: MotionState) -> MotionState:
         """The error of a state; zeros for velocities or accelerations that are not compared."""
         current = self._current
@@ -269,7 +276,7 @@ class JointTrajectoryController(Controller[Parameters]):
         assert desired is not None
         assert following is not None, "it has begun now or earlier"
         self._following_ns, self._following = time_ns + self._period_ns, following
-        self._error = self._compare(desired.state)
+        self._desired, self._computed_error = desired.state, None
         self._judge(time_ns, period_s, desired.state, following, first=first)
         self._publish(time_ns, desired.state)
 

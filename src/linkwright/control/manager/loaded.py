@@ -71,13 +71,16 @@ class Loaded:
         Returns:
             The name of one of them, or nothing.
         """
-        values = [command.value for command in self.controller.commands]
+        commands = self.controller.commands
+        if not commands:
+            return ""
+        values = [command.value for command in commands]
         if all(map(isfinite, values)):  # as nearly always
             self.before = values
             return ""
         wrong = ""
         before = self.before
-        for place, command in enumerate(self.controller.commands):
+        for place, command in enumerate(commands):
             value = command.value
             if isfinite(value):
                 before[place] = value

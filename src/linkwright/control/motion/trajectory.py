@@ -87,10 +87,11 @@ class Trajectory:
         self._before = before
         last = self.points[-1].state
         none = [0.0] * len(last.positions)
-        self._end = MotionState(last.positions, last.velocities or none, last.accelerations or none)
+        end = MotionState(last.positions, last.velocities or none, last.accelerations or none)
         self._segments: list[Segment | None] = [None] * len(self.points)
         self._starts = [self._before_ns, first, *(self._start_ns + each.time_ns for each in self.points[1:])]
         self._index = 0
+        self._end = Sample(end, len(self.points) - 1, self._starts[-1], ended=True)
 
     @property
     def end_ns(self) -> int:
@@ -106,7 +107,7 @@ class Trajectory:
         if time_ns < starts[0]:
             return None
         if time_ns >= starts[-1]:
-            return Sample(self._end, len(self.points) - 1, starts[-1], ended=True)
+            return self._end
         index = self._index
         if not starts[index] <= time_ns < starts[index + 1]:
             index = next(each for each in range(len(self.points)) if time_ns < starts[each + 1])

@@ -29,9 +29,10 @@ _NANOSECONDS = 1_000_000_000
 
 def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
     """The fine alarms of an event loop, asked for in its thread; None where its own alarms must do."""
-    if loop not in _of_loops:
-        _of_loops[loop] = _made(loop)
-    return _of_loops[loop]
+    try:
+        return _of_loops[loop]  # once: each look makes a weak reference, and timers look with each beat
+    except KeyError:
+        return _of_loops.setdefault(loop, _made(loop))
 
 
 def _made(loop: AbstractEventLoop) -> FineAlarms | None:
