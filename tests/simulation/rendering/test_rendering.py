@@ -282,8 +282,12 @@ def test_all_ways_make_the_same_picture(make):
 
 ROUND = "".join(
     f'<model name="{name}"><static>true</static><pose>{pose}</pose><link name="link"><visual name="visual"><geometry>'
-    f"<{name}><radius>0.3</radius><length>0.8</length></{name}></geometry></visual></link></model>"
-    for name, pose in (("cylinder", "1.5 0.6 0 0.5 0.4 0"), ("capsule", "1.5 -0.6 0 0.5 -0.4 0"))
+    f"<{name}><radius>0.3</radius>{more}</{name}></geometry></visual></link></model>"
+    for name, more, pose in (
+        ("cylinder", "<length>0.8</length>", "1.5 0.7 0 0.5 0.4 0"),
+        ("capsule", "<length>0.8</length>", "1.5 -0.7 0 0.5 -0.4 0"),
+        ("sphere", "", "1.5 0 0 0.5 0.6 0.7"),
+    )
 )
 
 
@@ -311,27 +315,19 @@ def drawn(request: pytest.FixtureRequest):
     return draw
 
 
-def test_cylinders_look_as_those_of_mujoco_in_fewer_triangles(drawn, monkeypatch):
-    simulation = simulated(ROUND)
+@pytest.mark.parametrize("light", ["", '<light name="lamp" type="point"><pose>0 1 1 0 0 0</pose></light>'])
+def test_round_shapes_look_as_those_of_mujoco(drawn, monkeypatch, light):
+    simulation = simulated(ROUND, light)
     ours, few = drawn(simulation)
     monkeypatch.setattr(opengl, "_BUILT_IN", 0)
     theirs, many = drawn(simulation)
-    assert few < many / 2
     apart = np.abs(ours.colour.astype(int) - theirs.colour).max(axis=-1)
     assert (theirs.colour != theirs.colour[0, 0]).any(axis=-1).mean() > 0.1
     assert (apart > 1).mean() < 1e-3
     seen = np.isfinite(ours.depth) & np.isfinite(theirs.depth)
     assert ours.depth[seen] == pytest.approx(theirs.depth[seen], abs=1e-3)
     assert (np.isfinite(ours.depth) != seen).sum() < 20
-
-
-def test_cylinders_in_the_light_of_a_lamp_are_those_of_mujoco(drawn, monkeypatch):
-    simulation = simulated(ROUND, '<light name="lamp" type="point"><pose>0 1 1 0 0 0</pose></light>')
-    ours, count = drawn(simulation)
-    monkeypatch.setattr(opengl, "_BUILT_IN", 0)
-    theirs, same = drawn(simulation)
-    assert count == same
-    assert (ours.colour == theirs.colour).all()
+    assert few < many if not light else few != many  # squares of MuJoCo's, triangles of ours
 
 
 def test_a_lamp_lights_what_is_near(make):

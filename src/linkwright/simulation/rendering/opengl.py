@@ -11,6 +11,7 @@ import sys
 import threading
 from ctypes.util import find_library
 from importlib import import_module
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ import numpy as np
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform
+from linkwright.geometry.vectors import Vector3
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of
 from linkwright.simulation.rendering.optics import Optics
@@ -38,12 +40,12 @@ _ROUNDING = 1e-6
 """The share of its size that a geom may be beside of what is seen by rounding alone."""
 _QUADS, _LIT_QUADS = 1, 4
 """Into how many squares a side of a box is cut each way: light is computed at their corners."""
-_SLICES = 28
+_SLICES, _STACKS = 28, 14
 """Into how many slices balls and cylinders are cut, as by MuJoCo; half as many stacks reach as near to a ball."""
 _COMPILE, _STRIP, _FAN = 0x1300, 0x5, 0x6
 """OpenGL's GL_COMPILE, GL_TRIANGLE_STRIP and GL_TRIANGLE_FAN."""
-_BUILT_IN, _CYLINDER, _TUBE = 8, 3, 4
-"""The number of display lists of MuJoCo's shapes, and which of them are a cylinder and that of a capsule."""
+_BUILT_IN, _BALL, _CYLINDER, _TUBE = 8, 0, 3, 4
+"""The number of display lists of MuJoCo's shapes, and which are a ball, a cylinder and the side of a capsule."""
 _SPARE_GEOMS = 100
 """Room in the list of what is drawn beside the geoms of the model."""
 
@@ -131,14 +133,14 @@ class OpenGlRenderer:
         model.vis.global_.offwidth, model.vis.global_.offheight = self._size
         even = _is_the_same_everywhere(lights_of(simulation, np.zeros(3)))
         model.vis.quality.numquads = _QUADS if even else _LIT_QUADS
-        model.vis.quality.numslices, model.vis.quality.numstacks = _SLICES, _SLICES // 2
+        model.vis.quality.numslices, model.vis.quality.numstacks = _SLICES, _STACKS
         model.stat.extent = 1.0
         if self._draw_context is not None:
             self._draw_context.free()
         self._draw_context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._draw_context)
-        if even and self._draw_context.rangeBuiltin == _BUILT_IN:
-            self._simplify_cylinders()
+        if self._draw_context.rangeBuiltin == _BUILT_IN:
+            self._simplify_round_shapes()
         self._draw_context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
         self._scene = mujoco.MjvScene(model=model, maxgeom=model.ngeom + _SPARE_GEOMS)
         flags = mujoco.mjtRndFlag
@@ -149,29 +151,34 @@ class OpenGlRenderer:
         )
         self._revision = simulation.revision
 
-    def _simplify_cylinders(self) -> None:
-        """Draw cylinders in fewer triangles: MuJoCo cuts their sides into stacks and their ends into rings.
+    def _simplify_round_shapes(self) -> None:
+        """Draw balls, and cylinders in light that is the same everywhere, with fewer corners than MuJoCo does.
 
-        Those are for light that differs from place to place; else the picture is the same.
+        It draws each square by itself, and cuts the sides of cylinders into stacks and their ends into rings, which
+        show only where a lamp lights their corners. The picture is the same.
         """
-        gl, first = self._functions, self._draw_context.baseBuiltin
-        turns = np.linspace(0.0, 2.0 * np.pi, _SLICES + 1)
+        turns, rises = np.linspace(0.0, 2.0 * np.pi, _SLICES + 1), np.linspace(-0.5 * np.pi, 0.5 * np.pi, _STACKS + 1)
         circle = [*zip(np.cos(turns).tolist(), np.sin(turns).tolist(), strict=True)]
-        for shape, ends in ((_CYLINDER, (1, -1)), (_TUBE, ())):
-            gl.glNewList(first + shape, _COMPILE)
-            gl.glBegin(_STRIP)
-            for x, y in circle:
-                gl.glNormal3f(x, y, 0.0)
-                gl.glVertex3f(x, y, 1.0)
-                gl.glVertex3f(x, y, -1.0)
+        arc = [*zip(np.cos(rises).tolist(), np.sin(rises).tolist(), strict=True)]
+        ball = [[(x * r, y * r, z) for r, z in arc for x, y in sides] for sides in pairwise(circle)]
+        self._redraw(_BALL, [(_STRIP, [(corner, corner) for corner in strip]) for strip in ball])
+        tube = (_STRIP, [((x, y, 0.0), (x, y, z)) for x, y in circle for z in (1.0, -1.0)])
+        ends = [(_FAN, [((0.0, 0.0, z), (x, y, z)) for x, y in circle[:: int(z)]]) for z in (1.0, -1.0)]
+        if _is_the_same_everywhere(lights_of(self._simulation, np.zeros(3))):
+            self._redraw(_TUBE, [tube])
+            self._redraw(_CYLINDER, [tube, *ends])
+
+    def _redraw(self, shape: int, pieces: list[tuple[int, list[tuple[Vector3, Vector3]]]]) -> None:
+        """Replace a display list of MuJoCo: kinds of primitives, and the normals and places of their corners."""
+        gl = self._functions
+        gl.glNewList(self._draw_context.baseBuiltin + shape, _COMPILE)
+        for kind, corners in pieces:
+            gl.glBegin(kind)
+            for normal, place in corners:
+                gl.glNormal3f(*normal)
+                gl.glVertex3f(*place)
             gl.glEnd()
-            for end in ends:
-                gl.glBegin(_FAN)
-                gl.glNormal3f(0.0, 0.0, end)
-                for x, y in circle[::end]:
-                    gl.glVertex3f(x, y, end)
-                gl.glEnd()
-            gl.glEndList()
+        gl.glEndList()
 
     def _make_room(self, hole: Optics) -> None:
         width, height = max(self._size[0], hole.width), max(self._size[1], hole.height)
