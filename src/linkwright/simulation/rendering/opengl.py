@@ -310,16 +310,11 @@ class OpenGlRenderer:
 
 def _beside(simulation: Simulation, hole: Optics, origin: Array, axes: Array) -> Any:
     """Whether geoms are outside of the picture, shape (geoms,): OpenGL would compute each of their corners."""
-    right, down, ahead = ((simulation.data.geom_xpos - origin) @ axes).T
+    normals, places = hole.bounds
     reach = simulation.model.geom_rbound * (1 + _ROUNDING)
-    outside = (ahead < hole.near - reach) | (ahead > hole.far + reach)
-    sides = ((right, hole.cx, hole.width), (down, hole.cy, hole.height))
-    for along, center, size in sides:
-        for sign, pixels in ((-1.0, center), (1.0, size - center)):
-            slope = pixels / hole.fy
-            outside |= sign * along - slope * ahead > reach * np.hypot(1.0, slope)
-    endless = reach == 0
-    return outside & ~endless
+    beyond = normals @ axes.T @ (simulation.data.geom_xpos - origin).T
+    beyond -= places
+    return (beyond > reach).any(axis=0) & (reach > 0)  # what reaches nowhere has no end
 
 
 def _is_the_same_everywhere(lights: list[PlacedLight]) -> bool:

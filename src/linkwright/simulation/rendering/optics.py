@@ -87,6 +87,29 @@ class Optics:
         across, down, _ = np.ascontiguousarray(self.rays.T, dtype=np.float32)
         return across, down
 
+    @cached_property
+    def bounds(self) -> tuple[Array, Array]:
+        """The six planes around what is seen, for square pixels without distortion.
+
+        Returns:
+            Their outward normals, of length 1, in the axes right, down and forwards: shape (6, 3); and the places of
+            the planes along them, in m: shape (6, 1).
+        """
+        left, right = -self.cx / self.fy, (self.width - self.cx) / self.fy
+        top, bottom = -self.cy / self.fy, (self.height - self.cy) / self.fy
+        normals = np.array(
+            [
+                (0.0, 0.0, -1.0),
+                (0.0, 0.0, 1.0),
+                (-1.0, 0.0, left),
+                (1.0, 0.0, -right),
+                (0.0, -1.0, top),
+                (0.0, 1.0, -bottom),
+            ]
+        )
+        outward: Array = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        return outward, np.array([[-self.near], [self.far], [0.0], [0.0], [0.0], [0.0]])
+
     @property
     def is_pinhole(self) -> bool:
         """Whether this is the picture of a pinhole with square pixels."""
