@@ -152,3 +152,10 @@ async def test_where_everything_is_is_computed_only_for_those_who_listen(plugin,
         server.advance(SECOND // 10)
         await graph.settle()
         assert heard.last.header.stamp.nanosec == 300_000_000
+
+
+async def test_a_world_of_many_driven_robots_is_compiled_once_at_the_start():
+    robots = (robot(classic(f"<ros><namespace>/{name}</namespace></ros>"), name=name) for name in ("a", "b", "c"))
+    async with served(GROUND, *robots) as (server, _graph, _log):
+        assert [len(server.plugins(name)) for name in ("a", "b", "c")] == [1, 1, 1]
+        assert server.simulation.revision == 1

@@ -89,7 +89,8 @@ class Simulation:
         self._joints: dict[str, tuple[int, int]] = {}
         self._pushes: dict[str, dict[str, Array]] = {}
         self._arriving: list[Servo] = []  # not in MuJoCo's model yet
-        self._changed = False
+        self._changed = False  # whether the scene is another one than MuJoCo's model
+        self._is_reshaped = False  # whether it has other bodies or joints
         self._current = False
         self._take(*made)
 
@@ -111,7 +112,7 @@ class Simulation:
             FrameError: a link cannot be placed.
         """
         self.scene.add(model, name, pose)
-        self._changed = True
+        self.set_altered()
 
     def delete(self, name: str) -> None:
         """Remove a model from the world.
@@ -123,7 +124,7 @@ class Simulation:
             self._pushes.pop(held.link.name, None)
         self.scene.remove(name)
         self._arriving = [servo for servo in self._arriving if servo.model != name]
-        self._changed = True
+        self.set_altered()
 
     def set_world(self, world: World, finder: ResourceFinder) -> None:
         """Take all but the models from another world: gravity, time step, lights, position on earth.
@@ -136,7 +137,8 @@ class Simulation:
         self._meshes.look_in(finder)
         self.scene.set_physics(self.world, self._said_step or self.scene.step_of(self.world))
         self.step = round(self.scene.step * NANOSECONDS)
-        self._changed |= _outlook(before) != _outlook(self.world)
+        if _outlook(before) != _outlook(self.world):
+            self.set_altered()
 
     def beside(self, world: World, finder: ResourceFinder) -> Simulation:
         """A simulation of another world, with the same settings as this one."""
@@ -154,7 +156,7 @@ class Simulation:
         """
         for name, pose in poses.items():
             self.scene.place(name, pose)
-            self._changed = True
+            self.set_altered()
         self.refresh()
         for name in poses:
             for link in self.free_links(name):
@@ -177,7 +179,7 @@ class Simulation:
 
     def set_altered(self) -> None:
         """Note that the specification of `scene` was changed: it is compiled when the model is needed."""
-        self._changed = True
+        self._changed = self._is_reshaped = True
 
     def free_links(self, name: str) -> list[str]:
         """The links of a model that move freely, without a joint to a parent.
@@ -240,7 +242,7 @@ class Simulation:
         if self._changed:
             self._take(*compiled(self.scene, (self.model, self.data)))
             self._bodies, self._joints = {}, {}
-            self._changed, self._current = False, False
+            self._changed = self._is_reshaped = self._current = False
             self.revision += 1
             arriving, self._arriving = self._arriving, []
             for servo in arriving:
@@ -465,7 +467,7 @@ class Simulation:
         Raises:
             KeyError: there is no such joint, or it does not move.
         """
-        if self._changed:
+        if self._is_reshaped:  # not for motors: each of a hundred robots would have the model compiled for its own
             self.renew()
         place = self._joints.get(name)
         if place is None:
