@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 
 from benchmarks.bullet import BulletWorld, bullet_world
 from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show
@@ -25,6 +26,8 @@ from benchmarks.robots import REPOSITORY, SHIPPED
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph, Node
 from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.simulator import Simulator
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.server.entities import entity_from
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
@@ -133,7 +136,28 @@ CASES = (
 
 def rows() -> list[Row]:
     """Measure."""
-    return [*(asyncio.run(_row(case)) for case in CASES if case.is_here), *_command_rows()]
+    cases = (asyncio.run(_row(case)) for case in CASES if case.is_here)
+    return [*cases, *(asyncio.run(_coming_row(count)) for count in (10, 100)), *_command_rows()]
+
+
+async def _coming_row(count: int) -> Row:
+    """Robots that come to a running simulator one after the other: the processor's seconds until the last is there."""
+    graph = Graph(on_log=lambda _: None)
+    simulator = Simulator(graph, NodeOptions(parameters={"world": str(WORLDS / "empty.world"), "usual_names": True}))
+    text, here = _robot(_LASER), asyncio.Event()
+    begin = time.process_time()
+    for number in range(count):
+        row, column = divmod(number, 10)
+        place = (row * _BESIDE, column * _BESIDE, 0.12, 0.0, 0.0, 0.0, 1.0)
+        spawn = partial(simulator.services.spawn, text, f"mbot{number}", place, f"mbot{number}")
+        simulator.server.exchange.post(spawn)
+    loop = asyncio.get_running_loop()
+    simulator.server.exchange.post(lambda: loop.call_soon_threadsafe(here.set))
+    await here.wait()
+    taken = time.process_time() - begin
+    simulator.close()
+    await graph.close()
+    return Row(f"{count} mbots with laser come to a running world", taken, "s", "5 s" if count == 100 else "")
 
 
 def _command_rows() -> Iterator[Row]:
