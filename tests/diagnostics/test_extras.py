@@ -72,6 +72,7 @@ ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
   <collision><geometry><mesh filename="tetrahedron.obj"/></geometry></collision></link></robot>"""
 
 
+@pytest.mark.extra("mesh")
 def test_a_check_says_once_that_it_did_not_look_into_meshes(without, tmp_path):
     def unread_in(folder):
         folder.mkdir()

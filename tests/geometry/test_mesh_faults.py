@@ -16,6 +16,8 @@ from linkwright.geometry.mesh_files import BadMeshError, beside
 from linkwright.geometry.mesh_parts import read_parts
 from linkwright.geometry.meshes import read_mesh
 
+pytestmark = pytest.mark.extra("mesh")
+
 CORNERS = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
 TEXT_STL = """solid a
 facet normal 0 0 1

@@ -32,6 +32,7 @@ def test_a_file_that_is_not_there_says_nothing(tmp_path: Path) -> None:
     assert told_triangles(tmp_path / "a.stl") is None
 
 
+@pytest.mark.extra("mesh")
 @pytest.mark.parametrize(
     "materials",
     ["", '<library_materials><material id="red"><instance_effect url="#none"/></material></library_materials>'],
@@ -48,6 +49,7 @@ def test_collada_keeps_what_wears_a_material_that_cannot_be_read(materials: str)
     assert len(placed_meshes(text.encode(), "dae")) == 2
 
 
+@pytest.mark.extra("mesh")
 @pytest.mark.parametrize(
     ("proper", "loose"),
     [

@@ -12,6 +12,8 @@ from PIL import Image
 from linkwright.geometry.mesh_files import BadMeshError, beside
 from linkwright.geometry.mesh_parts import read_parts
 
+pytestmark = pytest.mark.extra("image")
+
 OBJ = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n"
 
 

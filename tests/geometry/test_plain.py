@@ -48,6 +48,7 @@ def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
     return np.array(sorted(turned)).reshape(-1, 9)
 
 
+@pytest.mark.extra("mesh")
 @pytest.mark.parametrize(
     "text",
     [
@@ -134,6 +135,7 @@ def test_what_is_unusual_in_collada_is_left_to_trimesh(text: str) -> None:
 OBJ = "mtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nvn 0 0 1\nvt 0 0\n"
 
 
+@pytest.mark.extra("mesh")
 @pytest.mark.parametrize(
     "text",
     [
@@ -179,6 +181,7 @@ def test_what_is_unusual_in_an_obj_file_is_left_to_trimesh(text: str) -> None:
     assert read_obj(text.encode()) is None
 
 
+@pytest.mark.extra("mesh")
 @pytest.mark.parametrize("header", [b"", b"COLOR=\x7f\x7f\x7f\xff"])
 def test_the_colours_of_stl_do_not_matter_to_who_wants_triangles(header: bytes) -> None:
     facet = np.array([0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0], dtype="<f4").tobytes() + b"\xff\x83"

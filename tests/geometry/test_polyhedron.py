@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.polyhedron import is_closed, merged, polyhedron_properties
 
+pytestmark = pytest.mark.extra("mesh")
+
 coordinates = st.floats(-10, 10, width=32)
 clouds = st.lists(st.tuples(coordinates, coordinates, coordinates), min_size=4, max_size=60)
 

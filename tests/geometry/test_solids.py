@@ -13,6 +13,8 @@ from linkwright.geometry.shapes import volume_of
 from linkwright.geometry.solids import shape_properties
 from linkwright.urdf import Box, Capsule, Cylinder, Sphere
 
+pytestmark = pytest.mark.extra("mesh")
+
 sizes = st.floats(0.01, 2.0)
 
 

@@ -8,6 +8,8 @@ from linkwright.geometry.mesh_files import placed_meshes
 from linkwright.geometry.plain import PlainMesh
 from linkwright.geometry.stl import read_stl
 
+pytestmark = pytest.mark.extra("mesh")
+
 
 def _bytes(kind: str = "stl") -> bytes:
     data = trimesh.creation.icosphere(subdivisions=2, radius=0.3).export(file_type=kind)

@@ -17,7 +17,10 @@ from linkwright.xmltree import parse
 from tests.places import REPOSITORY
 
 # Writing a COLLADA file with trimesh: pycollada does what numpy 2.5 warns of. The program only reads them.
-pytestmark = pytest.mark.filterwarnings("ignore:Setting the shape on a NumPy array:DeprecationWarning")
+pytestmark = [
+    pytest.mark.extra("mesh"),
+    pytest.mark.filterwarnings("ignore:Setting the shape on a NumPy array:DeprecationWarning"),
+]
 
 CONE = trimesh.creation.cone(0.3, 1.0)
 

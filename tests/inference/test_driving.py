@@ -16,6 +16,8 @@ from linkwright.urdf import read
 from tests.inference.test_robots import CASES, read_and_inferred
 from tests.simulation.worlds import GROUND, simulated
 
+pytestmark = pytest.mark.extra("sim")
+
 SECOND = 1_000_000_000
 ROBOTS = {case[0]: case[1] for case in CASES}
 MOTOR = (20.0, 1.5)

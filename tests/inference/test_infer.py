@@ -14,6 +14,8 @@ from linkwright.inertia import MeshLibrary
 from linkwright.inference import infer
 from linkwright.packages import PackageFinder
 
+pytestmark = pytest.mark.extra("mesh")
+
 BASE = '<link name="base_link"><collision><geometry><box size="0.4 0.3 0.1"/></geometry></collision></link>'
 WHEEL = (
     '<collision><origin rpy="1.5708 0 0"/><geometry><cylinder radius="{radius}" length="0.03"/></geometry></collision>'

@@ -11,6 +11,8 @@ from linkwright.diagnostics import has_errors
 from linkwright.lint.engine import examine_package
 from linkwright.lint.settings import Settings
 
+pytestmark = pytest.mark.extra("colcon")
+
 _PARTS = {
     "name": [
         *("my_robot", "depthai-ros", "My-Robot", "MyRobot", "2d_nav", "a", "a__b", "class", "my robot", "my.robot"),

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from tests.lint.cases import Case, load_cases
 
 CASES = load_cases()
+_EXTRA = re.compile("the extra `([a-z]+)`")
+"""In the title of a case: what it needs."""
 
 
-@pytest.mark.parametrize("case", [pytest.param(case, id=case.name) for case in CASES])
+def _marks(case: Case) -> list[pytest.MarkDecorator]:
+    return [pytest.mark.extra(name) for name in _EXTRA.findall(case.name)]
+
+
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.name, marks=_marks(case)) for case in CASES])
 def test_case(case: Case, tmp_path, monkeypatch):
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     folder = tmp_path / "case"  # packages of other tests lie beside tmp_path, and those beside a package are found

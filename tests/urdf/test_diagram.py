@@ -18,6 +18,7 @@ GV = to_gv(load(robot_text(chain("fixed", "continuous"))))
 FORMATS = [("pdf", b"%PDF-"), ("svg", b"<?xml"), ("png", b"\x89PNG"), ("SVG", b"<?xml")]
 
 
+@pytest.mark.extra("diagram")
 @pytest.mark.parametrize(("ending", "start"), FORMATS)
 def test_the_ending_picks_the_format(tmp_path, ending, start):
     picture = tmp_path / f"robot.{ending}"
@@ -25,6 +26,7 @@ def test_the_ending_picks_the_format(tmp_path, ending, start):
     assert picture.read_bytes().startswith(start)
 
 
+@pytest.mark.extra("diagram")
 def test_links_are_boxes_and_joints_ellipses(tmp_path):
     picture = tmp_path / "robot.svg"
     render(GV, picture)
@@ -34,6 +36,7 @@ def test_links_are_boxes_and_joints_ellipses(tmp_path):
     assert [label for label in ("a", "b", "c", "j0", "j1") if f">{label}</text>" not in text] == []
 
 
+@pytest.mark.extra("diagram")
 def test_names_that_are_not_ascii(tmp_path):
     picture = tmp_path / "robot.svg"
     render(to_gv(load(robot_text('<link name="底盘"/>'))), picture)
@@ -55,11 +58,13 @@ def test_no_pygraphviz(tmp_path, monkeypatch):
     assert caught.value.diagnostics[0].code == "URDF202"
 
 
+@pytest.mark.extra("diagram")
 def test_a_folder_that_is_not_there(tmp_path):
     with pytest.raises(LinkwrightError, match="cannot be written"):
         render(GV, tmp_path / "missing" / "robot.pdf")
 
 
+@pytest.mark.extra("diagram")
 def test_a_text_that_graphviz_cannot_read(tmp_path):
     with pytest.raises(LinkwrightError, match="could not lay out"):
         render("digraph {", tmp_path / "robot.svg")

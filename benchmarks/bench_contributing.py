@@ -1,0 +1,43 @@
+"""What the first test of a new contributor takes: a fresh clone, its environment, the tests of one room."""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from benchmarks.measure import ROOT, Row, show
+
+TESTS = "tests/urdf"
+
+
+def rows() -> list[Row]:
+    """Measure. Packages come from uv's cache where they are in it: how fast a network is, is not measured."""
+    with tempfile.TemporaryDirectory() as folder:
+        clone = Path(folder) / "clone"
+        before = _processor()
+        _run("git", "clone", "--quiet", "--no-hardlinks", str(ROOT), str(clone))
+        _run("make", "--directory", str(clone), "test-base", f"ARGS={TESTS}", f"PYTHON={sys.executable}")
+        seconds = _processor() - before
+        size = sum(path.lstat().st_blocks * 512 for path in clone.rglob("*")) / 1e6
+    what = f"clone, make test-base ARGS={TESTS}"
+    return [Row(f"{what}: processor", seconds, "s", "40 s"), Row(f"{what}: disk", size, "MB", "300 MB")]
+
+
+def _run(*words: str) -> None:
+    known = {
+        name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "VERSION", "ARGS")
+    }
+    subprocess.run(words, check=True, env=known, stdout=subprocess.DEVNULL)
+
+
+def _processor() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+if __name__ == "__main__":
+    show(rows())
