@@ -8,7 +8,6 @@ import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
@@ -29,6 +28,7 @@ from linkwright.diagnostics.alike import alike_together
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.diagnostics.translation import localized
+from linkwright.lean_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from linkwright.descriptions.argument_sets import ArgumentSet, ArgumentSets

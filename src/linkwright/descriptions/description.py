@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import Reading, Robot, read
 from linkwright.xmltree import Document, Element, Overlay
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, has_errors, phrase
+from linkwright.lean_dataclasses import dataclass
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading
 from linkwright.xmltree import Document, Overlay
@@ -65,6 +65,8 @@ def examine_world(
     Raises:
         LinkwrightError: it is not XML, it cannot be expanded, or it has more links than are read (SDF163).
     """
+    from dataclasses import replace
+
     from linkwright.sdf.includes import resolve_includes
     from linkwright.sdf.reader import read
     from linkwright.sdf.references import check_references

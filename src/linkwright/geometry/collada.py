@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.plain import PlainMesh, Unusual, fans, numbers
 from linkwright.geometry.polyhedron import Faces
+from linkwright.lean_dataclasses import dataclass, field
 
 _Node = ET.Element
 _TRANSFORMS = ("matrix", "translate", "rotate", "scale")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.placement import rotation as rotation_of
 from linkwright.geometry.single import Pose
+from linkwright.lean_dataclasses import dataclass, field
 
 LEAST_MASS = 1e-30
 """A mass in kg below this, some electrons, is none."""

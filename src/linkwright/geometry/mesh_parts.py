@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from io import BytesIO
 from pathlib import Path
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import missing_extra
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, placed_meshes, said_by_parser
+from linkwright.lean_dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

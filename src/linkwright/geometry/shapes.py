@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi, prod
 
 from linkwright.geometry.vectors import Vector3
+from linkwright.lean_dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

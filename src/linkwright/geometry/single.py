@@ -6,10 +6,10 @@ Quaternions are x, y, z, w; lengths are metres and angles radians. Functions are
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import acos, asin, atan2, cos, pi, sin, sqrt
 
 from linkwright.geometry.vectors import Vector3
+from linkwright.lean_dataclasses import dataclass
 
 Quaternion = tuple[float, float, float, float]
 """x, y, z, w, of unit length."""

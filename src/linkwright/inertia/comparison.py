@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
 
 from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.validity import problems
+from linkwright.lean_dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

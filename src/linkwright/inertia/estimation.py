@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
@@ -11,6 +10,7 @@ from linkwright.geometry.mass import MassProperties, combine
 from linkwright.geometry.solids import shape_properties
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary
+from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import Collision, Link, Mesh, Visual
 
 ShapeKind = Literal["collision", "visual"]

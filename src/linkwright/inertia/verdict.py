@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from math import inf, log
 
@@ -14,6 +13,7 @@ from linkwright.geometry.validity import HEAVIEST_DENSITY, LIGHTEST_DENSITY, pro
 from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimation import Estimate
 from linkwright.inertia.inertial import from_inertial, is_computable
+from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import Link, Mesh
 from linkwright.urdf.bodies import Bodies
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path, foreign, phrase
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.source_edits import NotWritableError, edits_for
+from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import Link, Robot
 from linkwright.whole_files import write_whole_file
 from linkwright.xmltree.patches import Replacement, apply

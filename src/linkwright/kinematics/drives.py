@@ -6,8 +6,9 @@ and rad/s takes ways in m and angles in rad as well, where the wheels' angles do
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import atan, atan2, copysign, cos, hypot, pi, sin, tan
+
+from linkwright.lean_dataclasses import dataclass
 
 _QUARTER_TURN = pi / 2.0
 

@@ -10,12 +10,12 @@ joint with z along the joint's axis. Then a joint turns its body about z or slid
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array, matrix_from_pose, row_from_pose
+from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import Joint, Robot, children_of, parent_joints
 
 Indices = NDArray[np.intp]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import cos, sin
 
 from linkwright.geometry.single import Transform
+from linkwright.lean_dataclasses import dataclass
 
 _STRAIGHT = 1e-6
 """The angle in rad below which an arc is a straight line: dividing by less loses digits."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from difflib import unified_diff
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix
 from linkwright.packages import enclosing_package

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from linkwright.descriptions import examine as examine_description
@@ -22,6 +21,7 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.diagnostics.phrase import as_phrase
+from linkwright.lean_dataclasses import dataclass, field, replace
 from linkwright.lint.engine import Checked, as_set, in_order
 from linkwright.lint.registry import find_rule
 from linkwright.lint.rules.inertia_doubtful import LEFT_TO_PLACEHOLDERS, placeholders

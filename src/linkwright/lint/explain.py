@@ -6,12 +6,12 @@ A file of ``pages/`` holds the codes of one room, ``## CODE: title`` and the tex
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cache
 from inspect import cleandoc
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, joined, nearest, phrase, term, title_of_page
+from linkwright.lean_dataclasses import dataclass
 from linkwright.lint.option import OptionValue
 from linkwright.lint.registry import all_rules, find_rule
 from linkwright.lint.rule import Rule

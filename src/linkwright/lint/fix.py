@@ -6,8 +6,8 @@ An edit replaces a range of characters of one file. Everything else, formatting 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
+from linkwright.lean_dataclasses import dataclass
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range, escaped, start_tag_of, whole_lines
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from linkwright.lean_dataclasses import dataclass
 
 OptionValue = bool | int | float | str | list[str]
 """What an option of a rule may be, as TOML has it."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Protocol
 
 from linkwright.diagnostics import Severity
+from linkwright.lean_dataclasses import dataclass, field, replace
 from linkwright.lint.option import OptionValue
 from linkwright.lint.selectors import specificity
 

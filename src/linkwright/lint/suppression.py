@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, phrase
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.registry import find_rule

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.lean_dataclasses import dataclass
 from linkwright.packages import enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.sources import IGNORE_MARKERS, SKIPPED_FOLDERS

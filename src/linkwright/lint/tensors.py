@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import Inertial
 
 if TYPE_CHECKING:

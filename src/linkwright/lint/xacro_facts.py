@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Span
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.lint.xacro_names import Mentions, identifiers, mentions
 from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xacro.faults import Fault

@@ -10,9 +10,9 @@ import ast
 import re
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from functools import lru_cache
 
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.xacro.expressions.lexer import Token, TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 

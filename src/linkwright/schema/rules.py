@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any
+
+from linkwright.lean_dataclasses import dataclass, field
 
 Version = tuple[int, int]
 """Major and minor version of a language."""

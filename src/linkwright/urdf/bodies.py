@@ -6,10 +6,10 @@ Simulators merge such links, so what a link lacks another of its body may have.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from linkwright.geometry.placement import IDENTITY, Placement, placement
+from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf.model import Joint, Link, Robot
 
 WORLD = "world"

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
+from linkwright.lean_dataclasses import dataclass
 from linkwright.xmltree.nodes import Element
 
 _TAG_NAME = re.compile(r"<[^\s/>]+")

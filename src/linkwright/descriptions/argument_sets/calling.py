@@ -6,12 +6,12 @@ import os
 import re
 import shlex
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 from linkwright.descriptions.argument_sets.workspace import CallingFiles
 from linkwright.diagnostics import Span
+from linkwright.lean_dataclasses import dataclass, replace
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.readers.xacro_calls.call import (
     CallingFile,

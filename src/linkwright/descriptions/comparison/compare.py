@@ -5,7 +5,6 @@ from __future__ import annotations
 import filecmp
 import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, TypeVar
 
@@ -21,6 +20,7 @@ from linkwright.descriptions.comparison.facts import (
 )
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.diagnostics import LinkwrightError, Span
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
 from linkwright.xacro.origin import Frame, frames
 from linkwright.xmltree import Element

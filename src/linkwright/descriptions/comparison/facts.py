@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
 from math import sqrt
 
 from linkwright.geometry.shapes import Box, Sphere
 from linkwright.geometry.single import Pose, quaternion_of
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.urdf import Geometry, Inertial, Joint, Link, Mesh, Visual
 from linkwright.urdf.model import Collision
 from linkwright.xmltree import Element

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
+from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import Joint, Link, Robot, children_of
 
 

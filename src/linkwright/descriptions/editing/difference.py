@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import islice, zip_longest
 
 from linkwright.diagnostics import phrase, term
+from linkwright.lean_dataclasses import dataclass
 from linkwright.xmltree import Element
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.planning import EditPlan
 from linkwright.descriptions.editing.refusals import forbidden_file
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.lean_dataclasses import dataclass
 from linkwright.whole_files import write_whole_file
 from linkwright.xmltree.decoding import decoded
 from linkwright.xmltree.reader import read_bytes

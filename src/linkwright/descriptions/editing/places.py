@@ -5,10 +5,10 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 from linkwright.descriptions.editing.numbers import in_degrees, part_of_pi, shortest
 from linkwright.diagnostics import SourceText, Span
+from linkwright.lean_dataclasses import dataclass
 
 _WORD = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|\S)+")
 _ONE_EXPRESSION = re.compile(r"\$\{([^{}]*)\}\Z|(\$\([^()]*\))\Z")

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
 from typing import NamedTuple
@@ -25,6 +24,7 @@ from linkwright.descriptions.editing.request import EditRequest
 from linkwright.descriptions.editing.snapshot import Snapshot
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.lean_dataclasses import dataclass
 from linkwright.xacro.origin import Frame
 from linkwright.xmltree import Document, Element, Overlay, parse
 from linkwright.xmltree.patches import inserted, start_tag_of

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from linkwright.descriptions.editing.places import Place
 from linkwright.diagnostics import Diagnostic, Note, display_path, joined, phrase
+from linkwright.lean_dataclasses import dataclass
 
 _MOST_NAMED = 6
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +13,7 @@ from linkwright.descriptions.description import Description
 from linkwright.descriptions.editing.definitions import Definitions
 from linkwright.descriptions.editing.places import Place
 from linkwright.diagnostics import LinkwrightError
+from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element, Overlay

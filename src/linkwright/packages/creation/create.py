@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import (
@@ -21,6 +20,7 @@ from linkwright.diagnostics import (
     phrase,
     term,
 )
+from linkwright.lean_dataclasses import dataclass
 from linkwright.packages.creation import cmake_templates, package_templates
 from linkwright.packages.creation.licenses import known_licenses, license_text
 from linkwright.packages.creation.request import DEFAULT_LICENSE, PackageRequest

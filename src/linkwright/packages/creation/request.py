@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
+
+from linkwright.lean_dataclasses import dataclass
 
 BuildType = Literal["cmake", "ament_cmake", "ament_python"]
 BUILD_TYPES: tuple[BuildType, ...] = ("cmake", "ament_cmake", "ament_python")

@@ -13,11 +13,11 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import SourceText
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.packages.readers.entry_points import (
     LINE,
     PROGRAMS,

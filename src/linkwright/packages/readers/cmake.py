@@ -6,12 +6,12 @@ Packages of descriptions, launch files, scripts and interfaces compile nothing; 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
+from linkwright.lean_dataclasses import dataclass, field, replace
 from linkwright.packages.readers.cmake_commands import is_followed
 from linkwright.packages.readers.cmake_conditions import matched
 from linkwright.packages.readers.cmake_language import (

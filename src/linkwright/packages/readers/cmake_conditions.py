@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, MutableMapping, Sequence
-from dataclasses import dataclass
 
+from linkwright.lean_dataclasses import dataclass
 from linkwright.packages.readers.cmake_syntax import is_open
 
 _NUMBER = re.compile(r"[+-]?\d+(\.\d*)?")

@@ -14,10 +14,10 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.packages.ament import ROS_VARIABLES
 from linkwright.packages.readers.cmake_conditions import YES, Condition, Word
 from linkwright.packages.readers.cmake_syntax import ENDS, Statement, Token, branches, end_of_block, is_open, statements

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from linkwright.diagnostics import SourceText
+from linkwright.lean_dataclasses import dataclass
 
 _PIECE = re.compile(
     r"""

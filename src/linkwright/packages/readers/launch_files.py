@@ -5,9 +5,9 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
 
 from linkwright.diagnostics import SourceText, Span
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.packages.readers.python_values import PythonFile, SharePath, argument_of, called_name
 from linkwright.packages.readers.setup_py import SyntaxMistake, syntax_mistake
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
+from linkwright.lean_dataclasses import dataclass
 from linkwright.xmltree import Document, Element
 
 DEPENDENCIES = frozenset(

@@ -9,11 +9,11 @@ from __future__ import annotations
 import ast
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from typing import Union
 
 from linkwright.diagnostics import SourceText, Span, phrase
+from linkwright.lean_dataclasses import dataclass
 
 
 class Nothing(Enum):

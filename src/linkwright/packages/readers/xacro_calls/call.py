@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 
 from linkwright.diagnostics import Span
+from linkwright.lean_dataclasses import dataclass, field
 from linkwright.packages.readers.xacro_calls.texts import Choice, Open, Selection, Text, resolve, split_mark
 
 _LAUNCH = "launch:"

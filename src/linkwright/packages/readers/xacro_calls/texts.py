@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
 from typing import Union
+
+from linkwright.lean_dataclasses import dataclass, field, replace
 
 _DEEPEST = 12
 _MOST_PATHS = 64

@@ -1,0 +1,239 @@
+"""`dataclasses` for programs that must start soon: the same classes, whose methods are compiled when they are used.
+
+The standard library writes the methods of a class as text and compiles them where the class is defined, and imports
+`inspect` for it. A check of a small robot defines sixty classes and makes objects of half of them, so this was a
+quarter of its time. Here ``__init__`` is compiled for the first object, and all classes share the other methods.
+
+To type checkers these are `dataclasses.dataclass`, `field` and `replace`, of which they take the arguments that are
+used here. What `dataclasses` offers for a class or an object, such as ``fields`` and ``asdict``, works for these too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
+
+__all__ = ["dataclass", "field", "replace"]
+
+_MISSING: Any = type("Missing", (), {"__repr__": lambda _: "MISSING"})()
+_FIELDS, _OPTIONS = "__lean_fields__", "__lean_options__"
+_OF_EVERY_CLASS = ("__dict__", "__weakref__")
+_set: Callable[[object, str, object], None] = object.__setattr__
+_set_class: Callable[[object, type], None] = vars(object)["__class__"].__set__
+
+
+class _Field:
+    __slots__ = ("compare", "default", "factory", "init", "name", "repr", "type")
+
+    def __init__(self, default: Any, factory: Any, *, init: bool, repr: bool, compare: bool) -> None:  # noqa: A002
+        self.name = self.type = ""
+        self.default = default
+        self.factory = factory
+        self.init = init
+        self.repr = repr
+        self.compare = compare
+
+    @property
+    def is_set(self) -> bool:
+        """Whether ``__init__`` gives it a value."""
+        return self.init or self.default is not _MISSING or self.factory is not _MISSING
+
+    @property
+    def parameter(self) -> str:
+        """Its parameter of ``__init__``."""
+        is_required = self.default is _MISSING and self.factory is _MISSING
+        return self.name if is_required else f"{self.name}=default_{self.name}"
+
+    @property
+    def value(self) -> str:
+        """The expression in ``__init__`` for its value."""
+        if self.factory is _MISSING:
+            return self.name if self.init else f"default_{self.name}"
+        made = f"factory_{self.name}()"
+        return f"({made} if {self.name} is MISSING else {self.name})" if self.init else made
+
+
+def _field(
+    *,
+    default: Any = _MISSING,
+    default_factory: Any = _MISSING,
+    init: bool = True,
+    repr: bool = True,  # noqa: A002 - as in `dataclasses`
+    compare: bool = True,
+) -> Any:
+    return _Field(default, default_factory, init=init, repr=repr, compare=compare)
+
+
+def _dataclass(cls: Any = None, /, *, frozen: bool = False, slots: bool = False, eq: bool = True) -> Any:
+    if cls is None:
+        return lambda cls: _dataclass(cls, frozen=frozen, slots=slots, eq=eq)
+    own = dict(_own_fields(cls))
+    fields: dict[str, _Field] = {}
+    for base in reversed(cls.__mro__[1:]):
+        fields |= vars(base).get(_FIELDS, {})
+    new = [name for name in own if name not in fields]
+    fields |= own
+    written = {name: value for name, value in vars(cls).items() if name not in own and name not in _OF_EVERY_CLASS}
+    if written.get("__hash__", "") is None:
+        del written["__hash__"]  # because there is an `__eq__`
+    shared = _SHARED | (_comparing(fields, frozen=frozen) if eq else {}) | (_FROZEN if frozen else {})
+    shared |= _KEPT if frozen and slots else {}
+    made = {
+        **shared,
+        **written,
+        "__init__": _first_init,
+        "__match_args__": tuple(name for name, each in fields.items() if each.init),
+        _FIELDS: fields,
+        _OPTIONS: (frozen, slots),
+    }
+    if slots:
+        made |= {"__slots__": tuple(new), "__qualname__": cls.__qualname__}
+        return type(cls)(cls.__name__, cls.__bases__, made)
+    for name, each in own.items():
+        if each.default is not _MISSING:
+            made[name] = each.default
+        elif name in vars(cls):
+            delattr(cls, name)
+    for name, value in made.items():
+        if vars(cls).get(name, _MISSING) is not value:
+            setattr(cls, name, value)
+    return cls
+
+
+def _own_fields(cls: type) -> Iterator[tuple[str, _Field]]:
+    for name, kind in cls.__annotations__.items():
+        if kind.startswith(("ClassVar", "typing.ClassVar")):
+            continue
+        default = vars(cls).get(name, _MISSING)
+        found = default if isinstance(default, _Field) else _field(default=default)
+        found.name, found.type = name, kind
+        yield name, found
+
+
+# --- making objects --------------------------------------------------------------------------------------------------
+
+
+def _first_init(self: Any, *args: Any, **kwargs: Any) -> None:
+    """The ``__init__`` of a class of which there are no objects yet: it compiles that of all others."""
+    cls: Any = next(each for each in type(self).__mro__ if vars(each).get("__init__") is _first_init)
+    cls.__init__ = _compiled_init(cls)
+    cls.__init__(self, *args, **kwargs)
+
+
+def _compiled_init(cls: Any) -> Callable[..., None]:
+    frozen, slots = vars(cls)[_OPTIONS]
+    fields: Iterable[_Field] = getattr(cls, _FIELDS).values()
+    filled = [each for each in fields if each.is_set]
+    scope: dict[str, Any] = {"MISSING": _MISSING, "cls": cls, "set_value": _set, "set_class": _set_class}
+    for each in filled:
+        scope[f"factory_{each.name}"] = each.factory
+        scope[f"default_{each.name}"] = each.default
+    slow = [f"set_value(self, {each.name!r}, {each.value})" for each in filled]
+    fast = [f"self.{each.name} = {each.value}" for each in filled]
+    if frozen and slots:
+        # To set a value past `__setattr__` takes a call. So an object gets its values while it is of a class with the
+        # same slots that does not refuse, which takes half as long.
+        scope["draft"] = type("Draft", cls.__bases__, {"__slots__": cls.__slots__, "__setattr__": _set})
+        fast = ["set_class(self, draft)", *fast, "self.__class__ = cls"]
+        body = ["if self.__class__ is cls:", *(f"    {line}" for line in fast)]
+        body += ["else:", *(f"    {line}" for line in slow)] if slow else []
+    else:
+        body = slow if frozen else fast
+    if hasattr(cls, "__post_init__"):
+        body.append("self.__post_init__()")
+    parameters = ", ".join(("self", *(each.parameter for each in fields if each.init)))
+    source = f"def __init__({parameters}):\n" + "".join(f"    {line}\n" for line in body or ["pass"])
+    exec(compile(source, f"<__init__ of {cls.__qualname__}>", "exec"), scope)  # noqa: S102 - names of our own classes
+    made: Callable[..., None] = scope["__init__"]
+    made.__qualname__ = f"{cls.__qualname__}.__init__"
+    return made
+
+
+def _replace(thing: Any, /, **changes: Any) -> Any:
+    for name, each in getattr(thing, _FIELDS).items():
+        if each.init:
+            changes.setdefault(name, getattr(thing, name))
+        elif name in changes:
+            raise TypeError(f"field {name} is declared with init=False, it cannot be specified with replace()")
+    return type(thing)(**changes)
+
+
+# --- what all classes share ------------------------------------------------------------------------------------------
+
+
+def _repr(self: Any) -> str:
+    shown = (f"{name}={getattr(self, name)!r}" for name, each in getattr(self, _FIELDS).items() if each.repr)
+    return f"{type(self).__qualname__}({', '.join(shown)})"
+
+
+def _comparing(fields: dict[str, _Field], *, frozen: bool) -> dict[str, Any]:
+    names = [name for name, each in fields.items() if each.compare]
+    values: Callable[[Any], Any] = attrgetter(*names) if names else lambda _: ()
+
+    def equal(self: Any, other: Any) -> Any:
+        return values(self) == values(other) if other.__class__ is self.__class__ else NotImplemented
+
+    return {"__eq__": equal, "__hash__": (lambda self: hash(values(self))) if frozen else None}
+
+
+def _refuse_to_set(self: Any, name: str, value: Any) -> None:
+    _refuse(self, name, "assign to")
+    _set(self, name, value)
+
+
+def _refuse_to_delete(self: Any, name: str) -> None:
+    _refuse(self, name, "delete")
+    object.__delattr__(self, name)
+
+
+def _refuse(self: Any, name: str, what: str) -> None:
+    if _FIELDS in vars(type(self)) or name in getattr(self, _FIELDS):
+        from dataclasses import FrozenInstanceError
+
+        raise FrozenInstanceError(f"cannot {what} field {name!r}")
+
+
+def _get_state(self: Any) -> list[Any]:
+    return [getattr(self, name) for name in getattr(self, _FIELDS)]
+
+
+def _set_state(self: Any, state: list[Any]) -> None:
+    for name, value in zip(getattr(self, _FIELDS), state, strict=True):
+        _set(self, name, value)
+
+
+class _Told:
+    """What `dataclasses` notes on a class, worked out when somebody asks for it."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, instance: object, owner: type) -> Any:
+        import dataclasses
+
+        def told(each: _Field) -> Any:
+            default = {"default_factory": each.factory, "default": each.default}
+            given = {name: value for name, value in default.items() if value is not _MISSING}
+            return dataclasses.field(init=each.init, repr=each.repr, compare=each.compare, **given)
+
+        cls = next(each for each in owner.__mro__ if vars(each).get(self._name) is self)
+        fields = [(name, each.type, told(each)) for name, each in vars(cls)[_FIELDS].items()]
+        twin = dataclasses.make_dataclass(cls.__name__, fields, frozen=vars(cls)[_OPTIONS][0])
+        value = vars(twin)[self._name]
+        setattr(cls, self._name, value)
+        return value
+
+
+_SHARED: dict[str, Any] = {
+    "__repr__": _repr,
+    **{name: _Told(name) for name in ("__dataclass_fields__", "__dataclass_params__")},
+}
+_FROZEN: dict[str, Any] = {"__setattr__": _refuse_to_set, "__delattr__": _refuse_to_delete}
+_KEPT: dict[str, Any] = {"__getstate__": _get_state, "__setstate__": _set_state}
+"""Without these, objects with slots that refuse could be pickled and not read again."""
+
+if TYPE_CHECKING:
+    from dataclasses import dataclass, field, replace
+else:
+    dataclass, field, replace = _dataclass, _field, _replace

@@ -1,0 +1,142 @@
+"""Classes of `linkwright.lean_dataclasses`, beside the same ones of `dataclasses`."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import pickle
+import subprocess
+import sys
+from typing import Any, ClassVar
+
+import pytest
+
+from linkwright import lean_dataclasses
+
+KINDS = [{"frozen": frozen, "slots": slots, "eq": eq} for frozen in (0, 1) for slots in (0, 1) for eq in (0, 1)]
+
+
+def classes(library: Any, options: dict[str, int]) -> dict[str, Any]:
+    """The same classes, made by one of both libraries."""
+    dataclass, field = library.dataclass, library.field
+    options = {name: bool(value) for name, value in options.items()}
+
+    @dataclass(**options)
+    class Point:
+        shared: ClassVar[int] = 7
+        x: float
+        y: float = 2.0
+
+        @property
+        def sum(self) -> float:
+            return self.x + self.y
+
+    @dataclass(**options)
+    class Path:
+        points: list[Point] = field(default_factory=list)
+        place: object = field(default=None, compare=False, repr=False)
+        count: int = field(init=False, repr=False)
+
+        def __post_init__(self) -> None:
+            object.__setattr__(self, "count", len(self.points))
+
+    @dataclass(**options)
+    class Named(Point):
+        name: str = "origin"
+
+        def __repr__(self) -> str:
+            return f"<{self.name}>"
+
+    class Derived(Point):
+        pass
+
+    @dataclass(**options)
+    class Nothing:
+        pass
+
+    return {each.__name__: each for each in (Point, Path, Named, Derived, Nothing)}
+
+
+def answers(library: Any, options: dict[str, int]) -> list[object]:
+    """What objects of the classes say and do."""
+    made = classes(library, options)
+    point, path, named, nothing = made["Point"], made["Path"], made["Named"], made["Nothing"]
+    objects = [point(1), point(1.0, y=2), point(3, 4), path(), path([point(1)], place="here"), named(1, 2, "tip")]
+    objects += [made["Derived"](1), nothing()]
+    found: list[object] = [*map(repr, objects), [[one == other for other in objects] for one in objects]]
+    for each in objects:
+        found.append(dataclasses.asdict(each))
+        found.append(repr(library.replace(each)))
+        found.append(repr(dataclasses.replace(each)))
+        found.append(repr(copy.deepcopy(each)))
+        found.append([(field.name, field.init, field.repr, field.compare) for field in dataclasses.fields(each)])
+        found += [outcome(lambda each=each: hash(each) == hash(copy.copy(each)))]
+        mine = copy.copy(each)
+        if isinstance(each, (made["Derived"], nothing)):
+            continue  # `dataclasses` fails there with a TypeError about super()
+        found += [
+            outcome(lambda mine=mine: setattr(mine, mine.__match_args__[0], 5)),
+            outcome(lambda mine=mine: delattr(mine, mine.__match_args__[0])),
+        ]
+        found.append(outcome(lambda mine=mine: setattr(mine, "new", 5)) is None)
+        found += [hasattr(each, "__dict__"), type(each).__match_args__]
+    found += [point.shared, objects[1].sum, repr(library.replace(objects[2], x=0)), vars(point).get("y") == 2.0]
+    found += [outcome(point), outcome(lambda: point(1, 2, 3)), outcome(lambda: point(1, z=3))]
+    found += [path().points is path().points, outcome(lambda: library.replace(path(), count=3))[1]]
+    found += [outcome(lambda: library.replace(point(1), z=3))]
+    return found
+
+
+def outcome(call: Any) -> Any:
+    """What a call returns, or its exception."""
+    try:
+        return call()
+    except (AttributeError, TypeError, ValueError) as error:
+        return type(error).__name__, str(error).partition("(")[0]
+
+
+@pytest.mark.parametrize("options", KINDS)
+def test_classes_behave_as_those_of_the_standard_library(options):
+    assert answers(lean_dataclasses, options) == answers(dataclasses, options)
+
+
+@lean_dataclasses.dataclass(frozen=True, slots=True)
+class Kept:
+    """One that can be found by its name."""
+
+    x: int
+    others: tuple[int, ...] = ()
+
+
+def test_frozen_objects_with_slots_are_pickled():
+    assert pickle.loads(pickle.dumps(Kept(1, (2,)))) == Kept(1, (2,))
+
+
+def test_an_object_is_of_its_class_after_an_exception_in_a_factory():
+    @lean_dataclasses.dataclass(frozen=True, slots=True)
+    class Fragile:
+        x: int = 0
+        parts: list[int] = lean_dataclasses.field(default_factory=lambda: next(iter(())))
+
+    with pytest.raises(StopIteration):
+        Fragile()
+    assert Fragile(1, [2]).parts == [2]
+
+
+def test_a_dataclass_may_derive_from_a_lean_one():
+    @dataclasses.dataclass(frozen=True)
+    class More(Kept):
+        y: int = 3
+
+    assert repr(More(1, (), 4)).endswith("More(x=1, others=(), y=4)")
+    assert More(1) == More(1, y=3)
+
+
+def test_defining_and_making_objects_does_not_import_dataclasses():
+    code = (
+        "from __future__ import annotations\nimport sys\nfrom linkwright.lean_dataclasses import dataclass\n"
+        "@dataclass(frozen=True, slots=True)\nclass Point:\n    x: int\n"
+        "print(Point(1), 'dataclasses' in sys.modules, 'inspect' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert done.stdout == "Point(x=1) False False\n"
