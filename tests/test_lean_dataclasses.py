@@ -7,7 +7,7 @@ import dataclasses
 import pickle
 import subprocess
 import sys
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple, get_type_hints
 
 import pytest
 
@@ -130,6 +130,49 @@ def test_a_dataclass_may_derive_from_a_lean_one():
 
     assert repr(More(1, (), 4)).endswith("More(x=1, others=(), y=4)")
     assert More(1) == More(1, y=3)
+
+
+class Leaned(lean_dataclasses.NamedTuple):
+    """One of ours."""
+
+    x: int
+    others: tuple[int, ...] = ()
+
+    @property
+    def count(self) -> int:
+        return len(self.others)
+
+
+class Usual(NamedTuple):
+    """One of ours."""
+
+    x: int
+    others: tuple[int, ...] = ()
+
+    @property
+    def count(self) -> int:
+        return len(self.others)
+
+
+class Below(Leaned):
+    """An ordinary class."""
+
+    more = 1
+
+
+def test_named_tuples_are_those_of_typing():
+    for name in ("_fields", "_field_defaults", "__doc__", "__module__", "__bases__"):
+        assert getattr(Leaned, name) == getattr(Usual, name), name
+    assert get_type_hints(Leaned) == get_type_hints(Usual)
+    assert repr(Leaned(1)) == repr(Usual(1)).replace("Usual", "Leaned")
+    assert Leaned(1, (2, 3)).count == 2
+    assert Leaned(1) == (1, ()) == pickle.loads(pickle.dumps(Leaned(1)))
+    assert Leaned(1)._replace(x=2)._asdict() == {"x": 2, "others": ()}
+    assert Below(1).more == 1
+    with pytest.raises(AttributeError):
+        Leaned(1).x = 2
+    with pytest.raises(TypeError):
+        Leaned()
 
 
 def test_defining_and_making_objects_does_not_import_dataclasses():

@@ -16,7 +16,9 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import Any
+
+from linkwright.lean_dataclasses import NamedTuple
 
 _OURS = "linkwright."
 _READ = (_OURS, "launch_ros.")

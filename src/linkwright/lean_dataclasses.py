@@ -6,15 +6,17 @@ quarter of its time. Here ``__init__`` is compiled for the first object, and all
 
 To type checkers these are `dataclasses.dataclass`, `field` and `replace`, of which they take the arguments that are
 used here. What `dataclasses` offers for a class or an object, such as ``fields`` and ``asdict``, works for these too.
+`NamedTuple` is that of `typing`, without compiling the text of each annotation.
 """
 
 from __future__ import annotations
 
+from collections import namedtuple
 from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-__all__ = ["dataclass", "field", "replace"]
+__all__ = ["NamedTuple", "dataclass", "field", "replace"]
 
 _MISSING: Any = type("Missing", (), {"__repr__": lambda _: "MISSING"})()
 _FIELDS, _OPTIONS = "__lean_fields__", "__lean_options__"
@@ -233,7 +235,28 @@ _FROZEN: dict[str, Any] = {"__setattr__": _refuse_to_set, "__delattr__": _refuse
 _KEPT: dict[str, Any] = {"__getstate__": _get_state, "__setstate__": _set_state}
 """Without these, objects with slots that refuse could be pickled and not read again."""
 
+# --- named tuples ----------------------------------------------------------------------------------------------------
+
+
+class _NamedTupleMeta(type):
+    def __new__(cls, name: str, _bases: tuple[type, ...], written: dict[str, Any]) -> Any:
+        fields = written.get("__annotations__", {})
+        defaults = [written[each] for each in fields if each in written]
+        made = namedtuple(name, fields, defaults=defaults, module=written["__module__"])  # type: ignore[misc]  # noqa: PYI024
+        for each, value in written.items():
+            if each not in fields and each not in ("__module__", "__slots__", "__classcell__"):
+                setattr(made, each, value)
+        return made
+
+
+def _named_tuple() -> Any:
+    """A base whose classes are named tuples, as `typing.NamedTuple` is: a class of a class would be an ordinary one."""
+    base = type.__new__(_NamedTupleMeta, "NamedTuple", (), {})
+    return type("Base", (), {"__mro_entries__": lambda _self, _bases: (base,)})()
+
+
 if TYPE_CHECKING:
     from dataclasses import dataclass, field, replace
+    from typing import NamedTuple
 else:
-    dataclass, field, replace = _dataclass, _field, _replace
+    dataclass, field, replace, NamedTuple = _dataclass, _field, _replace, _named_tuple()

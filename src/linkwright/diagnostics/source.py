@@ -7,7 +7,8 @@ only when somebody asks for a `Span`.
 from __future__ import annotations
 
 from bisect import bisect_right
-from typing import NamedTuple
+
+from linkwright.lean_dataclasses import NamedTuple
 
 
 class Span(NamedTuple):

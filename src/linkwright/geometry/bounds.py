@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import hypot
-from typing import NamedTuple
 
 from linkwright.geometry.placement import Placement
 from linkwright.geometry.shapes import Box, Capsule, SimpleShape, Sphere
 from linkwright.geometry.vectors import Vector3, added, scaled, subtracted
+from linkwright.lean_dataclasses import NamedTuple
 
 FARTHEST = 1e9
 """Lengths in m beyond this are mistakes; nothing is computed from them, so that nothing overflows."""

@@ -7,10 +7,10 @@ is quicker than arrays, and it needs no numpy.
 from __future__ import annotations
 
 from math import acos
-from typing import NamedTuple
 
 from linkwright.geometry.single import Pose, quaternion_of, rotation_matrix
 from linkwright.geometry.vectors import Vector3, dot, subtracted
+from linkwright.lean_dataclasses import NamedTuple
 
 Matrix = tuple[Vector3, Vector3, Vector3]
 

@@ -26,7 +26,6 @@ from linkwright.diagnostics import (
     phrase,
     quoted,
 )
-from linkwright.lint.explain import toml
 from linkwright.lint.option import Option, OptionValue
 from linkwright.lint.registry import find_rule
 from linkwright.lint.rule import Rule
@@ -34,8 +33,6 @@ from linkwright.lint.selector_words import canonical, is_selector, selector_hint
 from linkwright.lint.settings import Settings
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
-
-tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
 CONFIGURATION = "linkwright.toml"
 _PROJECT = "pyproject.toml"
@@ -87,6 +84,8 @@ def _read_settings(file: Path, _stamp: int) -> tuple[Settings, tuple[Diagnostic,
         source = SourceText(str(file), decode(read_bytes(file), str(file)))
     except LinkwrightError as error:
         return Settings(), error.diagnostics
+    # Not above: most robots are checked without a configuration.
+    tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
     try:
         whole = tomllib.loads(source.text)
     except tomllib.TOMLDecodeError as error:
@@ -231,6 +230,8 @@ class _Reader:
                     hint,
                 )
             elif not _fits(option, value):
+                from linkwright.lint.explain import toml
+
                 self._wrong(
                     path,
                     phrase("is not {kind}", kind=_KINDS[type(option.default)]),

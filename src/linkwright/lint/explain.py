@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from inspect import cleandoc
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, joined, nearest, phrase, term, title_of_page
@@ -56,6 +55,8 @@ def find_page(code_or_name: str) -> Page | None:
 
 def rule_page(rule: Rule) -> Page:
     """The page of a rule: its docstring, how it is switched, and its options."""
+    from inspect import cleandoc  # not above: a check prints no page
+
     title, _, text = cleandoc(rule.__doc__ or "").partition("\n")
     severity = phrase("Severity: {severity}. {state}", severity=term(rule.severity.value), state=_state(rule))
     lines = [severity, "", *(_HEADINGS.get(line, line) for line in text.strip().splitlines())]

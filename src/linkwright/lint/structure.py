@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import NamedTuple
 
 from linkwright.diagnostics import phrase, term
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.schema import ElementRule
 from linkwright.urdf import schema
 from linkwright.xmltree import Element

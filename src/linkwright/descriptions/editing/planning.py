@@ -10,7 +10,6 @@ import os
 from collections.abc import Callable, Iterator
 from itertools import islice
 from math import isfinite
-from typing import NamedTuple
 
 from linkwright.descriptions.description import Description
 from linkwright.descriptions.editing.definitions import attribute
@@ -24,7 +23,7 @@ from linkwright.descriptions.editing.request import EditRequest
 from linkwright.descriptions.editing.snapshot import Snapshot
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.single import quaternion_from_rpy
-from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_dataclasses import NamedTuple, dataclass
 from linkwright.xacro.origin import Frame
 from linkwright.xmltree import Document, Element, Overlay, parse
 from linkwright.xmltree.patches import inserted, start_tag_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from linkwright.descriptions import examine
 from linkwright.diagnostics import (
@@ -21,6 +21,7 @@ from linkwright.diagnostics import (
     quoted,
 )
 from linkwright.diagnostics.misspellings import misspelling_of
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.launch_files import LaunchRule

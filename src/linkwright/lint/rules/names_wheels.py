@@ -10,11 +10,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from math import cos, radians
-from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
 from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.vectors import dot, length, subtracted
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Collision, Cylinder, Joint, Link, Robot, Vector3, Visual

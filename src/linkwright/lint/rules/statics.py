@@ -9,11 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from math import hypot, sqrt
-from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, Note, Span, phrase
 from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.polygon import turn
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.names_wheels import joints_above, wheels

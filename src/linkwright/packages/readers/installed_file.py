@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+
+from linkwright.lean_dataclasses import NamedTuple
 
 _PLACEHOLDER = r"@(\w+)@|\$\{(\w+)\}"
 
