@@ -63,3 +63,18 @@ def test_problems_in_words():
     ]
     body = MassProperties(1.0, np.zeros(3), np.diag((1.0, 1.0, 5.0)))
     assert validity.problems(body) == ["one principal moment of inertia is larger than the sum of the other two"]
+
+
+@given(st.tuples(*[st.floats(-5.0, 5.0)] * 6), st.floats(-20, 20))
+def test_relative_moments_are_the_eigenvalues(entries, exponent):
+    xx, xy, xz, yy, yz, zz = entries
+    tensor = np.array(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))) * 10.0**exponent
+    largest = np.abs(tensor).max()
+    expected = np.linalg.eigvalsh(tensor / largest) if largest > 0 else np.zeros(3)
+    assert np.allclose(validity.relative_moments(tensor), expected, rtol=0, atol=1e-14)
+    assert validity.relative_moments(tensor) == validity.relative_moments(tensor.tolist())
+
+
+def test_relative_moments_of_a_diagonal_tensor_are_exact():
+    assert validity.relative_moments(((0.3, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.2))) == (0.1 / 0.3, 0.2 / 0.3, 1.0)
+    assert validity.relative_moments(((float("nan"), 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))) == (0.0, 0.0, 0.0)

@@ -87,7 +87,7 @@ def test_the_unit_of_collada_is_applied_and_its_up_axis_is_not(tmp_path):
 def test_the_kinect_of_mbot_is_as_large_as_a_kinect():
     mesh = read_mesh(REPOSITORY / "robots" / "my_robot_description" / "meshes" / "kinect.dae")
     assert mesh.is_watertight
-    assert np.allclose(mesh.bounds[1] - mesh.bounds[0], (0.28, 0.07, 0.046), atol=1e-3)
+    assert np.allclose(mesh.bounds.size, (0.28, 0.07, 0.046), atol=1e-3)
 
 
 def test_parts_of_a_scene_stand_where_its_nodes_put_them(tmp_path):

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,16 +17,16 @@ from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.collada import read_collada
 from linkwright.geometry.mesh_faults import fault_in
+from linkwright.geometry.outlines import STL_HEADER, STL_TRIANGLE
 from linkwright.geometry.stl import read_stl
 from linkwright.geometry.wavefront import read_obj
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.xmltree import Comment, write_element
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.tinyxml import parse_as_tinyxml
 
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
 """The formats that are read, as RViz and Gazebo read them."""
-_STL_HEADER, _STL_TRIANGLE = 84, 50
-"""Bytes of a binary STL, before its triangles and for each."""
 _FACE_LINES = {".stl": b"facet normal", ".obj": b"\nf "}
 """The beginning of a line that stands once for each triangle, or polygon, in files of text."""
 
@@ -115,10 +115,10 @@ def told_triangles(path: Path) -> int | None:
     kind = path.suffix.lower()
     try:
         with path.open("rb") as file:
-            head = file.read(_STL_HEADER)
-            if kind == ".stl" and len(head) == _STL_HEADER:
-                (said,) = struct.unpack_from("<I", head, _STL_HEADER - 4)
-                if path.stat().st_size == _STL_HEADER + said * _STL_TRIANGLE:
+            head = file.read(STL_HEADER)
+            if kind == ".stl" and len(head) == STL_HEADER:
+                (said,) = struct.unpack_from("<I", head, STL_HEADER - 4)
+                if path.stat().st_size == STL_HEADER + said * STL_TRIANGLE:
                     return int(said)
             mark = _FACE_LINES.get(kind)
             return None if mark is None else (head + file.read()).count(mark)

@@ -19,7 +19,7 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.bounds import FARTHEST
+from linkwright.geometry.bounds import FARTHEST, Bounds
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, beside, placed_meshes
@@ -44,14 +44,20 @@ class TriangleMesh:
         self._scaled: dict[Vector3, TriangleMesh] = {}
 
     @cached_property
-    def bounds(self) -> tuple[Array, Array]:
-        """The lowest and highest corner of the box around the mesh, in m; each of shape (3,)."""
+    def bounds(self) -> Bounds:
+        """The box around the triangles, in m."""
         if not len(self.faces):
-            return np.zeros(3), np.zeros(3)
+            return Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         is_used = np.zeros(len(self.vertices), dtype=bool)
         is_used[self.faces.ravel()] = True
         used = self.vertices[is_used]
-        return used.min(axis=0), used.max(axis=0)
+        (left, front, bottom), (right, back, top) = used.min(axis=0).tolist(), used.max(axis=0).tolist()
+        return Bounds((left, front, bottom), (right, back, top))
+
+    @property
+    def count(self) -> int:
+        """The number of triangles."""
+        return len(self.faces)
 
     @cached_property
     def is_watertight(self) -> bool:

@@ -7,15 +7,9 @@ from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.outlines import POINT, STEPS
 
 Faces = NDArray[np.int64]
-
-_STEPS = 1 << 20
-"""Corners nearer to each other than this part of the mesh's size are one."""
-
-
-_POINT = 1e-30
-"""A mesh smaller than this, in m, is a point."""
 
 
 def polyhedron_properties(vertices: Array, faces: Faces, density: float = 1.0) -> MassProperties:
@@ -65,9 +59,9 @@ def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
         return vertices, faces
     low = vertices.min(axis=0)
     size = float((vertices.max(axis=0) - low).max(initial=0.0))
-    if not size > _POINT:
+    if not size > POINT:
         return vertices[:1], faces[:0]
-    cells = np.rint((vertices - low) * (_STEPS / size)).astype(np.int64)
+    cells = np.rint((vertices - low) * (STEPS / size)).astype(np.int64)
     keys = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
     _, first, place = np.unique(keys, return_index=True, return_inverse=True)
     joined = place.reshape(-1)[faces]

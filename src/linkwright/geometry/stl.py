@@ -5,16 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from linkwright.geometry.arrays import Array
+from linkwright.geometry.outlines import CORNERS, FACET, STL_HEADER, STL_TRIANGLE
 from linkwright.geometry.plain import PlainMesh
 
-_HEADER, _COUNT = 80, 4
+_HEADER = 80
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _LARGEST_TEXT = 1 << 24
 """Beside reading a longer text the import of trimesh counts for nothing, and a list of all its words would be large."""
-_FACET = b"facet normal ? ? ? outer loop vertex ? ? ? vertex ? ? ? vertex ? ? ? endloop endfacet".split()
-_WORDS = [place for place, word in enumerate(_FACET) if word != b"?"]
-_CORNERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
-"""The positions of a facet's words, and of the numbers of its corners."""
+_WORDS = [place for place, word in enumerate(FACET) if word != b"?"]
+"""The places of a facet's words that are the same in all."""
 
 
 def read_stl(data: bytes, *, is_plain: bool = False) -> PlainMesh | None:
@@ -28,11 +27,10 @@ def read_stl(data: bytes, *, is_plain: bool = False) -> PlainMesh | None:
 
 
 def _binary(data: bytes, *, is_plain: bool) -> PlainMesh | None:
-    begin = _HEADER + _COUNT
-    count = int.from_bytes(data[_HEADER:begin], "little")
-    if not count or len(data) != begin + count * _TRIANGLE.itemsize:
+    count = int.from_bytes(data[_HEADER:STL_HEADER], "little")
+    if not count or len(data) != STL_HEADER + count * STL_TRIANGLE:
         return None
-    triangles = np.frombuffer(data, _TRIANGLE, count, begin)
+    triangles = np.frombuffer(data, _TRIANGLE, count, STL_HEADER)
     if not is_plain and (b"COLOR=" in data[:_HEADER] or triangles["attribute"].any()):
         return None
     return _mesh(triangles["corners"].astype(np.float64), "geometry_0")
@@ -45,13 +43,13 @@ def _text(data: bytes) -> PlainMesh | None:
     solid, _, name = first.strip().partition(b" ")
     body, end, after = rest.partition(b"endsolid")
     words = body.split()
-    if solid != b"solid" or not end or not words or len(words) % len(_FACET) or b"solid" in after:
+    if solid != b"solid" or not end or not words or len(words) % len(FACET) or b"solid" in after:
         return None
-    facets = np.array(words).reshape(-1, len(_FACET))
-    if (facets[:, _WORDS] != [_FACET[place] for place in _WORDS]).any():
+    facets = np.array(words).reshape(-1, len(FACET))
+    if (facets[:, _WORDS] != [FACET[place] for place in _WORDS]).any():
         return None
     try:
-        return _mesh(facets[:, _CORNERS].astype(np.float64), name.strip().decode())
+        return _mesh(facets[:, list(CORNERS)].astype(np.float64), name.strip().decode())
     except ValueError:  # what stands for a number is none, or the name no UTF-8
         return None
 

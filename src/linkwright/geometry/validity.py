@@ -7,15 +7,18 @@ Escande, Nori: *Identification of fully physical consistent inertial parameters 
 
 from __future__ import annotations
 
-from math import sqrt
-
-import numpy as np
+from itertools import chain
+from math import copysign, hypot, isfinite, sqrt
+from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.geometry.arrays import Array
 from linkwright.geometry.bounds import Bounds
-from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.placement import Matrix
 from linkwright.geometry.vectors import Vector3
+
+if TYPE_CHECKING:
+    from linkwright.geometry.arrays import Array
+    from linkwright.geometry.mass import MassProperties
 
 HEAVIEST_DENSITY = 22_600.0
 """Osmium in kg/m3: no solid is denser."""
@@ -31,20 +34,60 @@ ROUNDING = 1e-9
 """Part of the largest moment by which numbers that were computed, not rounded for a file, may be off."""
 
 
-def relative_moments(tensor: Array) -> Array:
-    """The principal moments in units of the tensor's largest entry, smallest first; shape (3,). Nothing overflows."""
-    largest = float(np.abs(tensor).max())
+_CONVERGED = 1e-20
+"""Part of a tensor's largest entry below which a product of inertia changes no moment."""
+_MOST_SWEEPS = 30
+"""Five are usual."""
+
+
+def largest_entry(tensor: Array | Matrix) -> float:
+    """The largest absolute value in a tensor; 0 where one is no finite number."""
+    entries = [abs(float(entry)) for entry in chain.from_iterable(tensor)]
+    return max(entries) if all(map(isfinite, entries)) else 0.0
+
+
+def relative_moments(tensor: Array | Matrix) -> Vector3:
+    """The principal moments in units of the tensor's largest entry, smallest first. Nothing overflows.
+
+    By Jacobi's rotations, each of which makes one product zero; for a single tensor that is quicker than by arrays,
+    and checks of descriptions do without numpy.
+    """
+    largest = largest_entry(tensor)
     if not largest > 0:
-        return np.zeros(3)
-    return np.asarray(np.linalg.eigvalsh(tensor / largest), dtype=np.float64)
+        return 0.0, 0.0, 0.0
+    rows = [[float(entry) / largest for entry in row] for row in tensor]
+    for _ in range(_MOST_SWEEPS):
+        if max(abs(rows[0][1]), abs(rows[0][2]), abs(rows[1][2])) < _CONVERGED:
+            break
+        for p, q, other in ((0, 1, 2), (0, 2, 1), (1, 2, 0)):
+            _rotate(rows, p, q, other)
+    small, middle, large = sorted(rows[axis][axis] for axis in range(3))
+    return small, middle, large
 
 
-def is_positive_definite(tensor: Array) -> bool:
+def _rotate(rows: list[list[float]], p: int, q: int, other: int) -> None:
+    """Turn a symmetric matrix so that its entry (p, q) is zero."""
+    product = rows[p][q]
+    if abs(product) < _CONVERGED:
+        return
+    ratio = (rows[q][q] - rows[p][p]) / (2.0 * product)
+    tangent = copysign(1.0, ratio) / (abs(ratio) + hypot(1.0, ratio))
+    cosine = 1.0 / hypot(1.0, tangent)
+    sine = tangent * cosine
+    first, second = rows[p][other], rows[q][other]
+    rows[p][p] -= tangent * product
+    rows[q][q] += tangent * product
+    rows[p][q] = rows[q][p] = 0.0
+    rows[p][other] = rows[other][p] = cosine * first - sine * second
+    rows[q][other] = rows[other][q] = sine * first + cosine * second
+
+
+def is_positive_definite(tensor: Array | Matrix) -> bool:
     """Whether every principal moment is positive; `tensor` is symmetric, of shape (3, 3)."""
-    return bool(relative_moments(tensor)[0] > 0)
+    return relative_moments(tensor)[0] > 0
 
 
-def is_indefinite(tensor: Array, rounding: float = 0.0) -> bool:
+def is_indefinite(tensor: Array | Matrix, rounding: float = 0.0) -> bool:
     """Return whether a principal moment is negative by more than what rounding can have made of zero.
 
     Args:
@@ -52,21 +95,21 @@ def is_indefinite(tensor: Array, rounding: float = 0.0) -> bool:
         rounding: how far a principal moment may be off because the file has few digits, in kg m2; no more than
             `TOLERANCE` of the largest entry counts.
     """
-    largest = float(np.abs(tensor).max())
+    largest = largest_entry(tensor)
     allowed = max(ROUNDING * largest, min(rounding, TOLERANCE * largest))
-    return bool(relative_moments(tensor)[0] * largest < -allowed)
+    return relative_moments(tensor)[0] * largest < -allowed
 
 
-def triangle_excess(tensor: Array) -> float:
+def triangle_excess(tensor: Array | Matrix) -> float:
     """By how much the largest principal moment is more than the sum of the others, as a part of it.
 
     0 or less for a body that can be; 0 for a flat one. The tensor's axes do not matter.
     """
     small, middle, large = relative_moments(tensor)
-    return float((large - small - middle) / large) if large > 0 else 0.0
+    return (large - small - middle) / large if large > 0 else 0.0
 
 
-def excessive_products(tensor: Array, tolerance: float = TOLERANCE) -> list[tuple[str, float]]:
+def excessive_products(tensor: Array | Matrix, tolerance: float = TOLERANCE) -> list[tuple[str, float]]:
     """Products of inertia that are larger than the moments on the diagonal allow, with the largest allowed.
 
     ``ab <= (a2 + b2) / 2`` under the integral gives ``|Ixy| <= Izz / 2`` and so on, and a positive definite tensor has
@@ -77,11 +120,11 @@ def excessive_products(tensor: Array, tolerance: float = TOLERANCE) -> list[tupl
     """
     found = []
     for name, i, j, k in (("ixy", 0, 1, 2), ("ixz", 0, 2, 1), ("iyz", 1, 2, 0)):
-        first, second, third = (float(tensor[axis, axis]) for axis in (i, j, k))
+        first, second, third = (float(tensor[axis][axis]) for axis in (i, j, k))
         if min(first, second, third) <= 0:
             continue
         limit = min(third / 2, sqrt(first * second))
-        if abs(float(tensor[i, j])) > limit * (1 + tolerance):
+        if abs(float(tensor[i][j])) > limit * (1 + tolerance):
             found.append((name, limit))
     return found
 

@@ -3,10 +3,10 @@
 from typing import TYPE_CHECKING
 
 from linkwright.deferred import deferred
-from linkwright.inertia.inertial import from_inertial, to_inertial
 
 if TYPE_CHECKING:
     from linkwright.inertia.estimation import DEFAULT_DENSITY, Estimate, ShapeKind, estimate
+    from linkwright.inertia.inertial import from_inertial, to_inertial
     from linkwright.inertia.mesh_library import MeshLibrary
 
 __all__ = ["DEFAULT_DENSITY", "Estimate", "MeshLibrary", "ShapeKind", "estimate", "from_inertial", "to_inertial"]
@@ -15,7 +15,8 @@ __getattr__ = deferred(
     __name__,
     {
         "estimation": ("DEFAULT_DENSITY", "Estimate", "ShapeKind", "estimate"),
+        "inertial": ("from_inertial", "to_inertial"),
         "mesh_library": ("MeshLibrary",),
     },
 )
-"""The modules that read meshes; the inertias that a description has are asked for without."""
+"""What needs numpy, and the library of meshes, which a check uses alone."""

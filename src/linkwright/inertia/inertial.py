@@ -4,19 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwright.geometry.bounds import FARTHEST
 from linkwright.geometry.mass import LEAST_MASS, MassProperties
+from linkwright.inertia.magnitudes import is_computable
 from linkwright.urdf import Inertial, Pose
-
-_GREATEST = 1e30
-"""Masses in kg and moments in kg m2 beyond this are too; the sun has 2e30 kg."""
-
-
-def is_computable(inertial: Inertial) -> bool:
-    """Whether the numbers of an ``<inertial>`` are small enough to compute with; they need not be those of a body."""
-    i = inertial
-    numbers = (i.mass, i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz)
-    return max(map(abs, numbers)) <= _GREATEST and max(map(abs, i.origin.xyz)) <= FARTHEST
 
 
 def has_mass(inertial: Inertial) -> bool:

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import os
+import stat
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.bounds import FARTHEST
-from linkwright.geometry.meshes import TriangleMesh, read_mesh, unreadable
+from linkwright.geometry.outlines import Outline, SmallMesh, read_small
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh
 from linkwright.xacro.kept import Kept
 from linkwright.xmltree import Element
 
+if TYPE_CHECKING:
+    from linkwright.geometry.meshes import TriangleMesh
+
 _MOST_KEPT = 256 << 20
 """Bytes of meshes that are kept from one description to the next."""
+_SMALL, _MOST_SMALL = 100_000, 500_000
+"""Bytes of a file, and of all files of a process, that are read for outlines without arrays. To read more, numpy is
+quicker, together with its import."""
 
 
 class MeshLibrary:
@@ -32,6 +41,7 @@ class MeshLibrary:
         self._folder = folder
         self._paths: dict[tuple[str, Path], Path | LinkwrightError] = {}
         self._meshes: dict[str, TriangleMesh | LinkwrightError] = {}
+        self._outlines: dict[str, SmallMesh | None] = {}
 
     def locate(self, uri: str, element: Element | None = None) -> Path:
         """The file that a URI means; whether it exists is not asked.
@@ -79,10 +89,28 @@ class MeshLibrary:
         Raises:
             LinkwrightError: as `locate` and `read` do.
         """
+        return self.read(self._checked(mesh, element)).scaled(mesh.scale)
+
+    def outline(self, mesh: Mesh, element: Element | None = None) -> Outline:
+        """The outline of a URDF mesh, scaled, in the frame of its visual or collision.
+
+        Raises:
+            LinkwrightError: as `locate` and `read` do.
+        """
+        path = self._checked(mesh, element)
+        key = os.path.realpath(path)
+        if key not in self._outlines:
+            self._outlines[key] = None if key in self._meshes else _small(key, path.suffix.lower())
+        return (self._outlines[key] or self.read(path)).scaled(mesh.scale)
+
+    def _checked(self, mesh: Mesh, element: Element | None) -> Path:
+        """The file of a mesh that is not scaled beyond all bounds."""
         path = self.locate(mesh.filename, element)
         if max(map(abs, mesh.scale)) > FARTHEST:
+            from linkwright.geometry.meshes import unreadable
+
             raise unreadable(path, phrase("its scale is beyond all bounds"))
-        return self.read(path).scaled(mesh.scale)
+        return path
 
     def _base(self, element: Element | None) -> Path:
         if element is None or element.source is None or element.source.name.startswith("<"):
@@ -101,6 +129,8 @@ _KEPT: Kept[tuple[str, int, int], TriangleMesh] = Kept(_MOST_KEPT, _size_of)
 
 def _unchanged(path: Path, real: str) -> TriangleMesh:
     """The triangles of a file, read before or now; glTF is read anew, since parts of it may lie in other files."""
+    from linkwright.geometry.meshes import read_mesh  # not above: checks of small meshes need no numpy
+
     if path.suffix.lower() in (".glb", ".gltf"):
         return read_mesh(path)
     try:
@@ -112,4 +142,26 @@ def _unchanged(path: Path, real: str) -> TriangleMesh:
     if found is None:
         found = read_mesh(path)
         _KEPT.keep(key, found)
+    return found
+
+
+_SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}
+"""The meshes of files that were read without arrays, by what `_KEPT` has its own by."""
+
+
+def _small(real: str, kind: str) -> SmallMesh | None:
+    """The triangles of a small, usual file, read without arrays; None where arrays are to read it or tell why not."""
+    try:
+        facts = os.stat(real)  # noqa: PTH116 - as above
+        key = real, facts.st_mtime_ns, facts.st_size
+        found = _SMALL_MESHES.get(key)
+        if found is not None or "numpy" in sys.modules or not stat.S_ISREG(facts.st_mode):
+            return found
+        if facts.st_size > _SMALL or facts.st_size + sum(size for _, _, size in _SMALL_MESHES) > _MOST_SMALL:
+            return None
+        found = read_small(Path(real).read_bytes(), kind[1:])
+    except OSError:
+        return None
+    if found is not None:
+        _SMALL_MESHES[key] = found
     return found

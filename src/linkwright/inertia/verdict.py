@@ -12,7 +12,8 @@ from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.validity import HEAVIEST_DENSITY, LIGHTEST_DENSITY, problems
 from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimation import Estimate
-from linkwright.inertia.inertial import from_inertial, is_computable
+from linkwright.inertia.inertial import from_inertial
+from linkwright.inertia.magnitudes import is_computable
 from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import Link, Mesh
 from linkwright.urdf.bodies import Bodies

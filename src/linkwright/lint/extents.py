@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from linkwright.geometry.bounds import FARTHEST, Bounds, bounds_of, union
 from linkwright.geometry.placement import IDENTITY, Placement, placement
 from linkwright.geometry.shapes import volume_of
+from linkwright.inertia.magnitudes import is_computable
 from linkwright.lint.meshes import MeshFacts
 from linkwright.urdf import Collision, Inertial, Link, Mesh, Visual
 from linkwright.urdf.bodies import WORLD, Bodies, Body
@@ -47,8 +48,6 @@ class Extents:
         """The links with shapes whose mass counts in their body."""
         if not any(link.inertial for link in self._links):
             return []
-        from linkwright.inertia.inertial import is_computable  # here: robots without masses need no numpy
-
         return [
             (link, inertial)
             for link in self._links
@@ -72,7 +71,7 @@ class Extents:
         import numpy as np
 
         from linkwright.geometry.mass import MassProperties, combine
-        from linkwright.inertia.inertial import from_inertial, is_computable
+        from linkwright.inertia.inertial import from_inertial
 
         parts = []
         for link, frame in zip(self._bodies.members(body), body.frames.values(), strict=True):
@@ -161,11 +160,10 @@ class Extents:
         if max(map(abs, shape.origin.xyz)) > FARTHEST:
             return None
         if isinstance(geometry, Mesh):
-            mesh = self._meshes.triangles(shape)
+            mesh = self._meshes.outline(shape)
             if mesh is None:
                 return None
-            low, high = (corner.tolist() for corner in mesh.bounds)
-            box = Bounds((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+            box = mesh.bounds
         else:
             box = bounds_of(geometry)
             if max(box.high) > FARTHEST:

@@ -13,7 +13,7 @@ from linkwright.urdf import Collision, Link, Mesh, Visual
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
-    from linkwright.geometry.meshes import TriangleMesh
+    from linkwright.geometry.outlines import Outline
     from linkwright.inertia import MeshLibrary
     from linkwright.packages import PackageFinder
 
@@ -85,8 +85,8 @@ class MeshFacts:
             return error
         return None
 
-    def triangles(self, shape: Visual | Collision) -> TriangleMesh | None:
-        """The triangles of a shape's mesh, scaled, in the shape's frame; None where it cannot be read or is no mesh."""
+    def outline(self, shape: Visual | Collision) -> Outline | None:
+        """The outline of a shape's mesh, scaled, in the shape's frame; None where it cannot be read or is no mesh."""
         if not isinstance(shape.geometry, Mesh):
             return None
         try:
@@ -94,9 +94,9 @@ class MeshFacts:
         except LinkwrightError:
             return None
 
-    def _load(self, mesh: Mesh, element: Element | None) -> TriangleMesh:
+    def _load(self, mesh: Mesh, element: Element | None) -> Outline:
         try:
-            return self._library.load(mesh, element)
+            return self._library.outline(mesh, element)
         except LinkwrightError as error:
             if error.diagnostics[0].code == "INR104":
                 self.unread = error
@@ -104,7 +104,7 @@ class MeshFacts:
 
     @cached_property
     def _library(self) -> MeshLibrary:
-        from linkwright.inertia import MeshLibrary  # not above: a robot without meshes is checked without numpy
+        from linkwright.inertia import MeshLibrary  # not above: a robot without meshes is checked without it
 
         return MeshLibrary(self._finder, self._folder)
 

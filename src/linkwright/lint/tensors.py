@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from decimal import Decimal, InvalidOperation
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.geometry import validity
+from linkwright.geometry.placement import Matrix
 from linkwright.lean_dataclasses import dataclass
 from linkwright.urdf import Inertial
-
-if TYPE_CHECKING:
-    from linkwright.geometry.arrays import Array
 
 DIAGONAL = ("ixx", "iyy", "izz")
 PRODUCTS = ("ixy", "ixz", "iyz")
@@ -34,12 +31,10 @@ class Flaw:
     amount: float = 0.0
 
 
-def tensor(inertial: Inertial) -> Array:
-    """The tensor in kg m2 as it is written, in the inertial frame; shape (3, 3)."""
-    import numpy as np
-
+def tensor(inertial: Inertial) -> Matrix:
+    """The tensor in kg m2 as it is written, in the inertial frame."""
     i = inertial
-    return np.array(((i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)))
+    return (i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)
 
 
 def _rounding(inertial: Inertial) -> float:
@@ -48,6 +43,8 @@ def _rounding(inertial: Inertial) -> float:
     Each component may be off by half of its last digit; a principal moment then moves by at most the largest sum of a
     row of these (Weyl's inequality).
     """
+    from decimal import Decimal, InvalidOperation  # not above: few tensors have products of inertia
+
     element = inertial.element and inertial.element.first("inertia")
     written = {} if element is None else element.attributes
 
@@ -64,8 +61,6 @@ def _rounding(inertial: Inertial) -> float:
 
 def flaw_of(inertial: Inertial) -> Flaw | None:
     """The first thing that is wrong with a tensor, or None."""
-    from linkwright.geometry import validity
-
     moments = [getattr(inertial, name) for name in DIAGONAL]
     products = [getattr(inertial, name) for name in PRODUCTS]
     if not any(moments) and not any(products):

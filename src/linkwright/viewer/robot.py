@@ -170,10 +170,8 @@ def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
     """Mass, centre of mass and equivalent box of a link; None without numbers that can be drawn."""
     if inertial is None:
         return None
-    from linkwright.inertia.inertial import (
-        from_inertial,  # the room of inertias is for those who ask for one
-        is_computable,
-    )
+    from linkwright.inertia.inertial import from_inertial  # the room of inertias is for those who ask for one
+    from linkwright.inertia.magnitudes import is_computable
 
     if not is_computable(inertial):
         return None

@@ -240,9 +240,9 @@ class TriangleInequality(_TensorRule):
 
 
 def _principal_moments(inertial: Inertial) -> Note:
-    from linkwright.geometry.validity import relative_moments
+    from linkwright.geometry.validity import largest_entry, relative_moments
 
     matrix = tensor(inertial)
-    largest = float(abs(matrix).max())
-    moments = " ".join(f"{float(moment) * largest:.4g}" for moment in relative_moments(matrix))
+    largest = largest_entry(matrix)
+    moments = " ".join(f"{moment * largest:.4g}" for moment in relative_moments(matrix))
     return Note(phrase("its principal moments are {moments}", moments=moments))

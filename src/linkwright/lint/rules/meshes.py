@@ -15,14 +15,14 @@ from linkwright.lint.rules.geometry import is_scenery
 from linkwright.lint.subject import Subject
 
 if TYPE_CHECKING:
-    from linkwright.geometry.meshes import TriangleMesh
+    from linkwright.geometry.outlines import Outline
 
 
-def loaded(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, TriangleMesh]]:
-    """The uses of meshes that can be read, with the scaled triangles; of one kind of shape or of both."""
+def loaded(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, Outline]]:
+    """The uses of meshes that can be read, with the scaled outlines; of one kind of shape or of both."""
     for use in subject.meshes.uses:
         if kind is None or use.kind == kind:
-            mesh = subject.meshes.triangles(use.shape)
+            mesh = subject.meshes.outline(use.shape)
             if mesh is not None:
                 yield use, mesh
 
@@ -194,8 +194,7 @@ class Millimetres(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         largest = self.option(subject, "largest", float)
         for use, mesh in () if is_scenery(subject) else loaded(subject):
-            low, high = mesh.bounds
-            edge = float((high - low).max())
+            edge = max(mesh.bounds.size)
             if edge > largest:
                 scale = " ".join(f"{factor * 0.001:g}" for factor in use.mesh.scale)
                 yield self.report(
@@ -242,8 +241,7 @@ class TooSmall(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         smallest = self.option(subject, "smallest", float)
         for use, mesh in loaded(subject):
-            low, high = mesh.bounds
-            edge = float((high - low).max())
+            edge = max(mesh.bounds.size)
             if edge < smallest and all(use.mesh.scale):
                 shrunk = max(map(abs, use.mesh.scale)) < 0.1
                 scale = " ".join(f"{factor * 1000:g}" for factor in use.mesh.scale)

@@ -40,7 +40,7 @@ class HeavyCollision(Rule):
         told: set[Path] = set()
         for use, mesh in loaded(subject, "collision"):
             path = subject.meshes.path(use)
-            count = len(mesh.faces)
+            count = mesh.count
             if count > most and path is not None and path not in told:
                 told.add(path)
                 yield self.report(
@@ -87,14 +87,14 @@ class VisualAsCollision(Rule):
         most = self.option(subject, "triangles", int)
         seen = {(use.link.name, path) for use, path in subject.meshes.files if use.kind == "visual"}
         for use, mesh in loaded(subject, "collision"):
-            if (use.link.name, subject.meshes.path(use)) in seen and len(mesh.faces) > most:
+            if (use.link.name, subject.meshes.path(use)) in seen and mesh.count > most:
                 yield self.report(
                     phrase(
                         "the collision of link '{name}' uses the mesh of its visual, '{file_name}', with"
                         " {thousands} triangles",
                         name=use.link.name,
                         file_name=file_name(use),
-                        thousands=_thousands(len(mesh.faces)),
+                        thousands=_thousands(mesh.count),
                     ),
                     use.element,
                     "filename",

@@ -1,0 +1,182 @@
+"""The outlines of mesh files: what checks of descriptions ask of a mesh. Those of small files need no numpy.
+
+Importing numpy takes longer than the rest of a check of a robot with a small mesh. What is large or out of the
+ordinary, and COLLADA, is left to `linkwright.geometry.meshes`, which works out the same by arrays.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from functools import cached_property
+from itertools import chain, pairwise
+from math import isfinite
+from struct import iter_unpack
+from typing import Protocol
+
+from linkwright.geometry.bounds import FARTHEST, Bounds
+from linkwright.geometry.vectors import Vector3
+
+STEPS = 1 << 20
+"""Corners nearer to each other than this part of the mesh's size are one."""
+POINT = 1e-30
+"""A mesh smaller than this, in m, is a point."""
+STL_HEADER, STL_TRIANGLE = 84, 50
+"""Bytes of a binary STL, before its triangles and for each."""
+FACET = b"facet normal ? ? ? outer loop vertex ? ? ? vertex ? ? ? vertex ? ? ? endloop endfacet".split()
+"""The words of a triangle in an STL of text."""
+CORNERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
+"""The places of the numbers of its corners among them."""
+
+_Triangle = tuple[int, int, int]
+
+
+class Outline(Protocol):
+    """What checks ask of a mesh."""
+
+    @property
+    def bounds(self) -> Bounds:
+        """The box around its triangles, in m."""
+
+    @property
+    def count(self) -> int:
+        """The number of its triangles."""
+
+    @property
+    def is_watertight(self) -> bool:
+        """Whether its triangles bound a volume, without holes and all turned the same way."""
+
+    def scaled(self, scale: Vector3) -> Outline:
+        """The outline of the mesh scaled along its axes."""
+
+
+class SmallMesh:
+    """The triangles of a mesh in plain Python.
+
+    Args:
+        corners: in m.
+        faces: three indices of corners each.
+    """
+
+    def __init__(self, corners: list[Vector3], faces: list[_Triangle]) -> None:
+        self._corners = corners
+        self._faces = faces
+        self._scaled: dict[Vector3, SmallMesh] = {}
+
+    @property
+    def count(self) -> int:
+        """The number of triangles."""
+        return len(self._faces)
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        """The box around the triangles, in m."""
+        return _around([self._corners[place] for place in set(chain.from_iterable(self._faces))])
+
+    @cached_property
+    def is_watertight(self) -> bool:
+        """Whether every edge is run through as often there as back, once corners at one place are made one."""
+        box = _around(self._corners)
+        size = max(box.size)
+        if not size > POINT:
+            return False
+        (left, front, bottom), factor = box.low, STEPS / size
+        cells: dict[Vector3, int] = {}
+        joined = [
+            cells.setdefault((round((x - left) * factor), round((y - front) * factor), round((z - bottom) * factor)), i)
+            for i, (x, y, z) in enumerate(self._corners)
+        ]
+        edges: Counter[tuple[int, int]] = Counter()
+        for face in self._faces:
+            a, b, c = (joined[place] for place in face)
+            if a != b != c != a:
+                edges.update(((a, b), (b, c), (c, a)))
+        return bool(edges) and all(edges[end, start] == count for (start, end), count in edges.items())
+
+    def scaled(self, scale: Vector3) -> SmallMesh:
+        """The mesh scaled along its axes."""
+        if scale == (1.0, 1.0, 1.0):
+            return self
+        found = self._scaled.get(scale)
+        if found is None:
+            a, b, c = scale
+            corners = [(a * x, b * y, c * z) for x, y, z in self._corners]
+            found = self._scaled[scale] = SmallMesh(corners, self._faces)
+        return found
+
+
+def read_small(data: bytes, kind: str) -> SmallMesh | None:
+    """The triangles of a usual STL or OBJ file; None for any other.
+
+    Args:
+        data: the file.
+        kind: its ending, without the dot.
+    """
+    try:
+        found = (_binary_stl(data) or _text_stl(data)) if kind == "stl" else _obj(data) if kind == "obj" else None
+    except ValueError:  # what stands for a number is none, or a name no UTF-8
+        return None
+    return found
+
+
+def _binary_stl(data: bytes) -> SmallMesh | None:
+    count = int.from_bytes(data[STL_HEADER - 4 : STL_HEADER], "little")
+    if not count or len(data) != STL_HEADER + count * STL_TRIANGLE:
+        return None
+    return _of_corners(list(chain.from_iterable(iter_unpack("<12x9f2x", data[STL_HEADER:]))))
+
+
+def _text_stl(data: bytes) -> SmallMesh | None:
+    first, _, rest = data.partition(b"\n")
+    solid, _, name = first.strip().partition(b" ")
+    body, end, after = rest.partition(b"endsolid")
+    words = body.split()
+    if solid != b"solid" or not end or not words or len(words) % len(FACET) or b"solid" in after or b"_" in body:
+        return None
+    name.decode()
+    if any(word != b"?" and set(words[place :: len(FACET)]) != {word} for place, word in enumerate(FACET)):
+        return None
+    columns = [words[place :: len(FACET)] for place in CORNERS]
+    return _of_corners([float(word) for row in zip(*columns, strict=True) for word in row])
+
+
+def _of_corners(numbers: list[float]) -> SmallMesh | None:
+    """The mesh of triangles, each with three corners of its own."""
+    count = len(numbers) // 9
+    places = range(3 * count)
+    return _mesh(_points(numbers), list(zip(places[::3], places[1::3], places[2::3], strict=True)))
+
+
+def _obj(data: bytes) -> SmallMesh | None:
+    if b"\\" in data:
+        return None  # a line may go on in the next one
+    lines = data.splitlines()
+    rows = [line[2:].split() for line in lines if line.startswith(b"v ")]
+    polygons = [line[2:].split() for line in lines if line.startswith(b"f ")]
+    words = [*chain.from_iterable(rows), *chain.from_iterable(polygons)]
+    if not rows or not polygons or len(set(map(len, rows))) > 1 or len(rows[0]) < 3 or b"_" in b"".join(words):
+        return None
+    corners = _points([float(word) for row in rows for word in row[:3]])
+    faces = []
+    for polygon in polygons:
+        first, *others = (int(word.partition(b"/")[0]) - 1 for word in polygon)
+        if len(others) < 2 or min(first, *others) < 0 or max(first, *others) >= len(corners):
+            return None
+        faces += [(first, second, third) for second, third in pairwise(others)]
+    return _mesh(corners, faces)
+
+
+def _points(numbers: list[float]) -> list[Vector3]:
+    return list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
+
+
+def _mesh(corners: list[Vector3], faces: list[_Triangle]) -> SmallMesh | None:
+    numbers = list(chain.from_iterable(corners))
+    if not all(map(isfinite, numbers)) or max(map(abs, numbers)) > FARTHEST:
+        return None
+    return SmallMesh(corners, faces)
+
+
+def _around(points: Iterable[Vector3]) -> Bounds:
+    x, y, z = zip(*points, strict=True)
+    return Bounds((min(x), min(y), min(z)), (max(x), max(y), max(z)))

@@ -1,0 +1,96 @@
+"""Outlines of meshes without arrays, beside those that `read_mesh` makes by arrays."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.geometry.meshes import read_mesh
+from linkwright.geometry.outlines import FACET, read_small
+
+CUBE = [(x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)]
+SQUARES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+TRIANGLES = [each for a, b, c, d in SQUARES for each in ((a, b, c), (a, c, d))]
+SCALES = [(1.0, 1.0, 1.0), (0.001, 0.001, 0.001), (-1.0, 2.0, 0.5), (1.0, 1.0, 0.0)]
+numbers = st.floats(-100, 100, width=32)
+points = st.tuples(numbers, numbers, numbers)
+
+
+def binary_stl(triangles):
+    rows = [struct.pack("<12fH", 0, 0, 0, *(part for point in each for part in point), 0) for each in triangles]
+    return bytes(80) + struct.pack("<I", len(rows)) + b"".join(rows)
+
+
+def text_stl(triangles):
+    lines = ["solid part"]
+    for each in triangles:
+        corners = iter([repr(part) for point in each for part in point])
+        shown = iter(["0", "0", "1"])
+        words = [word.decode() for word in FACET]
+        lines.append(" ".join(next(shown, None) or next(corners) if word == "?" else word for word in words))
+    return "\n".join([*lines, "endsolid part"]).encode()
+
+
+def obj(points, polygons):
+    lines = [f"v {' '.join(map(repr, point))}" for point in points]
+    return "\n".join(lines + [f"f {' '.join(f'{place + 1}//1' for place in each)}" for each in polygons]).encode()
+
+
+def assert_same(data, kind, folder):
+    path = folder / f"mesh.{kind}"
+    path.write_bytes(data)
+    small, whole = read_small(data, kind), read_mesh(path)
+    assert small is not None
+    for scale in SCALES:
+        mine, theirs = small.scaled(scale), whole.scaled(scale)
+        assert mine.count == theirs.count
+        assert mine.bounds == theirs.bounds
+        assert mine.is_watertight == theirs.is_watertight
+
+
+@given(st.lists(st.tuples(points, points, points), min_size=1, max_size=6))
+def test_any_triangles(tmp_path_factory, triangles):
+    assert_same(binary_stl(triangles), "stl", tmp_path_factory.getbasetemp())
+    assert_same(text_stl(triangles), "stl", tmp_path_factory.getbasetemp())
+
+
+@given(st.lists(st.sampled_from(TRIANGLES), min_size=1), st.lists(st.sampled_from(SQUARES)))
+def test_any_part_of_a_cube(tmp_path_factory, triangles, squares):
+    assert_same(obj(CUBE, [*triangles, *squares]), "obj", tmp_path_factory.getbasetemp())
+    flat = [tuple(CUBE[place] for place in each) for each in triangles]
+    assert_same(binary_stl(flat), "stl", tmp_path_factory.getbasetemp())
+
+
+def test_a_closed_cube_is_watertight_until_a_face_is_missing(tmp_path):
+    assert read_small(obj(CUBE, SQUARES), "obj").is_watertight
+    assert not read_small(obj(CUBE, SQUARES[1:]), "obj").is_watertight
+    assert_same(obj([*CUBE, (9.0, 9.0, 9.0)], SQUARES), "obj", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [
+        (b"", "stl"),
+        (binary_stl([CUBE[:3]])[:-1], "stl"),
+        (binary_stl([[(float("nan"), 0, 0), *CUBE[:2]]]), "stl"),
+        (binary_stl([[(1e30, 0, 0), *CUBE[:2]]]), "stl"),
+        (text_stl([CUBE[:3]]).replace(b"1.0", b"one"), "stl"),
+        (text_stl([CUBE[:3]]).replace(b"1.0", b"1_0"), "stl"),
+        (text_stl([CUBE[:3]]).replace(b"vertex", b"vortex"), "stl"),
+        (text_stl([CUBE[:3]]) + b"\n" + text_stl([CUBE[:3]]), "stl"),
+        (text_stl([CUBE[:3]]).replace(b"solid part", b"solid \xff", 1), "stl"),
+        (obj(CUBE, SQUARES) + b"\nf 1 2 99", "obj"),
+        (obj(CUBE, SQUARES) + b"\nf -1 -2 -3", "obj"),
+        (obj(CUBE, SQUARES) + b"\nf 1 2", "obj"),
+        (obj(CUBE, SQUARES) + b"\nf 1 2 x", "obj"),
+        (obj(CUBE, SQUARES) + b"\nv 1 2", "obj"),
+        (obj(CUBE, SQUARES) + b"\nv 1 2 \\\n3", "obj"),
+        (obj(CUBE, []), "obj"),
+        (b"<COLLADA/>", "dae"),
+    ],
+)
+def test_what_is_out_of_the_ordinary_is_left_to_others(data, kind):
+    assert read_small(data, kind) is None
