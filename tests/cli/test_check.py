@@ -33,6 +33,8 @@ def test_checking_a_robot_loads_nothing_of_worlds():
     assert "linkwright.lint.engine" in done.stdout.split()
     loaded = set(done.stdout.split())
     assert not {"asyncio", "importlib.metadata", "linkwright.sdf", "linkwright.graph", "tomllib"} & loaded
+    assert "linkwright.lint.rules.names_text" in loaded
+    assert not {"linkwright.lint.rules.launch_nodes", "linkwright.lint.rules.package_manifest"} & loaded
 
 
 def test_checking_a_robot_with_masses_and_a_small_mesh_loads_no_arrays(tmp_path):

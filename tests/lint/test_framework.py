@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.diagnostics import Severity
 from linkwright.lint import Settings, check, examine
-from linkwright.lint.registry import all_rules, find_rule
+from linkwright.lint.registry import all_rules, find_rule, rules_of
 from linkwright.lint.rule import Scope
 from tests.lint.cases import FOLDER, load_cases
 
@@ -24,7 +24,19 @@ def test_codes_and_names_are_unique_and_in_order():
     assert len({rule.name for rule in rules}) == len(rules)
 
 
+def test_rules_about_packages_are_in_modules_of_their_own():
+    """A check of a file imports the modules of other rules alone, by their names."""
+    modules = {type(rule).__module__.rpartition(".")[2]: rule.scope is Scope.PACKAGE for rule in all_rules()}
+    assert {name for name, is_of_packages in modules.items() if is_of_packages} == {
+        name for name in modules if name.startswith(("launch_", "package_"))
+    }
+    of_files = rules_of((Scope.DESCRIPTION,))
+    assert of_files == tuple(rule for rule in all_rules() if rule.scope is Scope.DESCRIPTION)
+
+
 def test_a_rule_is_found_by_code_and_name():
+    assert find_rule("LW801") is find_rule(find_rule("LW801").name)
+    assert find_rule("URDF102") is None
     assert find_rule("LW201") is find_rule("lw201") is find_rule("limit-inverted")
     assert find_rule("LW999") is None
 

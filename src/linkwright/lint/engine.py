@@ -15,7 +15,7 @@ from linkwright.lean_dataclasses import dataclass
 from linkwright.lint.finding import Finding
 from linkwright.lint.missing_files import judged_files
 from linkwright.lint.missing_packages import judged
-from linkwright.lint.registry import all_rules, find_rule, unusable_rules
+from linkwright.lint.registry import find_rule, rules_of, unusable_rules
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
@@ -139,7 +139,7 @@ def _examine_world(
 def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
     """The findings of the rules and the earlier ones, filtered by settings and comments, in order."""
     suppressions = Suppressions(subject, subject.settings)
-    found = _without_replaced([*said, *_find(subject, scopes, suppressions)], subject.settings)
+    found = _without_replaced([*said, *_find(subject, scopes, suppressions)], scopes, subject.settings)
     kept = _without_consequences(as_set(suppressions.apply(found), subject.settings))
     return in_order(kept, str(subject.path))
 
@@ -147,8 +147,8 @@ def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic]
 def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
     """The findings of the rules, each place once; some are only wanted to see whether a comment is of use."""
     found: list[Diagnostic] = []
-    for rule in all_rules():
-        if rule.scope not in scopes or not (subject.settings.runs(rule) or suppressions.audits(rule.code)):
+    for rule in rules_of(scopes):
+        if not (subject.settings.runs(rule) or suppressions.audits(rule.code)):
             continue
         if not _may_run(rule, subject):
             continue
@@ -238,10 +238,10 @@ def _is_wanted(diagnostic: Diagnostic, settings: Settings) -> bool:
     return selected and not (diagnostic.span and settings.ignores(diagnostic.code, diagnostic.span.file))
 
 
-def _without_replaced(diagnostics: list[Diagnostic], settings: Settings) -> list[Diagnostic]:
+def _without_replaced(diagnostics: list[Diagnostic], scopes: Collection[Scope], settings: Settings) -> list[Diagnostic]:
     """The diagnostics but those for which a rule found something better at the same place."""
     better: dict[str, set[str]] = {}
-    for rule in all_rules():
+    for rule in rules_of(scopes):
         if settings.runs(rule):
             for code in rule.replaces:
                 better.setdefault(code, set()).add(rule.code)

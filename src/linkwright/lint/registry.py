@@ -7,7 +7,7 @@ Those of other packages come the same way as ours; their codes have a prefix of 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
 from linkwright.extensions import EntryPoint, extensions
-from linkwright.lint.rule import Rule
+from linkwright.lint.rule import Rule, Scope
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -24,36 +24,53 @@ GROUP = "linkwright.lint_rules"
 """Of the entry points."""
 
 _OURS = "LW"
+_OF_PACKAGES = ("launch_", "package_")
+"""How the names begin of our modules with rules about packages, and no others: a check of a file needs none of them."""
 _CODE = re.compile("[A-Z]{2,10}[0-9]{3}").fullmatch
 _NAME = re.compile("[a-z0-9]+(-[a-z0-9]+)*").fullmatch
 
 
 def all_rules() -> tuple[Rule, ...]:
     """One of each rule, in the order of their codes."""
-    return _found()[0]
+    return _found(whole=True)[0]
+
+
+def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
+    """One of each rule of some scopes, in the order of their codes; those of packages are imported where asked for."""
+    return tuple(rule for rule in _found(whole=Scope.PACKAGE in scopes)[0] if rule.scope in scopes)
 
 
 def unusable_rules() -> tuple[Diagnostic, ...]:
     """A warning (LINT301) for each entry point of another package whose rules cannot be used."""
-    return _found()[1]
+    return _found(whole=False)[1]
 
 
 def find_rule(code_or_name: str) -> Rule | None:
     """The rule of a code or name, in any case; None where there is none."""
-    return _index().get(code_or_name.strip().casefold())
+    key = code_or_name.strip().casefold()
+    rule = _index(whole=False).get(key)
+    if rule is None and (key.startswith(_OURS.casefold()) or not _CODE(key.upper())):
+        return _index(whole=True).get(key)
+    return rule
 
 
 @cache
-def _index() -> Mapping[str, Rule]:
-    return {key: rule for rule in all_rules() for key in (rule.code.casefold(), rule.name)}
+def _index(*, whole: bool) -> Mapping[str, Rule]:
+    return {key: rule for rule in _found(whole=whole)[0] for key in (rule.code.casefold(), rule.name)}
 
 
 @cache
-def _found() -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
+def _found(*, whole: bool) -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
+    """The rules; unless `whole`, without ours of packages, where no other package brings rules.
+
+    The names of those of other packages are compared with ours of packages, too.
+    """
     rules: dict[str, Rule] = {}
     problems: list[Diagnostic] = []
-    for entry in extensions(GROUP).values():
-        found = _rules_of(entry, {*rules, *(rule.name for rule in rules.values())})
+    entries = extensions(GROUP).values()
+    whole = whole or not all(map(_is_ours, entries))
+    for entry in entries:
+        found = _rules_of(entry, {*rules, *(rule.name for rule in rules.values())}, whole=whole)
         if isinstance(found, Diagnostic):
             problems.append(found)
         else:
@@ -61,23 +78,27 @@ def _found() -> tuple[tuple[Rule, ...], tuple[Diagnostic, ...]]:
     return tuple(rules[code] for code in sorted(rules)), tuple(problems)
 
 
-def _rules_of(entry: EntryPoint, taken: set[str]) -> list[Rule] | Diagnostic:
+def _is_ours(entry: EntryPoint) -> bool:
+    return entry.value.startswith("linkwright.")
+
+
+def _rules_of(entry: EntryPoint, taken: set[str], *, whole: bool) -> list[Rule] | Diagnostic:
     """The rules that an entry point brings, or why those of another package cannot be used."""
-    if entry.value.startswith("linkwright."):
-        return _load(entry, taken, is_ours=True)
+    if _is_ours(entry):
+        return _load(entry, taken, is_ours=True, whole=whole)
     try:
-        return _load(entry, taken, is_ours=False)
+        return _load(entry, taken, is_ours=False, whole=True)
     except Exception as error:  # noqa: BLE001  # of a package that is not ours anything may be wrong
         return _unusable(entry, error)
 
 
-def _load(entry: EntryPoint, taken: set[str], *, is_ours: bool) -> list[Rule]:
+def _load(entry: EntryPoint, taken: set[str], *, is_ours: bool, whole: bool) -> list[Rule]:
     """The rules that an entry point brings.
 
     Raises:
         ValueError: a code or name is taken or malformed.
     """
-    found = [rule() for module in _modules(entry.load()) for rule in _classes(module)]
+    found = [_one(rule) for module in _modules(entry.load(), is_ours, whole) for rule in _classes(module)]
     for rule in found:
         if not _CODE(rule.code) or not _NAME(rule.name) or rule.code.startswith(_OURS) != is_ours:
             raise ValueError(f"malformed code or name: {rule.code}, {rule.name}")
@@ -87,11 +108,20 @@ def _load(entry: EntryPoint, taken: set[str], *, is_ours: bool) -> list[Rule]:
     return found
 
 
-def _modules(module: ModuleType) -> Iterator[ModuleType]:
+_INSTANCES: dict[object, Rule] = {}
+"""The one rule of each class."""
+
+
+def _one(kind: type[Rule]) -> Rule:
+    return _INSTANCES.get(kind) or _INSTANCES.setdefault(kind, kind())
+
+
+def _modules(module: ModuleType, is_ours: bool, whole: bool) -> Iterator[ModuleType]:
     yield module
     for folder in getattr(module, "__path__", ()):
-        for name in sorted(_module_names(folder, is_ours=module.__name__.startswith("linkwright."))):
-            yield import_module(f"{module.__name__}.{name}")
+        for name in sorted(_module_names(folder, is_ours=is_ours)):
+            if whole or not name.startswith(_OF_PACKAGES):
+                yield import_module(f"{module.__name__}.{name}")
 
 
 def _module_names(folder: str, *, is_ours: bool) -> Iterator[str]:
