@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -11,8 +12,10 @@ import pytest
 from linkwright.cli import main
 from linkwright.lint import engine
 from linkwright.lint.engine import examine
+from linkwright.lint.package import PackageContext
 from linkwright.lint.subject import Subject
 from linkwright.lint.targets import find_targets
+from linkwright.lint.xacro_facts import FileFacts
 
 GOOD = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -24,6 +27,11 @@ LONG_AXIS = """<robot name="r">
     <child link="arm_link"/>
     <axis xyz="0 0 2"/>
   </joint>
+</robot>
+"""
+ROBOT_WITH_A_PROPERTY = f"""<robot name="{{name}}" {XACRO}>
+  <xacro:property name="unused" value="1"/>
+  <link name="base_link"/>
 </robot>
 """
 ONLY = ["--select", "LW2"]
@@ -81,6 +89,20 @@ def test_what_arguments_and_the_environment_choose_to_include_stands_not_by_itse
 def test_a_robot_without_name_and_content_is_a_place_for_others_to_fill(here, text, files):
     write(here, {"r.urdf": text})
     assert [path.name for path in find_targets([here]).files] == files
+
+
+def test_a_package_and_its_files_are_looked_into_once_for_all_of_its_descriptions(here, monkeypatch):
+    walks, walked = [], []
+    files = {f"p/urdf/{name}.xacro": ROBOT_WITH_A_PROPERTY.format(name=name) for name in ("a", "b", "c")}
+    write(here, {"p/package.xml": "<package><name>p</name></package>", **files})
+    for name in files:
+        os.utime(here / name, (1, 1))  # what was written just now is read again
+    listed, facts = PackageContext._walk, FileFacts._walk
+    monkeypatch.setattr(PackageContext, "_walk", lambda self: [walks.append(self.folder), *listed(self)][1:])
+    monkeypatch.setattr(FileFacts, "_walk", lambda self: [walked.append(self.document.source.name), facts(self)][1])
+    main(["check", "--select", "ALL", str(here / "p")])
+    assert walks == [here / "p"]
+    assert sorted(Path(name).name for name in walked) == ["a.xacro", "b.xacro", "c.xacro"]
 
 
 def test_packages_are_those_around_the_files_and_those_in_the_folders(here):

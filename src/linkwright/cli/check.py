@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from linkwright.descriptions.argument_sets import ArgumentSet, ArgumentSets
     from linkwright.lint.apply import Mended
     from linkwright.lint.engine import Checked
+    from linkwright.lint.package import Contexts
     from linkwright.lint.settings import Settings
     from linkwright.lint.targets import Targets
     from linkwright.packages import PackageFinder
@@ -209,8 +210,9 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
     found: _Found = {}
     checked = None
     examined: list[_Examined] = []
+    contexts: Contexts = {}
     for file in targets.files:
-        checked, trouble = _examine(file, words, targets)
+        checked, trouble = _examine(file, words, targets, contexts=contexts)
         examined.append(_Examined(file, trouble, tuple(map(_without_element, checked.diagnostics)), _parts(checked)))
     for each in examined:
         said: Iterable[Diagnostic] = each.said
@@ -222,7 +224,7 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
         _add(found, (*each.trouble, *said))
     for folder in targets.packages:
         settings, trouble = words.settings(folder)
-        said = examine_package(folder, settings, words.finder(folder / MANIFEST)).diagnostics
+        said = examine_package(folder, settings, words.finder(folder / MANIFEST), contexts=contexts).diagnostics
         _add(found, (*trouble, *(each for each in said if not _is_of_aside(each, paths))))
     return list(found.values()), checked if len(paths) == 1 and not paths[0].is_dir() else None
 
@@ -333,7 +335,7 @@ def _place(diagnostic: Diagnostic) -> Span | None:
 
 
 def _examine(
-    file: Path, words: _Words, targets: Targets, text: str | None = None
+    file: Path, words: _Words, targets: Targets, text: str | None = None, contexts: Contexts | None = None
 ) -> tuple[Checked, tuple[Diagnostic, ...]]:
     """Check a file with the arguments of the command line, or else with those that it is given elsewhere."""
     from linkwright.lint.argument_sets import SetCheck
@@ -352,6 +354,7 @@ def _examine(
             overlay=None if text is None else Overlay({file: text}),
             scopes=(Scope.DESCRIPTION,),
             xacro=xacro,
+            contexts=contexts,
         )
 
     if words.values:

@@ -26,6 +26,7 @@ from linkwright.urdf import Reading, Robot
 from linkwright.xmltree import Document, Element, Overlay
 
 if TYPE_CHECKING:
+    from linkwright.lint.package import Contexts
     from linkwright.sdf.worlds import Sdf
 
 
@@ -80,6 +81,7 @@ def examine(
     overlay: Overlay | None = None,
     scopes: Collection[Scope] = (Scope.DESCRIPTION, Scope.PACKAGE),
     xacro: bool | None = None,
+    contexts: Contexts | None = None,
 ) -> Checked:
     """Check a URDF, xacro or SDF file; arguments as for `check`.
 
@@ -91,6 +93,7 @@ def examine(
         overlay: texts that stand for those of files, such as ones that are not saved yet.
         scopes: the rules to run.
         xacro: whether to expand a robot; None for what the file says.
+        contexts: packages that were met, for checks of several files at one moment.
     """
     path = Path(path)
     trouble: tuple[Diagnostic, ...] = ()
@@ -108,7 +111,7 @@ def examine(
         )
     except LinkwrightError as error:
         return Checked(path, None, (*trouble, *as_set(error.diagnostics, settings)), None)
-    subject = Subject(description, finder, settings)
+    subject = Subject(description, finder, settings, contexts)
     found = _run(subject, scopes, _of_library(subject) if subject.is_library else description.diagnostics)
     return Checked(path, subject.robot, (*trouble, *found), subject)
 
@@ -192,7 +195,11 @@ def in_order(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnos
 
 
 def examine_package(
-    folder: Path, settings: Settings, finder: PackageFinder | None = None, overlay: Overlay | None = None
+    folder: Path,
+    settings: Settings,
+    finder: PackageFinder | None = None,
+    overlay: Overlay | None = None,
+    contexts: Contexts | None = None,
 ) -> Checked:
     """Check a package by itself; for its rules the file is the manifest and the description an empty one.
 
@@ -201,11 +208,12 @@ def examine_package(
         settings: the settings in force for it.
         finder: where packages are.
         overlay: texts that stand for those of files.
+        contexts: packages that were met, for checks of several files at one moment.
     """
     path = folder / MANIFEST
     empty = Document(Element("robot", {"name": folder.name}))
     nothing = Description(str(path), empty, Reading(None, ()), overlay=overlay)
-    subject = Subject(nothing, finder or _finder(path, None), settings)
+    subject = Subject(nothing, finder or _finder(path, None), settings, contexts)
     return Checked(path, None, tuple(_run(subject, (Scope.PACKAGE,))), subject)
 
 
@@ -242,7 +250,7 @@ def _without_replaced(diagnostics: list[Diagnostic], scopes: Collection[Scope], 
     """The diagnostics but those for which a rule found something better at the same place."""
     better: dict[str, set[str]] = {}
     for rule in rules_of(scopes):
-        if settings.runs(rule):
+        if rule.replaces and settings.runs(rule):
             for code in rule.replaces:
                 better.setdefault(code, set()).add(rule.code)
     places = {(each.code, each.span) for each in diagnostics}

@@ -25,17 +25,24 @@ _MOST_FILES = 20_000
 _DESCRIPTIONS = (".xacro", ".urdf")
 
 
-def find_package(path: Path, overlay: Overlay | None = None) -> PackageContext | None:
+Contexts = dict[Path, "PackageContext"]
+"""The packages that were met by their folders, for checks of several files at one moment."""
+
+
+def find_package(path: Path, overlay: Overlay | None = None, contexts: Contexts | None = None) -> PackageContext | None:
     """The package that a file or folder lies in: the nearest folder upwards with a ``package.xml``; or None.
 
     Args:
         path: the file or folder.
         overlay: texts that stand for those of files.
+        contexts: where to look for the package and to put it, where there is no overlay.
     """
     path = path.absolute()
     for folder in (path, *path.parents):
         if (folder / MANIFEST).is_file():
-            return PackageContext(folder, overlay)
+            if overlay is not None or contexts is None:
+                return PackageContext(folder, overlay)
+            return contexts.get(folder) or contexts.setdefault(folder, PackageContext(folder))
     return None
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from linkwright.kinematics import KinematicTree
     from linkwright.lint.extents import Extents
     from linkwright.lint.meshes import MeshFacts
-    from linkwright.lint.package import PackageContext
+    from linkwright.lint.package import Contexts, PackageContext
     from linkwright.lint.structure import Structure
     from linkwright.lint.tensors import Flaw
     from linkwright.lint.xacro_facts import XacroFacts
@@ -38,6 +38,7 @@ class Subject:
         description: what is checked.
         finder: where packages are.
         settings: the settings in force for its file.
+        contexts: packages that were met, for checks of several files at one moment.
 
     Attributes:
         description: what is checked.
@@ -48,7 +49,9 @@ class Subject:
         is_whole: whether all of the description is here; if not, it is what could be expanded, and there is no robot.
     """
 
-    def __init__(self, description: Description, finder: PackageFinder, settings: Settings) -> None:
+    def __init__(
+        self, description: Description, finder: PackageFinder, settings: Settings, contexts: Contexts | None = None
+    ) -> None:
         self.path = Path(description.name)
         self.document = description.document
         self.reading = description.reading
@@ -57,6 +60,7 @@ class Subject:
         self.settings = settings
         self.is_whole = not description.problems
         self.description = description
+        self._contexts = contexts
 
     @cached_property
     def is_library(self) -> bool:
@@ -181,4 +185,4 @@ class Subject:
         """The ROS package that the file lies in, or None."""
         from linkwright.lint.package import find_package
 
-        return find_package(self.path, self.description.overlay)
+        return find_package(self.path, self.description.overlay, self._contexts)

@@ -17,6 +17,7 @@ from linkwright.lean_dataclasses import dataclass, field
 from linkwright.lint.xacro_names import Mentions, identifiers, mentions
 from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xacro.faults import Fault
+from linkwright.xacro.kept import Kept
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xmltree import Comment, Document, Element, Text
 from linkwright.xmltree.positions import attribute_value_range
@@ -32,6 +33,8 @@ TAGS = frozenset(
 _BARE = frozenset({"include", "insert_block", "macro"})
 _DIRECTIVE_IN_COMMENT = "xacro:eval-comments"
 _LARGEST_FOLDER = 200
+_MOST_KEPT = 2_000_000
+"""Characters of documents whose facts are kept."""
 _DEEPEST = 1_000
 """Levels below which nothing is looked at: an expansion does not go deeper either."""
 
@@ -147,9 +150,12 @@ class FileFacts:
 
     @classmethod
     def of(cls, document: Document) -> FileFacts:
-        """The facts of a parsed file."""
-        facts = cls(document)
-        facts._walk()
+        """The facts of a parsed file, worked out once for each document: one is checked with many sets of arguments."""
+        facts = _KEPT.values.get(id(document))
+        if facts is None:
+            facts = cls(document)
+            facts._walk()
+            _KEPT.keep(id(document), facts)
         return facts
 
     def parameters(self, macro: Element) -> tuple[Parameter, ...]:
@@ -241,6 +247,15 @@ class FileFacts:
         self.pasted |= found.pasted
         self.is_open = self.is_open or found.is_open
         self.arguments_open = self.arguments_open or found.arguments_open
+
+
+def _size_of(_: int, facts: FileFacts) -> int:
+    source = facts.document.source
+    return 1 if source is None else len(source.text) + 1
+
+
+_KEPT: Kept[int, FileFacts] = Kept(_MOST_KEPT, _size_of)
+"""The facts of documents by their identity, which is theirs as long as the facts hold them."""
 
 
 class XacroFacts:
