@@ -1,23 +1,29 @@
-"""How long URDF text takes to become a validated robot, beside other readers in Python.
+"""How long URDF text takes to become a validated robot, beside other readers in Python, and a check of a robot.
 
 Run it with ``python -m benchmarks urdf``. "Cold" forgets the values that the reader remembers from earlier texts. The
-other readers check less: they name no place, and accept much that urdfdom refuses.
+other readers check less: they name no place, and accept much that urdfdom refuses. Beside ``linkwright check``, whole
+commands, stand a bare interpreter and ruff with one file of Python, which is what a hook before a commit usually takes.
 """
 
 from __future__ import annotations
 
 import io
+import sys
+import tempfile
 from collections.abc import Callable
 from contextlib import redirect_stderr
+from pathlib import Path
 
 from benchmarks import peers
-from benchmarks.measure import Row, show, side_by_side
-from benchmarks.robots import detailed_robot
+from benchmarks.measure import LINKWRIGHT, Row, commands, show, side_by_side
+from benchmarks.robots import SHIPPED, detailed_robot, robot_with_mesh
 from linkwright.descriptions import load
 from linkwright.schema import reading
 from linkwright.urdf import values
 
 ROUNDS = 25
+STARTS = 11
+RUFF = Path(sys.executable).with_name("ruff")
 
 
 def forget() -> None:
@@ -39,6 +45,26 @@ def rows() -> list[Row]:
         size = f"{links} links, {len(text) / 1000:.0f} kB"
         found.append(Row(f"text to Robot, {size}", times["warm"] * 1e3, "ms", target, others))
         found.append(Row(f"text to Robot, {size}, cold", times["cold"] * 1e3, "ms"))
+    return found + _checks()
+
+
+def _checks() -> list[Row]:
+    files = sum(path.is_file() and path.suffix != ".pyc" for path in SHIPPED.rglob("*"))
+    with tempfile.TemporaryDirectory() as folder:
+        asked = {f"robot with a small mesh ({kind})": robot_with_mesh(Path(folder), kind) for kind in ("stl", "dae")}
+        asked[f"package of {files} files"] = SHIPPED
+        found = []
+        for (what, path), target in zip(
+            asked.items(), ("5.5 bare interpreters", "", "18 bare interpreters"), strict=True
+        ):
+            calls = {
+                "ours": [LINKWRIGHT, "check", str(path)],
+                "ruff": [str(RUFF), "check", "--no-cache", __file__] if RUFF.is_file() else None,
+                "bare interpreter": [sys.executable, "-c", "pass"],
+            }
+            times = {name: seconds * 1e3 for name, seconds in commands(calls, STARTS).items()}
+            others = {name: times.get(name) for name in calls if name != "ours"}
+            found.append(Row(f"command check, {what}", times["ours"], "ms", target, others))
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import struct
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -126,6 +127,51 @@ def tree_robot(links: int, branching: int = 8) -> str:
             )
     parts.append("</robot>")
     return "\n".join(parts)
+
+
+def robot_with_mesh(folder: Path, kind: str) -> Path:
+    """The path of a robot of one link with a mass and a mesh of four triangles, an ``stl`` or a ``dae``."""
+    corners = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.1))
+    faces = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
+    if kind == "stl":
+        rows = (struct.pack("<12fH", *[0.0] * 3, *(part for at in face for part in corners[at]), 0) for face in faces)
+        (folder / "part.stl").write_bytes(bytes(80) + struct.pack("<I", len(faces)) + b"".join(rows))
+    else:
+        points = " ".join(str(part) for corner in corners for part in corner)
+        places = " ".join(str(at) for face in faces for at in face)
+        (folder / "part.dae").write_text(_COLLADA.format(points=points, places=places), encoding="utf-8")
+    robot = folder / f"robot_{kind}.urdf"
+    robot.write_text(_ONE_LINK.replace("KIND", kind), encoding="utf-8")
+    return robot
+
+
+_ONE_LINK = """<robot name="part">
+  <link name="base_link">
+    <inertial>
+      <origin xyz="0.025 0.025 0.025"/>
+      <mass value="0.1"/>
+      <inertia ixx="0.0001" ixy="0.00001" ixz="0" iyy="0.0001" iyz="0" izz="0.0001"/>
+    </inertial>
+    <visual><geometry><mesh filename="part.KIND"/></geometry></visual>
+    <collision><geometry><mesh filename="part.KIND"/></geometry></collision>
+  </link>
+</robot>
+"""
+_COLLADA = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit meter="1"/></asset>
+  <library_geometries><geometry id="part"><mesh>
+    <source id="points"><float_array id="numbers" count="12">{points}</float_array>
+      <technique_common><accessor source="#numbers" count="4" stride="3">
+        <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+      </accessor></technique_common></source>
+    <vertices id="corners"><input semantic="POSITION" source="#points"/></vertices>
+    <triangles count="4"><input semantic="VERTEX" source="#corners" offset="0"/><p>{places}</p></triangles>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="scene"><node><instance_geometry url="#part"/></node></visual_scene>
+  </library_visual_scenes>
+  <scene><instance_visual_scene url="#scene"/></scene>
+</COLLADA>
+"""
 
 
 def detailed_robot(links: int, moving: int) -> str:
