@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from linkwright.geometry.collada import read_collada
 from linkwright.geometry.mesh_files import placed_meshes
+from linkwright.geometry.meshes import read_mesh
+from linkwright.geometry.outlines import read_small
 from linkwright.geometry.plain import PlainMesh
 from linkwright.geometry.wavefront import read_obj
 from tests.geometry.test_mesh_faults import COLLADA
@@ -80,9 +84,15 @@ def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
         "numbers that 32 bits round",
     ],
 )
-def test_collada_has_the_triangles_that_trimesh_reads(text: str) -> None:
+def test_collada_has_the_triangles_that_trimesh_reads(text: str, tmp_path: Path) -> None:
     data = text.encode()
     assert np.allclose(corners(data, "dae", is_plain=True), corners(data, "dae", is_plain=False), atol=2e-5)
+    (tmp_path / "mesh.dae").write_bytes(data)
+    small, whole = read_small(data, "dae"), read_mesh(tmp_path / "mesh.dae")
+    assert small is not None
+    assert small.count == whole.count
+    assert small.is_watertight == whole.is_watertight
+    assert np.allclose(small.bounds, whole.bounds, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -130,6 +140,25 @@ def test_collada_has_the_triangles_that_trimesh_reads(text: str) -> None:
 )
 def test_what_is_unusual_in_collada_is_left_to_trimesh(text: str) -> None:
     assert read_collada(text.encode()) is None
+    assert read_small(text.encode(), "dae") is None
+
+
+def test_a_closed_solid_that_a_scale_mirrors_is_watertight_without_arrays() -> None:
+    solid = COLLADA.replace('count="9"', 'count="12"').replace("0 0 0 1 0 0 0 1 0", "0 0 0 1 0 0 0 1 0 0 0 1")
+    solid = solid.replace('count="3" stride', 'count="4" stride').replace("<p>0 1 2", "<p>0 2 1 0 1 3 0 3 2 1 2 3")
+    for text in (solid, solid.replace(NODE, f"<node><scale>1 -1 1</scale>{NODE}</node>")):
+        small = read_small(text.encode(), "dae")
+        assert small is not None
+        assert small.is_watertight
+    cut = read_small(solid.replace("0 2 1 0 1 3", "0 1 3").encode(), "dae")
+    assert cut is not None
+    assert not cut.is_watertight
+
+
+def test_a_small_file_that_places_a_mesh_very_often_is_left_to_arrays() -> None:
+    assert read_small(COLLADA.replace(NODE, NODE * 19_000).encode(), "dae") is not None
+    often = kept(NODE * 200).replace(KEPT, KEPT * 70)
+    assert read_small(often.encode(), "dae") is None
 
 
 OBJ = "mtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nvn 0 0 1\nvt 0 0\n"

@@ -23,6 +23,7 @@ from linkwright.geometry.bounds import FARTHEST, Bounds
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.mass import MassProperties
 from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, beside, placed_meshes
+from linkwright.geometry.outlines import COLLADA_PADDING
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
 from linkwright.geometry.vectors import Vector3
 
@@ -92,10 +93,6 @@ class TriangleMesh:
         return merged(self.vertices, self.faces)
 
 
-_PADDING = b" \t\r\n\0"
-"""What exporters leave around the XML of a COLLADA file, and other readers pass over."""
-
-
 def read_mesh(path: Path) -> TriangleMesh:
     """The triangles of an STL, COLLADA, OBJ or glTF file.
 
@@ -121,7 +118,7 @@ def read_mesh(path: Path) -> TriangleMesh:
             raise unreadable(path, phrase("it is larger than {largest_file} MiB", largest_file=LARGEST_FILE >> 20))
         data = path.read_bytes()
         if kind == ".dae":
-            data = data.strip(_PADDING)
+            data = data.strip(COLLADA_PADDING)
     except FileNotFoundError:
         message = phrase("there is no mesh file '{path}'", path=display_path(path))
         raise LinkwrightError(Diagnostic("INR101", message, hint=missing_file_hint(path))) from None

@@ -1,7 +1,7 @@
 """The outlines of mesh files: what checks of descriptions ask of a mesh. Those of small files need no numpy.
 
 Importing numpy takes longer than the rest of a check of a robot with a small mesh. What is large or out of the
-ordinary, and COLLADA, is left to `linkwright.geometry.meshes`, which works out the same by arrays.
+ordinary is left to `linkwright.geometry.meshes`, which works out the same by arrays.
 """
 
 from __future__ import annotations
@@ -27,6 +27,11 @@ FACET = b"facet normal ? ? ? outer loop vertex ? ? ? vertex ? ? ? vertex ? ? ? e
 """The words of a triangle in an STL of text."""
 CORNERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
 """The places of the numbers of its corners among them."""
+
+COLLADA_PADDING = b" \t\r\n\0"
+"""What exporters leave around the XML of a COLLADA file, and other readers pass over."""
+_MOST_TRIANGLES = 20_000
+"""A small COLLADA file may place its meshes any number of times."""
 
 _Triangle = tuple[int, int, int]
 
@@ -106,17 +111,18 @@ class SmallMesh:
 
 
 def read_small(data: bytes, kind: str) -> SmallMesh | None:
-    """The triangles of a usual STL or OBJ file; None for any other.
+    """The triangles of a usual STL, OBJ or COLLADA file; None for any other.
 
     Args:
         data: the file.
         kind: its ending, without the dot.
     """
     try:
-        found = (_binary_stl(data) or _text_stl(data)) if kind == "stl" else _obj(data) if kind == "obj" else None
+        if kind == "stl":
+            return _binary_stl(data) or _text_stl(data)
+        return _obj(data) if kind == "obj" else _collada(data) if kind == "dae" else None
     except ValueError:  # what stands for a number is none, or a name no UTF-8
         return None
-    return found
 
 
 def _binary_stl(data: bytes) -> SmallMesh | None:
@@ -164,6 +170,13 @@ def _obj(data: bytes) -> SmallMesh | None:
             return None
         faces += [(first, second, third) for second, third in pairwise(others)]
     return _mesh(corners, faces)
+
+
+def _collada(data: bytes) -> SmallMesh | None:
+    from linkwright.geometry.collada_lists import read_triangles  # here: it imports a parser of XML
+
+    found = read_triangles(data.strip(COLLADA_PADDING), _MOST_TRIANGLES)
+    return None if found is None else _mesh(*found)
 
 
 def _points(numbers: list[float]) -> list[Vector3]:

@@ -9,11 +9,8 @@ from typing import Any
 import numpy as np
 
 from linkwright.geometry.arrays import Array
+from linkwright.geometry.collada_scene import Unusual
 from linkwright.geometry.polyhedron import Faces
-
-
-class Unusual(Exception):  # noqa: N818 - no error: another reader takes the file
-    """A file has something that a plain reader does not know."""
 
 
 class PlainMesh:

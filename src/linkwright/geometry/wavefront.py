@@ -6,7 +6,8 @@ import re
 
 import numpy as np
 
-from linkwright.geometry.plain import PlainMesh, Unusual, fans, numbers
+from linkwright.geometry.collada_scene import Unusual
+from linkwright.geometry.plain import PlainMesh, fans, numbers
 from linkwright.geometry.polyhedron import Faces
 
 _OF_TEXTURES = re.compile(rb"/\S*")

@@ -1,0 +1,118 @@
+"""The numbers of small COLLADA files in plain Python, with the rounding to 32 bits that pycollada does."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from struct import error, pack, unpack
+
+from linkwright.geometry.collada_scene import ColladaFile, Limits, Unusual, read_scene
+from linkwright.geometry.vectors import Vector3
+
+_Rows = list[list[float]]
+_Triangle = tuple[int, int, int]
+_Mesh = tuple[list[Vector3], list[_Triangle]]
+
+
+def read_triangles(data: bytes, most: int) -> _Mesh | None:
+    """The corners and triangles of a file's scene in m; None for more triangles, and as `read_scene` gives it."""
+    file: ColladaFile[_Mesh, _Rows] | None = read_scene(data, Lists())
+    if file is None or sum(len(faces) for (_, faces), _ in file.placed) > most:
+        return None
+    corners: list[Vector3] = []
+    triangles: list[_Triangle] = []
+    for (points, faces), ((a, b, c, u), (d, e, f, v), (g, h, i, w), _) in file.placed:
+        is_mirrored = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0
+        first, unit = len(corners), file.unit
+        corners += [
+            ((a * x + b * y + c * z + u) * unit, (d * x + e * y + f * z + v) * unit, (g * x + h * y + i * z + w) * unit)
+            for x, y, z in points
+        ]
+        for face in faces:
+            one, two, three = reversed(face) if is_mirrored else face
+            triangles.append((first + one, first + two, first + three))
+    return corners, triangles
+
+
+class Lists:
+    """Meshes as lists of corners and of triangles, matrices as lists of rows."""
+
+    def identity(self) -> _Rows:
+        """No transform."""
+        return [[float(row == column) for column in range(4)] for row in range(4)]
+
+    def moved(self, matrix: _Rows, tag: str, text: str | None) -> _Rows:
+        """A matrix times that of a transform."""
+        columns = list(zip(*_transform(tag, _numbers(text or ""), self.identity()), strict=True))
+        return [[sum(a * b for a, b in zip(row, column, strict=True)) for column in columns] for row in matrix]
+
+    def faces(
+        self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits
+    ) -> list[_Triangle]:
+        """The triangles of an element."""
+        rows = [_integers(each) for each in texts]
+        indices = [each for row in rows for each in row]
+        counts = [len(row) // width for row in rows]
+        if tag == "triangles":
+            counts = [3] * (counts[0] // 3)
+        elif tag == "polylist":
+            counts = _integers(counted)
+        if any(len(row) % width for row in rows) or sum(counts) * width != len(indices) or min(counts, default=3) < 3:
+            raise Unusual
+        for offset, limit in limits:
+            if indices and not 0 <= min(indices[offset::width]) <= max(indices[offset::width]) < limit:
+                raise Unusual
+        corners = iter(indices[column::width])
+        found = []
+        for count in counts:
+            first, *others = (next(corners) for _ in range(count))
+            found += [(first, second, third) for second, third in pairwise(others)]
+        return found
+
+    def mesh(self, text: str, faces: list[list[_Triangle]]) -> _Mesh:
+        """The mesh of the numbers of its corners and the triangles of its elements."""
+        numbers = _numbers(text)
+        points = list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
+        return points, [each for part in faces for each in part]
+
+
+def _numbers(text: str) -> list[float]:
+    """The numbers of a text, of 32 bits each."""
+    if "_" in text:
+        raise Unusual
+    words = text.split()
+    try:
+        found = unpack(f"{len(words)}f", pack(f"{len(words)}f", *map(float, words)))
+    except (OverflowError, error):
+        raise Unusual from None
+    if not all(map(math.isfinite, found)):
+        raise Unusual
+    return list(found)
+
+
+def _integers(text: str) -> list[int]:
+    if "_" in text:
+        raise Unusual
+    return list(map(int, text.split()))
+
+
+def _transform(tag: str, values: list[float], matrix: _Rows) -> _Rows:
+    """The matrix of a transform, made of the identity."""
+    if tag == "matrix":
+        if len(values) != 16:
+            raise Unusual
+        return [values[start : start + 4] for start in range(0, 16, 4)]
+    if tag == "rotate":
+        x, y, z, degrees = values
+        cosine, sine = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        cross = ((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0))
+        for row, first in enumerate((x, y, z)):
+            for column, second in enumerate((x, y, z)):
+                own = cosine if row == column else 0.0
+                matrix[row][column] = (1 - cosine) * (first * second) + own + sine * cross[row][column]
+        return matrix
+    if len(values) != 3:
+        raise Unusual
+    for axis, value in enumerate(values):
+        matrix[axis][3 if tag == "translate" else axis] = value
+    return matrix

@@ -1,0 +1,223 @@
+"""Reading the scene of usual COLLADA files: importing trimesh takes longer than reading most.
+
+What stands in the tree is read here, and numbers by arrays (`collada`) or, for small files, by plain Python
+(`collada_lists`).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Any, Generic, Protocol, TypeVar
+from xml.etree import ElementTree as ET
+
+from linkwright.lean_dataclasses import dataclass
+
+_Node = ET.Element
+_TRANSFORMS = ("matrix", "translate", "rotate", "scale")
+_NO_FACES = ("source", "vertices", "lines", "extra")
+_WITHOUT_TRIANGLES = ("instance_camera", "instance_light", "instance_controller", "extra", "asset")
+_DECLARATION = re.compile(rb"<!(?!--)")
+"""The beginning of a document type, which may hold entities, and of quoted text."""
+_MOST_PLACES = 20_000
+"""Nodes at their places, of which a few can make any number by naming each other."""
+
+
+Limits = list[tuple[int, int]]
+"""Columns of indices, and below which number each stays."""
+FacesT = TypeVar("FacesT")
+MeshT = TypeVar("MeshT")
+MadeT_co = TypeVar("MadeT_co", covariant=True)
+MatrixT = TypeVar("MatrixT")
+
+
+class Unusual(Exception):  # noqa: N818 - no error: another reader takes the file
+    """A file has something that a plain reader does not know."""
+
+
+class Numbers(Protocol[MadeT_co, MatrixT, FacesT]):
+    """Makes meshes and matrices of texts; each method raises `Unusual` or ValueError for a text that is not usual."""
+
+    def identity(self) -> MatrixT:
+        """No transform."""
+
+    def moved(self, matrix: MatrixT, tag: str, text: str | None) -> MatrixT:
+        """A matrix times that of a transform; the axis of a rotation is taken as it is written, as pycollada does."""
+
+    def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> FacesT:
+        """The triangles of ``<triangles>``, ``<polylist>`` or ``<polygons>``; a polygon makes a fan."""
+
+    def mesh(self, text: str, faces: list[FacesT]) -> MadeT_co:
+        """The mesh of the numbers of its corners and the triangles of its elements."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Source:
+    """A ``<source>``: how many rows it has, and its numbers as text."""
+
+    rows: int
+    width: int
+    text: str
+
+
+class ColladaFile(Generic[MeshT, MatrixT]):
+    """The meshes of a COLLADA file, in its own unit.
+
+    Attributes:
+        unit: metres for each unit.
+        placed: each mesh with its frame in that of the file; shape (4, 4).
+    """
+
+    def __init__(self, unit: float, placed: list[tuple[MeshT, MatrixT]]) -> None:
+        self.unit = unit
+        self.placed = placed
+
+
+def read_scene(data: bytes, numbers: Numbers[MeshT, MatrixT, Any]) -> ColladaFile[MeshT, MatrixT] | None:
+    """The meshes that the scene of a file places, with the rounding to 32 bits that pycollada does.
+
+    None for a file with anything out of the ordinary, and for one with mistakes, which trimesh is to read.
+    """
+    if _DECLARATION.search(data):
+        return None
+    try:
+        return _File(ET.fromstring(data), numbers).read()  # noqa: S314 - there are no entities in it
+    except (Unusual, ET.ParseError, ValueError, LookupError, RecursionError):
+        return None
+
+
+class _File(Generic[MeshT, MatrixT]):
+    def __init__(self, root: _Node, numbers: Numbers[MeshT, MatrixT, Any]) -> None:
+        name, brace, _ = root.tag.rpartition("}")
+        if not brace:
+            raise Unusual
+        self._root = root
+        self._numbers = numbers
+        self._space = name + brace
+        self._geometries = self._by_id("library_geometries", "geometry")
+        self._nodes = self._by_id("library_nodes", "node")
+        self._meshes: dict[str, tuple[MeshT, bool]] = {}
+        self._places = 0
+
+    def read(self) -> ColladaFile[MeshT, MatrixT]:
+        instance = self._only(self._only(self._root, "scene"), "instance_visual_scene")
+        scene = self._by_id("library_visual_scenes", "visual_scene")[_reference(instance)]
+        root = self._numbers.identity()
+        placed = [each for node in self._all(scene, "node") for each in self._placed(node, root)]
+        if not placed:
+            raise Unusual
+        return ColladaFile(self._unit(), placed)
+
+    # --- the tree ---------------------------------------------------------------------------------------------
+
+    def _all(self, node: _Node, tag: str) -> list[_Node]:
+        return node.findall(self._space + tag)
+
+    def _only(self, node: _Node, tag: str) -> _Node:
+        found = self._all(node, tag)
+        if len(found) != 1:
+            raise Unusual
+        return found[0]
+
+    def _by_id(self, library: str, tag: str) -> dict[str, _Node]:
+        found: dict[str, _Node] = {}
+        for each in self._all(self._root, library):
+            for node in self._all(each, tag):
+                name = node.get("id", "")
+                if not name or name in found:
+                    raise Unusual
+                found[name] = node
+        return found
+
+    def _tag(self, node: _Node) -> str:
+        if not node.tag.startswith(self._space):
+            raise Unusual
+        return node.tag[len(self._space) :]
+
+    def _unit(self) -> float:
+        for asset in self._all(self._root, "asset")[:1]:
+            for unit in self._all(asset, "unit")[:1]:
+                metres = float(unit.get("meter", "1"))
+                return 1.0 if math.isclose(metres, 1.0, rel_tol=1e-5) else metres
+        return 1.0
+
+    # --- the scene --------------------------------------------------------------------------------------------
+
+    def _placed(self, node: _Node, above: MatrixT) -> Iterator[tuple[MeshT, MatrixT]]:
+        """The meshes in a node, each with its frame in that of the file."""
+        self._places += 1
+        if self._places > _MOST_PLACES:
+            raise Unusual
+        matrix = above
+        for part in node:
+            if (tag := self._tag(part)) in _TRANSFORMS:
+                matrix = self._numbers.moved(matrix, tag, part.text)
+        for part in node:
+            tag = self._tag(part)
+            if tag == "node":
+                yield from self._placed(part, matrix)
+            elif tag == "instance_node":
+                yield from self._placed(self._nodes[_reference(part)], matrix)
+            elif tag == "instance_geometry":
+                mesh, has_faces = self._mesh(_reference(part))
+                if has_faces:
+                    yield mesh, matrix
+            elif tag not in _TRANSFORMS and tag not in _WITHOUT_TRIANGLES:
+                raise Unusual
+
+    # --- the meshes -------------------------------------------------------------------------------------------
+
+    def _mesh(self, name: str) -> tuple[MeshT, bool]:
+        if name not in self._meshes:
+            self._meshes[name] = self._of_geometry(self._only(self._geometries[name], "mesh"))
+        return self._meshes[name]
+
+    def _of_geometry(self, mesh: _Node) -> tuple[MeshT, bool]:
+        """A mesh, and whether it has triangles."""
+        sources = {f"#{each.get('id', '')}": self._source(each) for each in self._all(mesh, "source")}
+        vertices = self._only(mesh, "vertices")
+        inputs = {each.get("semantic"): sources[each.get("source", "")] for each in self._all(vertices, "input")}
+        corners = inputs["POSITION"]
+        if corners.width != 3:
+            raise Unusual
+        name = f"#{vertices.get('id', '')}"
+        rows = {name: corners.rows, **{source: each.rows for source, each in sources.items()}}
+        parts = [part for part in mesh if self._tag(part) not in _NO_FACES]
+        faces = [self._faces(part, self._tag(part), rows, name) for part in parts]
+        return self._numbers.mesh(corners.text, faces), any(len(each) for each in faces)
+
+    def _source(self, source: _Node) -> _Source:
+        numbers_of = self._only(source, "float_array")
+        accessor = self._only(self._only(source, "technique_common"), "accessor")
+        width = len(self._all(accessor, "param"))
+        text = numbers_of.text or ""
+        count = len(text.split())
+        stride, offset = int(accessor.get("stride", "1")), int(accessor.get("offset", "0"))
+        if stride != width or offset or count != int(numbers_of.get("count", "-1")) or count % width:
+            raise Unusual
+        return _Source(count // width, width, text)
+
+    def _faces(self, part: _Node, tag: str, rows: dict[str, int], corners: str) -> Any:
+        """The triangles of ``<triangles>``, ``<polylist>`` or ``<polygons>``."""
+        inputs = [
+            (each.get("semantic"), each.get("source", ""), int(each.get("offset", "")))
+            for each in self._all(part, "input")
+        ]
+        width = max(offset for _, _, offset in inputs) + 1
+        texts = [each.text or "" for each in self._all(part, "p")]
+        is_polygons = tag == "polygons" and texts and not self._all(part, "ph")
+        if not is_polygons and (tag not in ("triangles", "polylist") or len(texts) != 1):
+            raise Unusual
+        counted = (self._only(part, "vcount").text or "") if tag == "polylist" else ""
+        (column,) = [offset for semantic, source, offset in inputs if semantic == "VERTEX" and source == corners]
+        limits = [(offset, rows[source]) for _, source, offset in inputs]
+        return self._numbers.faces(tag, texts, counted, width, column, limits)
+
+
+def _reference(node: _Node) -> str:
+    """The id that a ``url`` in the same file names."""
+    mark, _, name = node.get("url", "").partition("#")
+    if mark or not name:
+        raise Unusual
+    return name
