@@ -1,8 +1,9 @@
 """Pictures of 1 MB between nodes of Linkwright and of real ROS 2 on Fast DDS: how many come, and does a reader hang?
 
 ``python -m benchmarks.pictures``, after ``make .build/ros/.ready`` and ``make .build/ros-kilted/.ready ROS=kilted``;
-``--loops 3`` keeps as many cores busy beside it. It measures what `docs/decisions/0095-large-messages-to-fast-dds.md`
-tells, whose figures come from scripts that this file was made of. Both sides of a pair run it, each with its own rclpy.
+``--loops 3`` keeps as many cores busy beside it. Milliseconds are the processor's, for a picture. It measures what
+`docs/decisions/0095-large-messages-to-fast-dds.md` tells, with scripts that this file was made of. Both sides of a
+pair run it, each with its own rclpy.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ HANGS_AFTER = 5.0
 """Seconds without a picture, while they are published, after which a reader counts as hung."""
 
 PAIRS = [
+    ("linkwright", "linkwright"),
     ("linkwright", "jazzy"),
     ("linkwright", "kilted"),
     ("jazzy", "linkwright"),
@@ -54,32 +56,33 @@ def publish(reliable: bool, depth: int, rate: float, seconds: float) -> None:
     while not publisher.get_subscription_count() and time.monotonic() < until:
         rclpy.spin_once(node, timeout_sec=0.1)
     time.sleep(1.0)  # both sides have found each other by then
-    began, count = time.monotonic(), 0
+    began, count, cpu = time.monotonic(), 0, time.process_time()
     while time.monotonic() < began + seconds:
         publisher.publish(picture)
         count += 1
         while (left := began + count / rate - time.monotonic()) > 0:
             rclpy.spin_once(node, timeout_sec=left)
-    print(count, flush=True)
     time.sleep(1.0)  # what was lost is sent again
+    print(count, time.process_time() - cpu, flush=True)
     os._exit(0)
 
 
-def subscribe(reliable: bool, counter: Path) -> None:
-    """Count the pictures that come, in a file: a reader that hangs cannot be asked."""
+def subscribe(reliable: bool, depth: int, counter: Path) -> None:
+    """Count the pictures that come, and the processor's time, in a file: a reader that hangs cannot be asked."""
     import rclpy
     from sensor_msgs.msg import Image
 
-    came = 0
+    came, cpu = 0, 0.0
 
     def on_picture(_: Image) -> None:
-        nonlocal came
+        nonlocal came, cpu
+        cpu = cpu or time.process_time()
         came += 1
-        counter.write_text(str(came))
+        counter.write_text(f"{came} {time.process_time() - cpu}")
 
     rclpy.init()
     node = rclpy.create_node("looking")
-    node.create_subscription(Image, "/picture", on_picture, profile(reliable, 5))
+    node.create_subscription(Image, "/picture", on_picture, profile(reliable, depth))
     rclpy.spin(node)
 
 
@@ -102,28 +105,30 @@ def measure(pair: tuple[str, str], reliable: bool, depth: int, rate: float, seco
     """How many pictures came of how many, and whether the reader hung."""
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as ends:
         counter = Path(folder) / "came"
-        counter.write_text("0")
+        counter.write_text("0 0")
         kind = "reliable" if reliable else "best-effort"
-        reader = program(pair[1], "subscribe", kind, str(counter))
+        reader = program(pair[1], "subscribe", kind, str(max(depth, 5)), str(counter))
         ends.callback(reader.kill)
         writer = program(pair[0], "publish", kind, str(depth), str(rate), str(seconds))
         ends.callback(writer.kill)
-        seen, since, hung = "0", time.monotonic(), False
+        seen, since, hung = "0 0", time.monotonic(), False
         while writer.poll() is None:
             time.sleep(0.2)  # a reader that hangs tells nobody: its file is looked at
             came = counter.read_text() or seen
             if came != seen:
                 seen, since = came, time.monotonic()
-            hung = hung or (seen != "0" and time.monotonic() - since > HANGS_AFTER)
-        sent = int((writer.stdout.read() if writer.stdout else "") or 0)
-        came = counter.read_text()
+            hung = hung or (seen != "0 0" and time.monotonic() - since > HANGS_AFTER)
+        sent, sending = ((writer.stdout.read() if writer.stdout else "") or "0 0").split()
+        came, receiving = counter.read_text().split()
     return {
         "pair": " to ".join(pair),
         "kind": kind,
         "depth": depth,
         "rate": rate,
-        "sent": sent,
+        "sent": int(sent),
         "came": int(came),
+        "sender_ms": round(1e3 * float(sending) / max(int(sent), 1), 2),
+        "receiver_ms": round(1e3 * float(receiving) / max(int(came), 1), 2),
         "hung": hung,
     }
 
@@ -133,7 +138,7 @@ def main() -> None:
     if sys.argv[1:2] == ["publish"]:
         publish(sys.argv[2] == "reliable", int(sys.argv[3]), float(sys.argv[4]), float(sys.argv[5]))
     if sys.argv[1:2] == ["subscribe"]:
-        subscribe(sys.argv[2] == "reliable", Path(sys.argv[3]))
+        subscribe(sys.argv[2] == "reliable", int(sys.argv[3]), Path(sys.argv[4]))
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--loops", type=int, default=0, help="busy loops beside it")
     options.add_argument("--seconds", type=float, default=6.0, help="of each measurement")
@@ -142,7 +147,7 @@ def main() -> None:
     try:
         for pair in PAIRS:
             for reliable, depth in ((True, 1), (True, 5), (True, 10), (False, 5)):
-                for rate in (10.0, 30.0):
+                for rate in (10.0, 30.0, 100.0):
                     print(json.dumps(measure(pair, reliable, depth, rate, chosen.seconds)), flush=True)
     finally:
         for loop in loops:
