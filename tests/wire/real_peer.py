@@ -1,8 +1,8 @@
 """A process with a real rclpy: ``$LINKWRIGHT_ROS_PYTHON -m tests.wire.real_peer NODE_NAME``.
 
-It has publishers on ``/from_ros``, ``/states_from_ros`` and ``/images_from_ros``, a lasting one on
-``/lasting_from_ros``, and subscriptions to ``/to_ros``, ``/states_to_ros``, ``/images_to_ros`` and, lasting,
-``/lasting_to_ros``; services ``/flip`` and ``/echo``; and a parameter ``speed``.
+It has publishers on ``/from_ros``, ``/states_from_ros`` and ``/images_from_ros``, a best-effort one on
+``/frames_from_ros``, a lasting one on ``/lasting_from_ros``, and subscriptions to ``/to_ros`` and so on, of the same
+kinds; services ``/flip`` and ``/echo``; and a parameter ``speed``.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallba
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image, JointState
 from sensor_msgs.srv import SetCameraInfo
 from std_msgs.msg import String
@@ -28,7 +28,13 @@ from tests.wire.node_program import result_of
 from tests.wire.programs import serve
 
 LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-KINDS = {"": (String, 10), "lasting_": (String, LASTING), "states_": (JointState, 200), "images_": (Image, 50)}
+KINDS = {
+    "": (String, 10),
+    "lasting_": (String, LASTING),
+    "states_": (JointState, 200),
+    "images_": (Image, 50),
+    "frames_": (Image, QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)),
+}
 
 
 class RealPeer:
@@ -146,8 +152,8 @@ class RealPeer:
     def received_states(self) -> list[list[Any]]:
         return [[list(message.name), list(message.position)] for message in self.heard["states_to_ros"]]
 
-    def received_images(self) -> list[int]:
-        return [int(message.header.frame_id) for message in self.heard["images_to_ros"]]
+    def received_images(self, topic: str = "images_to_ros") -> list[int]:
+        return [int(message.header.frame_id) for message in self.heard[topic]]
 
     def mismatches(self) -> list[str]:
         return self.mismatched

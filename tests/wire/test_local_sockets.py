@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from linkwright.wire.dds.local_sockets import multicast_port, other_processes
+from linkwright.wire.dds.local_sockets import multicast_port, other_processes, waiting_bytes
 
 DOMAIN = 7
 FIRST = multicast_port(DOMAIN)
@@ -74,3 +74,24 @@ def test_the_system_tells_of_another_process(processes, programs, domain):
     assert other_processes(domain) == 1
     processes("ours")  # has sockets as well, of this process
     assert other_processes(domain) == 1
+
+
+@on_linux
+def test_what_waits_at_a_port_is_told_until_it_is_taken():
+    sending = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    receiving = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    with sending, receiving:
+        receiving.bind(("127.0.0.1", 0))
+        port = receiving.getsockname()[1]
+        assert waiting_bytes(port) == 0
+        sending.sendto(bytes(50_000), ("127.0.0.1", port))
+        waiting = waiting_bytes(port)
+        assert waiting is not None
+        assert waiting >= 50_000
+        receiving.recv(50_000)
+        assert waiting_bytes(port) == 0
+    assert waiting_bytes(port) == 0
+
+
+def test_without_the_tables_of_the_system_nothing_is_known_of_what_waits(tmp_path):
+    assert waiting_bytes(7411, tmp_path) is None

@@ -13,7 +13,7 @@ import yaml
 
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from linkwright.messages import String, get_message, type_hash
+from linkwright.messages import String, get_message, get_service, type_hash
 from tests.domains import own_domain
 from tests.wire.programs import linkwright
 
@@ -21,6 +21,7 @@ PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 IMAGES = 45
 FLOOD = 300
+FRAMES = 40
 NODES = 50
 
 Image = get_message("sensor_msgs/msg/Image")
@@ -161,6 +162,28 @@ def test_pictures_that_are_replaced_while_they_are_on_their_way_do_not_stop_the_
         publisher.publish(picture)
         us.executor.spin_once(timeout_sec=0.01)
     assert real.ask_until(lambda images: images and images[-1] == FLOOD - 1, "received_images")
+
+
+def test_best_effort_images_come_though_they_are_larger_than_the_buffer_of_the_reader(processes, real_node):
+    """Most packets of an image sent at once are lost, and nobody sends them again."""
+    us = processes("ours")
+    us.node.create_client(
+        get_service("std_srvs/srv/SetBool"), "/flip"
+    )  # as every node of rclpy has one: with it we learn where Fast DDS listens
+    real = real_node()
+    profile = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+    publisher = us.node.create_publisher(Image, "/frames_to_ros", profile)
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    picture = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
+    came: list[int] = []
+    for number in range(FRAMES):
+        picture.header.frame_id = str(number)
+        publisher.publish(picture)
+        until = time.monotonic() + 1.0
+        while number not in came and time.monotonic() < until:
+            us.executor.spin_once(timeout_sec=0.01)
+            came = real.ask("received_images", "frames_to_ros")
+    assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2  # it was known by then
 
 
 def test_what_was_said_before_is_heard_by_who_comes_later(processes, real_node):

@@ -149,6 +149,7 @@ _WAITING: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_waitset_detach": (c.c_int32, (_ENTITY, _ENTITY)),
     "dds_waitset_wait": (c.c_int32, (_ENTITY, c.POINTER(c.c_ssize_t), c.c_size_t, c.c_int64)),
     "dds_write": (c.c_int32, (_ENTITY, c.POINTER(Sample))),
+    "dds_write_ts": (c.c_int32, (_ENTITY, c.POINTER(Sample), c.c_int64)),
     "dds_wait_for_acks": (c.c_int32, (_ENTITY, c.c_int64)),
     "dds_assert_liveliness": (c.c_int32, (_ENTITY,)),
     "dds_get_matched_subscriptions": (c.c_int32, (_ENTITY, _HANDLES, c.c_size_t)),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from linkwright.wire.dds.pacing import Pacer
 from linkwright.wire.dds.participant import Participant
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.type_descriptions import WireTypes
@@ -18,9 +19,11 @@ class Domain:
         remote: who is outside.
         types: descriptions of types.
         fragment_size: the bytes of a sample up to which it surely goes into one packet.
+        pacer: sends large samples to Fast DDS.
     """
 
     participant: Participant
     remote: RemoteGraph
     types: WireTypes
     fragment_size: int
+    pacer: Pacer

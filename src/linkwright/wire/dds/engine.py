@@ -16,10 +16,12 @@ from linkwright.wire.dds.departures import Departures
 from linkwright.wire.dds.discovery import Discovery
 from linkwright.wire.dds.discovery_info import NodeEntities
 from linkwright.wire.dds.domain import Domain
+from linkwright.wire.dds.pacing import Pacer
 from linkwright.wire.dds.participant import SERVICES_NAME, Participant
 from linkwright.wire.dds.presences import QuietClient, QuietReader, open_presence
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
+from linkwright.wire.dds.rtps.values import Address
 from linkwright.wire.dds.services import IncomingService, OutsideServer
 from linkwright.wire.dds.settings import Range, Settings
 from linkwright.wire.dds.topics import IncomingTopic, OutgoingTopic
@@ -73,7 +75,8 @@ class Engine(AnyEngine):
         self._is_fast_possible = settings.range is not Range.OFF
         self._participant = Participant(settings)
         types = self._participant.types
-        self._domain = Domain(self._participant, remote, types, settings.fragment_size)
+        self._pacer = Pacer(self._fast_address)
+        self._domain = Domain(self._participant, remote, types, settings.fragment_size, self._pacer)
         owner = self._participant.entity
         self._control = WaitingThread("linkwright-dds", owner, self._report, self._idle)
         self._reception = WaitingThread("linkwright-dds-receive", owner, self._report)
@@ -116,6 +119,7 @@ class Engine(AnyEngine):
         for topic in (*self._outgoing.values(), *self._leaving):
             if not topic.acknowledged(max(0, int((deadline - time.monotonic()) * 1e9))):
                 break
+        self._pacer.stop(CLOSING_TIME)
         if self._fast is not None:
             self._fast.close()
         self._participant.close()
@@ -260,6 +264,10 @@ class Engine(AnyEngine):
                 client.meet_fast(self._fast)
         if self._fast is not None:
             self._fast.expect(fast)
+
+    def _fast_address(self, reader: bytes) -> Address | None:
+        """Where a reader of Fast DDS listens on this machine, as far as the participant for services knows it."""
+        return None if self._fast is None else self._fast.address_of(reader)
 
     def _on_match(self) -> None:
         self._matches_changed = True

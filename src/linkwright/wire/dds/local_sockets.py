@@ -49,6 +49,29 @@ def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> in
     return max(listening[first], sum(listening[port] for port in unicast))
 
 
+def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | None:
+    """How many bytes wait to be received at a UDP port of this machine, with what the system adds to each packet.
+
+    Args:
+        port: the port; where several sockets listen on it, the fullest counts.
+        tables: the folder with the system's tables of sockets (proc(5)).
+
+    Returns:
+        The bytes, 0 also where nobody listens; None where the system does not tell.
+    """
+    wanted = b":%04X" % port
+    most = 0
+    try:
+        for line in (tables / _TABLES[0]).read_bytes().splitlines():
+            if wanted in line:
+                words = line.split()
+                if words[1].endswith(wanted):
+                    most = max(most, int(words[4].rpartition(b":")[2], 16))
+    except (OSError, ValueError, IndexError):
+        return None
+    return most
+
+
 def _own_sockets() -> set[str]:
     """The inodes of this process's sockets."""
     folder = Path("/proc/self/fd")

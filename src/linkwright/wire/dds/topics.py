@@ -33,7 +33,9 @@ from linkwright.wire.dds.cyclone import (
 )
 from linkwright.wire.dds.domain import Domain
 from linkwright.wire.dds.names import Role, dds_topic
+from linkwright.wire.dds.pacing import PacedWriter
 from linkwright.wire.dds.qos import endpoint_qos
+from linkwright.wire.dds.rtps.messages import FRAGMENT
 from linkwright.wire.dds.settings import LEASE
 
 if TYPE_CHECKING:
@@ -128,6 +130,7 @@ class OutgoingTopic(MirroredTopic):
         super().__init__(publisher, domain, mismatch)
         self._publisher = publisher
         self._waiting = waiting
+        self._paced = self._make_paced(domain)
         self._backlog = self._make_backlog(domain.fragment_size)
         publisher.assert_outside = self._assert_liveliness
         self._always = publisher.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
@@ -162,6 +165,8 @@ class OutgoingTopic(MirroredTopic):
     def close(self) -> None:
         """Delete the writer."""
         self._publisher.set_outside(None)
+        if self._paced is not None:
+            self._paced.close()
         self._participant.delete(self.entity, self._topic)
 
     def abandon(self) -> None:
@@ -179,9 +184,25 @@ class OutgoingTopic(MirroredTopic):
         return self.acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
 
     def _are_acknowledged(self, nanoseconds: int) -> bool:
-        """Whether all readers acknowledge, within the time given, what was written so far."""
-        code: int = self._dds.dds_wait_for_acks(self.entity, nanoseconds)
+        """Whether all readers acknowledge, within the time given, what was published and does not wait."""
+        until = time.monotonic_ns() + nanoseconds
+        if self._paced is not None and not self._paced.wait_until_written(nanoseconds / 1e9):
+            return False
+        code: int = self._dds.dds_wait_for_acks(self.entity, max(0, until - time.monotonic_ns()))
         return code >= 0
+
+    def _make_paced(self, domain: Domain) -> PacedWriter | None:
+        """What samples go through where newer ones replace older ones, and packets are those that the pacer makes."""
+        profile = self._publisher.qos_profile
+        if profile.history is HistoryPolicy.KEEP_ALL or domain.fragment_size != FRAGMENT:
+            return None
+        depth = max(profile.depth, 1)
+        return PacedWriter(self.guid, depth, self._write_published, self._fast_readers, domain.pacer)
+
+    def _fast_readers(self) -> list[bytes]:
+        """The GUIDs of the readers of Fast DDS that the writer is connected with."""
+        known = map(self._remote.endpoint, self._dds.matched(self.entity, writer=True))
+        return [each.guid for each in known if each is not None and each.is_fast]
 
     def _make_backlog(self, fragment_size: int) -> Backlog | None:
         """What large samples wait in, where the writer replaces samples that readers may ask for again."""
@@ -213,18 +234,31 @@ class OutgoingTopic(MirroredTopic):
     def _write(self, data: bytes) -> None:
         if len(data) & 3:
             data += bytes(-len(data) & 3)
-        sample = Sample(data, len(data))
-        code = self._dds.dds_write(self.entity, c.byref(sample))
-        if code < 0:
-            keeps_all = self._publisher.qos_profile.history is HistoryPolicy.KEEP_ALL
-            self._failed(self._insist(sample) if code == TIMEOUT and keeps_all else code)
+        if self._paced is not None:
+            self._paced.write(data)
+        else:
+            self._write_published(data, None)
 
-    def _insist(self, sample: Sample) -> int:
-        """Retry, for history KEEP_ALL, until slow readers have caught up or the lease of dead ones is over."""
-        until = time.monotonic() + _PATIENCE
-        code = TIMEOUT
-        while code == TIMEOUT and time.monotonic() < until and not self._participant.closed:
-            code = self._dds.dds_write(self.entity, c.byref(sample))
+    def _write_published(self, data: bytes, published: int | None) -> bool:
+        """Hand a sample to Cyclone, with the time at which it was published where that was before; whether it takes it.
+
+        Where everything is kept, or the sample was sent already, it retries until slow readers have caught up or the
+        lease of dead ones is over.
+        """
+        sample = Sample(data, len(data))
+        now = time.monotonic()
+        insists = published is not None or self._publisher.qos_profile.history is HistoryPolicy.KEEP_ALL
+        code = self._hand_over(sample, published)
+        while code == TIMEOUT and insists and time.monotonic() < now + _PATIENCE and not self._participant.closed:
+            code = self._hand_over(sample, published)
+        self._failed(code)
+        return code >= 0
+
+    def _hand_over(self, sample: Sample, published: int | None) -> int:
+        if published is None:
+            code: int = self._dds.dds_write(self.entity, c.byref(sample))
+        else:
+            code = self._dds.dds_write_ts(self.entity, c.byref(sample), published)
         return code
 
     def _failed(self, code: int) -> None:

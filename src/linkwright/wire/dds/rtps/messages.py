@@ -237,10 +237,29 @@ def fragments_of(payload: bytes) -> int:
 
 def data_fragment(reader: bytes, writer: bytes, number: int, payload: bytes, which: int, inline: bytes = b"") -> bytes:
     """DATA_FRAG with one fragment of a payload, counted from 1."""
-    head = struct.pack("<HH", 0, 28) + reader + writer + _pack(number)
-    head += struct.pack("<IHHI", which, 1, FRAGMENT, len(payload))
+    head = _fragment_head(reader, writer, number, len(payload), which)
     part = payload[(which - 1) * FRAGMENT : which * FRAGMENT]
     return _submessage(_DATA_FRAG, _INLINE if inline else 0, head + inline + part)
+
+
+def fragment_start(reader: bytes, writer: bytes, number: int, size: int, which: int, length: int) -> bytes:
+    """The beginning of DATA_FRAG, before the bytes of the fragment, which end the message.
+
+    Args:
+        reader: the entity that it is for.
+        writer: the entity that wrote the payload.
+        number: the sequence number.
+        size: the bytes of the payload.
+        which: which fragment, counted from 1.
+        length: its bytes, a multiple of four.
+    """
+    head = _fragment_head(reader, writer, number, size, which)
+    return struct.pack("<BBH", _DATA_FRAG, _LITTLE, len(head) + length) + head
+
+
+def _fragment_head(reader: bytes, writer: bytes, number: int, size: int, which: int) -> bytes:
+    head = struct.pack("<HH", 0, 28) + reader + writer + _pack(number)
+    return head + struct.pack("<IHHI", which, 1, FRAGMENT, size)
 
 
 def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int, *, final: bool = False) -> bytes:

@@ -115,7 +115,7 @@ class Network:
                 return None
             except OSError:
                 continue  # somebody whom we sent to does not listen any more (Windows says so here)
-            if not self._places.only_here or self._is_here(source[0]):
+            if not self._places.only_here or self.is_here(source[0]):
                 return packet, source
 
     def send(self, packets: Iterable[Packet]) -> None:
@@ -141,7 +141,7 @@ class Network:
     def best_of(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
         """Where to send to reach who listens at some addresses: one of this machine is enough."""
         known = tuple(dict.fromkeys(addresses))
-        here = sorted((each for each in known if self._is_here(each[0])), key=lambda each: each[0] != _LOOPBACK)
+        here = sorted((each for each in known if self.is_here(each[0])), key=lambda each: each[0] != _LOOPBACK)
         if here:
             return (here[0],)
         return () if self._places.only_here else known
@@ -150,5 +150,6 @@ class Network:
         """Close the socket."""
         self.socket.close()
 
-    def _is_here(self, host: str) -> bool:
+    def is_here(self, host: str) -> bool:
+        """Whether an address is one of this machine."""
         return host in self._here or host.startswith("127.")

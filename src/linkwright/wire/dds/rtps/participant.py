@@ -197,6 +197,16 @@ class RtpsParticipant:
         with self._lock:
             return {guid: local.reader.heard_at(guid) for guid in local.reader.writers}
 
+    def address_of(self, reader: bytes) -> Address | None:
+        """Where a reader of another participant listens on this machine; None where that is not known."""
+        with self._lock:
+            peer = self._peers.get(reader[: v.PREFIX])
+            told = peer.endpoints.get(reader) if peer is not None else None
+            if peer is None or told is None:
+                return None
+            addresses = self._network.best_of(told.addresses) or peer.user
+        return next((each for each in addresses if self._network.is_here(each[0])), None)
+
     def last_of(self, local: LocalReader, writer: bytes) -> int:
         """The highest sequence number that a writer has told a reader of ours."""
         with self._lock:

@@ -1,0 +1,242 @@
+"""Large samples for Fast DDS readers on this machine go out packet by packet, as fast as the readers take them.
+
+Cyclone sends all packets of a sample at once. A reader of Fast DDS receives into a buffer of 208 kB, so that most
+packets of an image are lost: a reliable reader asks for them again, which takes milliseconds for every three packets,
+and a best-effort reader drops the image. Here the packets are sent first, under the GUID and the sequence number of
+Cyclone's writer. Then Cyclone writes the sample, and its packets are duplicates to a reader that has them. Discovery,
+acknowledgements and what is sent again stay with Cyclone (`docs/decisions/0105-large-messages-packet-by-packet.md`).
+"""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from queue import SimpleQueue
+
+from linkwright.wire.dds.local_sockets import waiting_bytes
+from linkwright.wire.dds.rtps.messages import FRAGMENT, fragment_start, fragments_of, info_timestamp, message
+from linkwright.wire.dds.rtps.values import PREFIX, UNKNOWN, Address
+from linkwright.wire.living_threads import guarded
+
+_BUFFER = 212_992
+"""Bytes of a receive buffer on Linux, unless a process asks for more."""
+
+_PACKET = 61_440
+"""Bytes that a packet with a full fragment takes in that buffer, rounded up: three fit."""
+
+_LEAST_ROOM = 2
+"""Packets that have to fit before sending goes on: to look after each packet would take longer than to send it."""
+
+_PAUSE = 0.0002
+"""Seconds after which a full buffer is looked at again."""
+
+_LOOKS = 200
+"""How often, for one sample; a reader that was stopped takes nothing."""
+
+_BLIND_PAUSE, _BLIND_PACKETS = 0.0005, 2
+"""The pause after so many packets where the system does not tell what waits in a buffer."""
+
+
+class Receiver:
+    """The socket of a process that reads, and the room in its buffer.
+
+    Args:
+        address: of the socket.
+        waiting: the bytes that wait at a port; None where the system does not tell.
+        pause: waits some seconds.
+    """
+
+    def __init__(
+        self,
+        address: Address,
+        waiting: Callable[[int], int | None] = waiting_bytes,
+        pause: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self.address = address
+        self._waiting = waiting
+        self._pause = pause
+        self._room = self._looks = 0
+        self._is_stuck = False
+
+    def begin(self) -> None:
+        """Begin with a sample. For a reader that took nothing of the last one nobody waits again."""
+        self._room, self._looks = 0, 1 if self._is_stuck else _LOOKS
+
+    def takes_one(self) -> bool:
+        """Whether a packet fits; waits until it does, or until the looks for this sample are used up."""
+        if not self._room:
+            self._room = self._next_room()
+            self._is_stuck = not self._room
+        if self._room:
+            self._room -= 1
+        return not self._is_stuck
+
+    def _next_room(self) -> int:
+        while self._looks:
+            waiting = self._waiting(self.address[1])
+            if waiting is None:
+                self._pause(_BLIND_PAUSE)
+                return _BLIND_PACKETS
+            room = (_BUFFER - waiting) // _PACKET
+            if room >= _LEAST_ROOM:
+                return room
+            self._looks -= 1
+            self._pause(_PAUSE)
+        return 0
+
+
+class Pacer:
+    """Sends the large samples of all writers of a participant, in a thread that starts with the first of them.
+
+    Args:
+        address_of: where a reader with a GUID listens on this machine; None where that is not known.
+    """
+
+    def __init__(self, address_of: Callable[[bytes], Address | None]) -> None:
+        self._address_of = address_of
+        self._work: SimpleQueue[PacedWriter | None] = SimpleQueue()
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
+        self._socket: socket.socket | None = None
+        self._receivers: dict[Address, Receiver] = {}
+
+    def places_of(self, readers: Iterable[bytes]) -> dict[bytes, Address]:
+        """The prefixes of the GUIDs of readers, and where each of these participants listens on this machine."""
+        found = {reader[:PREFIX]: self._address_of(reader) for reader in readers}
+        return {prefix: address for prefix, address in found.items() if address is not None}
+
+    def add(self, writer: PacedWriter) -> None:
+        """Have a writer's samples sent soon; from any thread."""
+        with self._lock:
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._run, name="linkwright-dds-pace", daemon=True)
+                self._thread.start()
+        self._work.put(writer)
+
+    def stop(self, timeout: float) -> None:
+        """End the thread, within the seconds given."""
+        self._work.put(None)
+        if self._thread is not None:
+            self._thread.join(timeout)
+        if self._socket is not None:
+            self._socket.close()
+
+    def send(self, writer: bytes, number: int, sample: bytes, written: int, places: dict[bytes, Address]) -> None:
+        """Send a sample in the name of a writer.
+
+        Args:
+            writer: its GUID.
+            number: the sequence number that the writer gives to the sample.
+            sample: serialized, a multiple of four bytes.
+            written: when it was published, in ns since the epoch.
+            places: the participants that read; see `places_of`.
+        """
+        if self._socket is None:
+            self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        stamp, data = info_timestamp(written), memoryview(sample)
+        readers = {prefix: self._receiver(address) for prefix, address in places.items()}
+        for receiver in readers.values():
+            receiver.begin()
+        for which in range(1, fragments_of(sample) + 1):
+            part = data[(which - 1) * FRAGMENT : which * FRAGMENT]
+            start = fragment_start(UNKNOWN, writer[PREFIX:], number, len(sample), which, len(part))
+            for prefix, receiver in tuple(readers.items()):
+                if receiver.takes_one():
+                    head = message(writer[:PREFIX], stamp, start, to=prefix)
+                    with suppress(OSError):  # what the system does not take, Cyclone sends
+                        self._socket.sendto(head + part, receiver.address)
+                else:
+                    del readers[prefix]
+
+    def _receiver(self, address: Address) -> Receiver:
+        receiver = self._receivers.get(address)
+        if receiver is None:
+            receiver = self._receivers[address] = Receiver(address)
+        return receiver
+
+    def _run(self) -> None:
+        while (writer := self._work.get()) is not None:
+            if guarded(writer.send_next) is not False:  # after an error the next sample has its turn
+                self._work.put(writer)
+
+
+class PacedWriter:
+    """Writes the samples of one writer in order, the large ones by way of the pacer where Fast DDS reads.
+
+    Args:
+        guid: of the writer.
+        depth: how many samples may wait; newer ones replace the oldest.
+        write: writes a sample as published at a time, in ns since the epoch (None for now); whether that worked. The
+            writer numbers the samples that were written from 1.
+        readers: the GUIDs of the readers of Fast DDS that the writer is connected with.
+        pacer: sends the large samples.
+    """
+
+    def __init__(
+        self,
+        guid: bytes,
+        depth: int,
+        write: Callable[[bytes, int | None], bool],
+        readers: Callable[[], Iterable[bytes]],
+        pacer: Pacer,
+    ) -> None:
+        self._guid = guid
+        self._write = write
+        self._readers = readers
+        self._pacer = pacer
+        self._waiting: deque[tuple[bytes, int]] = deque(maxlen=depth)
+        self._written = 0
+        self._is_pacing = False
+        self._is_numbered = True
+        self._changed = threading.Condition(threading.RLock())  # a warning of a write that failed may go the same way
+
+    def write(self, sample: bytes) -> None:
+        """Write a sample at once, or after the large ones before it; from any thread."""
+        with self._changed:
+            if not self._is_pacing and not self._places(sample):
+                self._write_now(sample)
+                return
+            self._waiting.append((sample, time.time_ns()))
+            if self._is_pacing:
+                return
+            self._is_pacing = True
+        self._pacer.add(self)
+
+    def send_next(self) -> bool:
+        """Called in the pacer's thread: send the next sample that waits; whether there are more."""
+        with self._changed:
+            if self._waiting:
+                sample, published = self._waiting.popleft()
+            else:
+                self._is_pacing = False
+                self._changed.notify_all()
+                return False
+        places = self._places(sample)
+        if places:
+            self._pacer.send(self._guid, self._written + 1, sample, published, places)
+        if not self._write_now(sample, published) and places:
+            self._is_numbered = False  # readers have this number with another sample than the next one
+        return True
+
+    def wait_until_written(self, seconds: float) -> bool:
+        """Wait until nothing waits to be sent, at most some seconds; whether that is so."""
+        with self._changed:
+            return self._changed.wait_for(lambda: not self._is_pacing, min(seconds, threading.TIMEOUT_MAX))
+
+    def close(self) -> None:
+        """Drop what waits."""
+        with self._changed:
+            self._waiting.clear()
+
+    def _places(self, sample: bytes) -> dict[bytes, Address]:
+        """Where the readers listen that a sample is paced for; none for what goes in one packet."""
+        return self._pacer.places_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
+
+    def _write_now(self, sample: bytes, published: int | None = None) -> bool:
+        is_written = self._write(sample, published)
+        self._written += is_written
+        return is_written

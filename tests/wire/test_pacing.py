@@ -1,0 +1,190 @@
+"""Large samples for readers of Fast DDS, which go packet by packet; `test_real_ros` has a real reader."""
+
+from __future__ import annotations
+
+import os
+import socket
+
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.messages import deserialize, get_message
+from linkwright.wire.dds.engine import Engine
+from linkwright.wire.dds.pacing import PacedWriter, Pacer, Receiver
+from linkwright.wire.dds.rtps.messages import parse
+
+Image = get_message("sensor_msgs/msg/Image")
+ADDRESS = ("127.0.0.1", 7411)
+WRITER, READER = bytes(range(16)), bytes(range(100, 116))
+PACKET = 60_832
+"""What Linux counts for a packet with a full fragment."""
+
+SMALL, LARGE = bytes(100), os.urandom(150_000)
+
+
+class Buffer:
+    """What waits in a receive buffer; it is looked at once a packet."""
+
+    def __init__(self, *waiting):
+        self.waiting = list(waiting)
+        self.pauses = 0
+        self.receiver = Receiver(ADDRESS, self.look, self.pause)
+        self.receiver.begin()
+
+    def look(self, port):
+        assert port == ADDRESS[1]
+        return self.waiting.pop(0) if len(self.waiting) > 1 else self.waiting[0]
+
+    def pause(self, _):
+        self.pauses += 1
+
+
+def test_three_packets_go_into_an_empty_buffer_before_it_is_looked_at_again():
+    buffer = Buffer(0, 3 * PACKET, 2 * PACKET, PACKET, 0)
+    assert [buffer.receiver.takes_one() for _ in range(3)] == [True] * 3
+    assert not buffer.pauses
+    assert buffer.receiver.takes_one()
+    assert buffer.pauses == 2
+
+
+def test_nobody_waits_twice_for_a_reader_that_takes_nothing():
+    buffer = Buffer(3 * PACKET)
+    assert not buffer.receiver.takes_one()
+    pauses = buffer.pauses
+    buffer.receiver.begin()
+    assert not buffer.receiver.takes_one()
+    assert buffer.pauses == pauses + 1
+    buffer.waiting = [0]
+    buffer.receiver.begin()
+    assert buffer.receiver.takes_one()
+
+
+def test_where_the_system_does_not_tell_there_is_a_pause_after_every_other_packet():
+    buffer = Buffer(None)
+    assert all(buffer.receiver.takes_one() for _ in range(4))
+    assert buffer.pauses == 2
+
+
+def test_a_sample_arrives_under_the_name_of_the_writer():
+    reader = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    reader.bind(("127.0.0.1", 0))
+    reader.settimeout(60)
+    pacer = Pacer(lambda _: reader.getsockname())
+    places = pacer.places_of([READER])
+    pacer.send(WRITER, 7, LARGE, 5_000_000_000, places)
+    packets = [reader.recv(0x1_0000) for _ in range(3)]
+    pacer.stop(0.0)
+    reader.close()
+    fragments = [said for packet in packets for said in parse(packet, READER[:12])]
+    assert [(said.writer, said.number, said.first, said.size) for said in fragments] == [
+        (WRITER, 7, which, len(LARGE)) for which in (1, 2, 3)
+    ]
+    assert {said.time for said in fragments} == {5_000_000_000}
+    assert b"".join(said.payload for said in fragments) == LARGE
+    assert not list(parse(packets[0], WRITER[:12]))  # it is for the participant of the reader alone
+
+
+class Line:
+    """A writer, and what went by the pacer before it was written."""
+
+    def __init__(self, *, depth=10, readers=(READER,)):
+        self.log = []
+        self.works = True
+        self.added = 0
+        self.readers = readers
+        self.writer = PacedWriter(WRITER, depth, self.write, lambda: self.readers, self)
+
+    def write(self, sample, published):
+        self.log.append(("written", sample[0], published is None))
+        return self.works
+
+    def places_of(self, readers):
+        return {reader[:12]: ADDRESS for reader in readers}
+
+    def add(self, _):
+        self.added += 1
+
+    def send(self, guid, number, sample, _published, places):
+        assert (guid, places) == (WRITER, {READER[:12]: ADDRESS})
+        self.log.append(("sent", sample[0], number))
+
+    def publish(self, number, size):
+        self.writer.write(bytes([number]) * size)
+
+    def send_all(self):
+        while self.writer.send_next():
+            pass
+
+
+def test_large_samples_are_sent_before_they_are_written_and_nothing_overtakes_them():
+    line = Line()
+    line.publish(1, len(SMALL))
+    line.publish(2, len(LARGE))
+    line.publish(3, len(SMALL))
+    assert line.log == [("written", 1, True)]
+    assert not line.writer.wait_until_written(0)
+    line.send_all()
+    assert line.log[1:] == [("sent", 2, 2), ("written", 2, False), ("written", 3, False)]
+    assert line.writer.wait_until_written(0)
+    assert line.added == 1
+    line.publish(4, len(SMALL))
+    assert line.log[-1] == ("written", 4, True)
+
+
+def test_newer_samples_replace_those_that_wait():
+    line = Line(depth=2)
+    for number in (1, 2, 3):
+        line.publish(number, len(LARGE))
+    line.send_all()
+    assert line.log == [("sent", 2, 1), ("written", 2, False), ("sent", 3, 2), ("written", 3, False)]
+
+
+def test_without_a_reader_of_fast_dds_samples_are_written_at_once():
+    line = Line(readers=())
+    line.publish(1, len(LARGE))
+    assert line.log == [("written", 1, True)]
+
+
+def test_no_number_is_sent_with_two_samples():
+    """Cyclone has not written what was sent as number 1, and will give that number to the next sample."""
+    line = Line()
+    line.works = False
+    line.publish(1, len(LARGE))
+    line.send_all()
+    line.works = True
+    line.publish(2, len(LARGE))
+    assert line.log == [("sent", 1, 1), ("written", 1, False), ("written", 2, True)]
+
+
+def test_a_writer_that_is_closed_sends_nothing_more():
+    line = Line()
+    line.publish(1, len(LARGE))
+    line.writer.close()
+    line.send_all()
+    assert not line.log
+
+
+def test_an_image_goes_packet_by_packet_and_then_by_cyclone(processes, monkeypatch):
+    """Cyclone's reader counts as one of Fast DDS here, and a socket of the test listens in its place."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
+        listening.bind(("127.0.0.1", 0))
+        listening.settimeout(60)
+        monkeypatch.setattr("linkwright.wire.dds.remote._FAST_DDS", b"\x01\x10")
+        monkeypatch.setattr(Engine, "_fast_address", lambda *_: listening.getsockname())
+        us, them = processes("ours"), processes("theirs")
+        got = []
+        subscription = them.node.create_subscription(Image, "/picture", got.append, QoSProfile(depth=10))
+        publisher = us.node.create_publisher(Image, "/picture", QoSProfile(depth=10))
+        us.spin_until(lambda: publisher.get_subscription_count() == us.node.count_subscribers("/picture") == 1)
+        them.spin_until(lambda: subscription.get_publisher_count() == 1)
+        images = [Image(data=os.urandom(100_000)), Image(data=b"small"), Image(data=os.urandom(70_000))]
+        fragments = []
+        for image, packets in zip(images, (2, 0, 2), strict=True):
+            publisher.publish(image)
+            for _ in range(packets):
+                fragments += parse(listening.recv(0x1_0000), subscription.gid[:12])
+        assert publisher.wait_for_all_acked()
+        them.spin_until(lambda: len(got) == 3)
+        assert got == images
+    assert [(said.number, said.first) for said in fragments] == [(1, 1), (1, 2), (3, 1), (3, 2)]
+    assert {said.writer for said in fragments} == {publisher.gid}
+    paced = b"".join(said.payload for said in fragments[:2])
+    assert deserialize(paced, Image) == images[0]
