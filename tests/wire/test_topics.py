@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import platform
 import time
 
 import pytest
@@ -187,6 +188,28 @@ def test_messages_of_any_size_arrive(processes, size):
         publisher.publish(String(data="x" * size))
     b.spin_until(lambda: len(got) == 5)
     assert got == [size] * 5
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other C libraries decide by themselves")
+def test_a_publisher_of_images_uses_the_same_memory_again(processes):
+    resource = pytest.importorskip("resource")
+    a, b = processes("a"), processes("b")
+    image_class = get_message("sensor_msgs/msg/Image")
+    b.node.create_subscription(image_class, "images", lambda _: None, 10)
+    publisher = a.node.create_publisher(image_class, "images", 10)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    image = image_class(data=bytes(1_000_000))
+
+    def new_pages():
+        before = resource.getrusage(resource.RUSAGE_THREAD).ru_minflt
+        for _ in range(10):
+            for _ in range(8):
+                publisher.publish(image)
+            assert publisher.wait_for_all_acked()
+        return resource.getrusage(resource.RUSAGE_THREAD).ru_minflt - before
+
+    new_pages()
+    assert new_pages() < 80 * 25  # an image has 245
 
 
 def test_a_reliable_flood_loses_nothing(processes, programs):
