@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import copy
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import Limits, expand
-from linkwright.xmltree import Comment
+from linkwright.xmltree import Comment, Element, write_element
 
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
@@ -65,3 +68,56 @@ def test_comments_are_evaluated_where_they_are_switched_on(tmp_path: Path) -> No
     root = expand(written(tmp_path, inside)).document.root
     comments = [child.data for child in root.first("a").children if isinstance(child, Comment)]
     assert comments == [" ${p} ", " 1 ", " 2 ", " ${p} ", " ${p} "]
+
+
+def test_a_copy_that_is_looked_into_is_written_as_it_is_then(tmp_path: Path) -> None:
+    path = written(tmp_path, '<link name="a"><visual name="v"> </visual></link>')
+    whole = str(expand(path))
+    expansion = expand(path)
+    visual = expansion.document.root.first("link").first("visual")
+    visual.attributes["name"] = "w"
+    assert str(expansion) == whole.replace('"v"', '"w"')
+    assert str(expand(path)) == whole
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])
+def test_a_copy_of_a_copy_is_one_of_its_own(tmp_path: Path, copied: Callable[[Element], Element]) -> None:
+    expansion = expand(written(tmp_path, '<link name="a"><visual/></link>'))
+    link = copied(expansion.document.root.first("link"))
+    link.children.clear()
+    assert write_element(link) == '<link name="a"/>\n'
+
+
+def test_a_copy_may_be_nested_deeper_than_calls_of_python(tmp_path: Path) -> None:
+    depth = 3 * sys.getrecursionlimit()
+    path = written(tmp_path, "<a>" * depth + "</a>" * depth)
+    root = expand(path, limits=Limits(nesting=depth + 10)).document.root
+    assert sum(1 for _ in root.walk()) == depth + 1
+
+
+def test_what_is_written_at_another_depth_is_indented_anew(tmp_path: Path) -> None:
+    macro = '<xacro:macro name="m"><a><b/></a></xacro:macro>'
+    text = str(expand(written(tmp_path, f"{macro}<xacro:m/><c><xacro:m/></c><xacro:m/>")))
+    assert [line for line in text.splitlines() if "<b/>" in line] == ["    <b/>", "      <b/>", "    <b/>"]
+
+
+@pytest.mark.parametrize(
+    ("inside", "expected"),
+    [
+        ("<a><b n='&#36;{p}'/></a>", '<b n="1"/>'),
+        ("<a><b>&#36;{p}</b></a>", "<b>1</b>"),
+        ('<a><b xmlns:xacro="x"/></a>', "<b/>"),
+        ('<a><b xacro:n="x"/></a>', "<b/>"),
+        ("<a><!-- xacro:eval-comments --><!-- ${p} --></a>", "<!-- 1 -->"),
+        ("<a><b/><xacro:if value='${p}'><c/></xacro:if></a>", "<c/>"),
+    ],
+)
+def test_what_does_not_come_out_as_it_is_shows_in_the_text(tmp_path: Path, inside: str, expected: str) -> None:
+    assert expected in str(expand(written(tmp_path, f'<xacro:property name="p" value="1"/>{inside}')))
+
+
+def test_a_long_value_is_paid_for_among_others(tmp_path: Path) -> None:
+    path = written(tmp_path, f'<a><b n="{"x" * 2000}"/></a>')
+    with pytest.raises(LinkwrightError) as caught:
+        expand(path, limits=Limits(characters=1500))
+    assert caught.value.diagnostics[0].code == "XAC605"

@@ -17,9 +17,21 @@ from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import LONG
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.origin import Frame, trail
-from linkwright.xacro.plan import COMMENT, ELEMENT, KEEP, TAG, TEXT, Plan, copy_of, plan_of
+from linkwright.xacro.plan import (
+    COMMENT,
+    COPY,
+    ELEMENT,
+    KEEP,
+    TAG,
+    TEXT,
+    Plan,
+    Run,
+    plan_of,
+    steps_of,
+)
 from linkwright.xacro.session import Session
 from linkwright.xmltree import Comment, Document, Element, Node, Text
+from linkwright.xmltree.nodes import LazyCopy
 
 _MOST_ERRORS = 20
 
@@ -130,10 +142,14 @@ class Expander:
         self._nesting += 1
         if self._nesting > self._deepest:
             self._too_deep(node)
-        for action, item, flag in plan_of(node).steps:
+        plan = node.plan
+        steps = plan.steps if isinstance(plan, Plan) else None
+        for action, item, flag in steps_of(node) if steps is None else steps:
             if action == KEEP:
                 session.budget.elements -= len(item) >> 3
                 output += item
+            elif action == COPY:
+                self._copy(item, output)
             elif action == ELEMENT:
                 self.element(item, output, scope, macros)
             elif action == TAG:
@@ -151,23 +167,47 @@ class Expander:
                 evaluate_comments = flag
         self._nesting -= 1
 
+    def _copy(self, run: Run, output: list[Node]) -> None:
+        """Put neighbours that come out as they are at the end of a parent."""
+        budget, frame = self.session.budget, self.session.frame
+        if run.size > budget.elements or self._nesting + run.height > self._deepest:
+            self._copy_singly(run, output)
+            return
+        budget.elements -= run.size
+        output += [LazyCopy(node, frame) if isinstance(node, Element) else node for node in run.nodes]
+
+    def _copy_singly(self, run: Run, output: list[Node]) -> None:
+        """Find the element at which a bound is met."""
+        elements, scope, macros = self.session.budget, Scope(None, self.session), MacroTable()
+        between = 0
+        for node in run.nodes:
+            if isinstance(node, Element):
+                elements.elements -= between >> 3
+                self.element(node, output, scope, macros)
+                between = 0
+            else:
+                output.append(node)
+                between += 1
+        elements.elements -= between >> 3
+
     def element(self, node: Element, output: list[Node], scope: Scope, macros: MacroTable) -> None:
         """Expand an ordinary element: its attributes, then what it holds."""
         session = self.session
         plan = node.plan
         if not isinstance(plan, Plan):
-            plan = node.plan = Plan(node)
+            plan = plan_of(node)
         if plan.size and plan.size <= session.budget.elements and self._nesting + plan.height <= self._deepest:
             session.budget.elements -= plan.size
-            output.append(copy_of(node, session.frame))
+            output.append(LazyCopy(node, session.frame))
             return
-        session.budget.elements -= 1
-        if session.budget.elements < 0:
+        budget = session.budget
+        budget.elements -= 1
+        if budget.elements < 0:
             self._too_many(node)
         attributes = self.attributes(node, scope) if plan.evaluated else plan.attributes.copy()
         made = Element(node.tag, attributes, node.source, node.offset, session.frame)
         output.append(made)
-        if plan.steps:
+        if plan.steps or plan.steps is None:
             self.children(node, made, scope, macros)
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:

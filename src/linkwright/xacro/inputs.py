@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.xacro.limits import Limits
+from linkwright.xacro.plan import plan_document
 from linkwright.xacro.session import PackageSource, Session
 from linkwright.xacro.tags.includes import xml_hint
 from linkwright.xmltree import Document, Overlay, parse
@@ -35,7 +36,7 @@ def main_document(session: Session, text: str | None = None) -> Document:
         LinkwrightError: it cannot be read, or is not XML.
     """
     try:
-        return session.read(session.file) if text is None else parse(text, session.file)
+        document = session.read(session.file) if text is None else parse(text, session.file)
     except LinkwrightError as error:
         found = error.diagnostics[0]
         hint = xml_hint(found)
@@ -44,3 +45,5 @@ def main_document(session: Session, text: str | None = None) -> Document:
         raise LinkwrightError(
             Diagnostic(found.code, found.message, found.span, notes=found.notes, hint=hint, source=found.source)
         ) from None
+    plan_document(document)
+    return document

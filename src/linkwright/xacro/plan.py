@@ -4,6 +4,9 @@ Most of a description does not depend on anything: an element without a dollar s
 comes out as it is, with all that it holds. Its plan says so, and the walk copies it. Of any other element the plan
 lists the attributes to evaluate and, in reading order, what to do with its children; neighbours that come out as they
 are make one step.
+
+Whether an element comes out as it is shows in its text: where that has no sign of the language, nobody looks into the
+element for it.
 """
 
 from __future__ import annotations
@@ -11,7 +14,8 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 from linkwright.xacro.limits import LONG
-from linkwright.xmltree import Comment, Element, Node, Text
+from linkwright.xmltree import Comment, Document, Element, Node, Text
+from linkwright.xmltree.nodes import KeptText
 
 PREFIX = "xacro:"
 _DECLARATION = "xmlns:xacro"
@@ -19,82 +23,162 @@ _EVALUATE_COMMENTS = "xacro:eval-comments"
 _EVALUATE_COMMENTS_OFF = "xacro:eval-comments:off"
 _DEEPEST = 100
 """How deep a plan looks ahead; elements further down are planned when they are reached."""
+_UNKNOWN = -1
+_SIGNS = ("$", PREFIX, _DECLARATION, "&", "<!", "<?")
+"""What the text of an element has that does not come out as it is, and of some that do."""
 
-KEEP, ELEMENT, TAG, TEXT, COMMENT, SWITCH = range(6)
-"""What a step does: keep nodes as they are, expand an element, expand a tag of the language, evaluate a text, evaluate
-a comment if comments are being evaluated, begin or end evaluating them."""
+KEEP, COPY, ELEMENT, TAG, TEXT, COMMENT, SWITCH = range(7)
+"""What a step does: keep nodes as they are, copy elements and keep the nodes between them, expand an element, expand a
+tag of the language, evaluate a text, evaluate a comment if comments are being evaluated, begin or end evaluating
+them."""
 
 Step: TypeAlias = tuple[int, Any, bool]
 
 
-class Plan:
+class Run:
+    """Neighbours that come out as they are.
+
+    Attributes:
+        nodes: the elements, and the texts and comments between them.
+        size: what they count as.
+        height: how deep they nest at most.
+    """
+
+    __slots__ = ("height", "nodes", "size")
+
+    def __init__(self, nodes: list[Node], size: int, height: int) -> None:
+        self.nodes = nodes
+        self.size = size
+        self.height = height
+
+
+class Plan(KeptText):
     """The plan of one element.
 
     Attributes:
         attributes: those that come out, as they are written.
         evaluated: the names of those that are to be evaluated or counted.
-        steps: for the children, in order: what to do, with what, and a flag: for TAG whether anything stands below it,
-            for SWITCH whether comments are to be evaluated from here.
         size: how many elements it is with all inside if it comes out as it is, else 0.
-        height: how deep they nest.
+        height: how deep they nest at most.
+        steps: for the children, in order: what to do, with what, and a flag: for TAG whether anything stands below it,
+            for SWITCH whether comments are to be evaluated from here. None where nobody has asked yet; see `steps_of`.
     """
 
     __slots__ = ("attributes", "evaluated", "height", "size", "steps")
 
-    def __init__(self, node: Element, depth: int = 0) -> None:
-        self.attributes = node.attributes
+    def __init__(self, attributes: dict[str, str], size: int = 1) -> None:
+        self.written = None
+        self.attributes = attributes
         self.evaluated: list[str] = []
-        self.size = self.height = 1
+        self.size = self.height = size
+        self.steps: list[Step] | None = None
+
+
+def plan_document(document: Document) -> None:
+    """Note where the root of a document ends that is as it was read, so that its plan can be read off the text."""
+    root = document.root
+    if root.plan is None and document.doctype is None and document.source is not None:
+        root.plan = len(document.source.text)
+
+
+def plan_of(node: Element) -> Plan:
+    """The plan of an element."""
+    plan = node.plan
+    if not isinstance(plan, Plan):
+        plan = node.plan = _worked_out(node, plan if isinstance(plan, int) else _UNKNOWN, 0)
+    return plan
+
+
+def steps_of(node: Element) -> list[Step]:
+    """The steps for the children of an element."""
+    plan = plan_of(node)
+    if plan.steps is None:
+        plan.steps = _Children(node.children, _UNKNOWN, 0).steps
+    return plan.steps
+
+
+def _worked_out(node: Element, end: int, depth: int) -> Plan:
+    """The plan of an element whose text ends at an offset, if that is known."""
+    plan = Plan(node.attributes)
+    children = _Children(node.children, end, depth)
+    plan.steps = children.steps
+    plan.height = children.height + 1
+    plan.size = children.size + 1 if children.come_out else 0
+    if node.attributes:
+        _plan_attributes(plan, node.attributes)
+    return plan
+
+
+def _plan_attributes(plan: Plan, attributes: dict[str, str]) -> None:
+    foreign = True
+    for name, value in attributes.items():
+        if "x" in name and (name == _DECLARATION or name.startswith(PREFIX)):
+            foreign = False
+        elif "$" in value or len(value) > LONG:
+            plan.evaluated.append(name)
+    if plan.evaluated or not foreign:
+        plan.size = 0
+    if not foreign:
+        plan.attributes = {
+            name: value
+            for name, value in attributes.items()
+            if not ("x" in name and (name == _DECLARATION or name.startswith(PREFIX)))
+        }
+
+
+class _Children:
+    """Works out the steps for the children of an element.
+
+    Attributes:
+        steps: the steps.
+        come_out: whether all come out as they are.
+        size: how many elements they are together then.
+        height: how deep they nest at most.
+    """
+
+    def __init__(self, children: list[Node], end: int, depth: int) -> None:
         self.steps: list[Step] = []
-        if node.attributes:
-            self._plan_attributes(node.attributes)
-        if node.children:
-            self._plan_children(node.children, depth)
+        self.come_out = True
+        self.size = self.height = 0
+        self._kept: list[Node] = []  # since the last step
+        self._since_element = 0  # how many of them stand after the last element
+        self._run_size = self._run_height = 0
+        self._plan(children, end, depth)
 
-    def _plan_attributes(self, attributes: dict[str, str]) -> None:
-        for name, value in attributes.items():
-            if "x" in name and (name == _DECLARATION or name.startswith(PREFIX)):
-                self.size = 0
-            elif "$" in value or len(value) > LONG:
-                self.evaluated.append(name)
-                self.size = 0
-        if not self.size:
-            self.attributes = {
-                name: value
-                for name, value in attributes.items()
-                if not ("x" in name and (name == _DECLARATION or name.startswith(PREFIX)))
-            }
-
-    def _plan_children(self, children: list[Node], depth: int) -> None:
+    def _plan(self, children: list[Node], end: int, depth: int) -> None:
         last = len(children) - 1
-        size, height = self.size, 0
-        steps = self.steps
-        kept: list[Node] = []
+        kept = self._kept
         switched = False
         for index, node in enumerate(children):
+            step: Step
             if isinstance(node, Text):
                 data = node.data
                 if "$" not in data and len(data) <= LONG:
                     kept.append(node)
+                    self._since_element += 1
                     if not switched or node.cdata or not data or data.isspace():
                         continue
-                    step: Step = (SWITCH, None, False)
+                    step = (SWITCH, None, False)
                 else:
                     step = (TEXT, node, False)
             elif isinstance(node, Element):
+                stop = end if index == last or end < 0 else children[index + 1].offset
                 if node.tag.startswith(PREFIX):
+                    if node.plan is None and stop >= 0:
+                        node.plan = stop
                     step = (TAG, node, index < last)
-                    size = 0
+                    self.come_out = False
                 else:
+                    inner = _inner_plan(node, stop, depth)
+                    if inner is not None and inner.size:
+                        self.size += inner.size
+                        self.height = max(self.height, inner.height)
+                        if not switched:
+                            self._add_to_run(node, inner)
+                            continue
+                    else:
+                        self.come_out = False
                     step = (ELEMENT, node, False)
-                    inner = node.plan
-                    if inner is None and depth < _DEEPEST:
-                        inner = node.plan = Plan(node, depth + 1)
-                    if not isinstance(inner, Plan) or not inner.size:
-                        size = 0
-                    elif size:
-                        size += inner.size
-                        height = max(height, inner.height)
             elif switched and isinstance(node, Comment) and _EVALUATE_COMMENTS not in node.data:
                 step = (COMMENT, node, False)
             elif isinstance(node, Comment) and _EVALUATE_COMMENTS in node.data:
@@ -102,32 +186,61 @@ class Plan:
                 step = (SWITCH, None, _EVALUATE_COMMENTS_OFF not in node.data)
             else:
                 kept.append(node)
+                self._since_element += 1
                 continue
-            if kept:
-                steps.append((KEEP, kept, False))
-                kept = []
-            steps.append(step)
+            self._end_run()
+            kept = self._kept
+            self.steps.append(step)
             if step[0] in (TEXT, SWITCH, COMMENT):
-                size = 0
+                self.come_out = False
             elif switched:
-                steps.append((SWITCH, None, False))
-        if kept:
-            steps.append((KEEP, kept, False))
-        self.size, self.height = size, height + 1
+                self.steps.append((SWITCH, None, False))
+        self._end_run()
+
+    def _add_to_run(self, node: Element, inner: Plan) -> None:
+        self._run_size += inner.size + (self._since_element >> 3)
+        self._run_height = max(self._run_height, inner.height)
+        self._since_element = 0
+        self._kept.append(node)
+
+    def _end_run(self) -> None:
+        if self._run_size:
+            run = Run(self._kept, self._run_size + (self._since_element >> 3), self._run_height)
+            self.steps.append((COPY, run, False))
+        elif self._kept:
+            self.steps.append((KEEP, self._kept, False))
+        if self._kept:
+            self._kept = []
+        self._since_element = self._run_size = self._run_height = 0
 
 
-def plan_of(node: Element) -> Plan:
-    """The plan of an element."""
-    plan = node.plan
-    if not isinstance(plan, Plan):
-        plan = node.plan = Plan(node)
-    return plan
+def _inner_plan(node: Element, stop: int, depth: int) -> Plan | None:
+    """The plan of an ordinary child whose text ends at an offset; None where it is too deep to be planned yet."""
+    inner = node.plan
+    if isinstance(inner, Plan):
+        return inner
+    source = node.source
+    if inner is None and source is not None and stop >= 0:
+        size = _size_of_plain(source.text[node.offset : stop])
+        if size:
+            node.plan = inner = Plan(node.attributes, size)
+            return inner
+        if depth >= _DEEPEST:
+            node.plan = stop
+    if depth >= _DEEPEST:
+        return None
+    node.plan = inner = _worked_out(node, stop, depth + 1)
+    return inner
 
 
-def copy_of(node: Element, origin: object) -> Element:
-    """A copy of an element that comes out as it is, with all inside; texts and comments are shared."""
-    made = Element(node.tag, node.attributes.copy(), node.source, node.offset, origin)
-    made.plan = node.plan
-    if node.children:
-        made.children = [copy_of(child, origin) if isinstance(child, Element) else child for child in node.children]
-    return made
+def _size_of_plain(text: str) -> int:
+    """How many elements an element with this text is, if the text has no sign of the language, else 0.
+
+    What may have one is refused: references to characters, comments, and what is so long that it is to be paid for.
+    """
+    if any(sign in text for sign in _SIGNS):
+        return 0
+    pieces = text.split("<")
+    if len(text) > LONG and max(map(len, pieces)) > LONG:
+        return 0
+    return len(pieces) - 1 - text.count("</")

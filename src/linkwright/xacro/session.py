@@ -30,6 +30,7 @@ from linkwright.xacro.expressions.yamldata import YamlDict, YamlError
 from linkwright.xacro.faults import Fault, attribute_part, text_part
 from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.origin import Frame, trail
+from linkwright.xacro.plan import plan_document
 from linkwright.xmltree import Document, Element, Overlay, Text
 from linkwright.xmltree.decoding import UTF_8
 
@@ -241,6 +242,7 @@ class Session:
     def read(self, path: str) -> Document:
         """The document of a file; see `sources.read`."""
         document = sources.read(self.on_disk(path), self._overlay)
+        plan_document(document)
         if document.encoding != UTF_8 and document.source is not None:
             self._warn_of_encoding(document.source, document.encoding)
         return document

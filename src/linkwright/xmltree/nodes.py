@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from _thread import allocate_lock  # what threading.Lock is, without the rest of it
 from collections.abc import Iterator
+from typing import Any, SupportsIndex
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.xmltree.decoding import UTF_8
@@ -114,6 +116,79 @@ class Element:
             return None
         found = attribute_value_range(self.source.text, self.offset, name)
         return self.source.span(*found) if found else self.span()
+
+
+class KeptText:
+    """The text that an element was written as, kept for the next time.
+
+    Attributes:
+        written: the blanks before it, and the text; None until it is written.
+    """
+
+    __slots__ = ("written",)
+
+    def __init__(self) -> None:
+        self.written: tuple[str, str] | None = None
+
+
+_lock = allocate_lock()
+
+
+class LazyCopy(Element):
+    """An element that comes out as it was read: a copy of another one, made when somebody looks into it.
+
+    Most of a description is only written again, for which the original will do.
+
+    Attributes:
+        original: the element that it is a copy of; None once it has attributes and children of its own.
+        plan: where the text of the original is kept.
+    """
+
+    __slots__ = ("original",)
+
+    def __init__(self, original: Element, origin: object) -> None:
+        self.tag = original.tag
+        self.source = original.source
+        self.offset = original.offset
+        self.origin = origin
+        self.plan = original.plan
+        self.original: Element | None = original
+
+    def __getattr__(self, name: str) -> Any:
+        # Python comes here when a slot is empty.
+        if name in ("attributes", "children"):
+            with _lock:  # two threads that look at once find the same children
+                original = self.original
+                if original is not None:
+                    self.original = None
+                    _fill(self, original)
+        return object.__getattribute__(self, name)
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> Any:
+        """For `copy` and `pickle`, who look into it."""
+        _ = self.children
+        return super().__reduce_ex__(protocol)
+
+
+def _fill(copy: LazyCopy, original: Element) -> None:
+    """Give a copy attributes and children of its own; texts and comments are shared."""
+    origin = copy.origin
+    pending: list[tuple[Element, Element]] = [(copy, original)]
+    while pending:  # not by recursion: elements may be nested deeper than Python's calls
+        made, original = pending.pop()
+        while isinstance(original, LazyCopy) and original.original is not None:
+            original = original.original
+        made.attributes = original.attributes.copy()
+        children: list[Node] = []
+        for child in original.children:
+            if isinstance(child, Element):
+                inner = Element(child.tag, None, child.source, child.offset, origin)
+                inner.plan = child.plan
+                pending.append((inner, child))
+                children.append(inner)
+            else:
+                children.append(child)
+        made.children = children
 
 
 Node = Element | Text | Comment | ProcessingInstruction

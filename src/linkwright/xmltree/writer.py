@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
+from linkwright.xmltree.nodes import Comment, Document, Element, KeptText, LazyCopy, Node, ProcessingInstruction, Text
 
 _INDENT = "  "
 _DEEPEST = 3_000
@@ -76,13 +76,17 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str 
     # A loop with its own stack: documents may be nested deeper than Python's calls.
     stack: list[tuple[Iterator[Node], str]] = []
     remaining = iter(nodes)
+    around = len(indent) // len(_INDENT)
     while True:
         for node in remaining:
             if isinstance(node, Text):
+                data = node.data
                 if node.cdata:
-                    put(f"<![CDATA[{node.data.replace(']]>', ']]]]><![CDATA[>')}]]>")
-                elif node.data and not node.data.isspace():
-                    put(f"{indent}{_escaped(node.data)}\n")
+                    put(f"<![CDATA[{data.replace(']]>', ']]]]><![CDATA[>')}]]>")
+                elif data and not data.isspace():
+                    put(f"{indent}{_escaped(data)}\n")
+            elif isinstance(node, LazyCopy) and node.original is not None:
+                put(_text_of_original(node, indent))
             elif isinstance(node, Element):
                 tag, children = node.tag, node.children
                 attributes = _attributes(node.attributes) if node.attributes else ""
@@ -93,7 +97,7 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str 
                 else:
                     put(f"{indent}<{tag}{attributes}>\n")
                     stack.append((remaining, f"{indent}</{tag}>\n"))
-                    if len(stack) > _DEEPEST:
+                    if len(stack) + around > _DEEPEST:
                         raise _too_deep(node)
                     remaining = iter(children)
                     indent += _INDENT
@@ -108,6 +112,22 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str 
             remaining, closing = stack.pop()
             indent = indent[: -len(_INDENT)]
             put(closing)
+
+
+def _text_of_original(copy: LazyCopy, indent: str) -> str:
+    """The text of a copy that nobody has looked into."""
+    kept, original = copy.plan, copy.original
+    if isinstance(kept, KeptText) and kept.written is not None and kept.written[0] == indent:
+        return kept.written[1]
+    while isinstance(original, LazyCopy) and original.original is not None:
+        original = original.original
+    assert original is not None, "asked for only where there is one"
+    pieces: list[str] = []
+    _write_nodes([original], pieces.append, indent)
+    text = "".join(pieces)
+    if isinstance(kept, KeptText):
+        kept.written = (indent, text)
+    return text
 
 
 def _too_deep(element: Element) -> LinkwrightError:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, display_path, phrase
 from linkwright.xacro.expander import Container, Expander, Site
@@ -15,7 +14,7 @@ from linkwright.xacro.tags.attributes import check_attributes, warn_of_global
 from linkwright.xmltree import Document, Element
 
 _MISSING = "XML101"
-_PATTERN = re.compile(r"[*\[?]")
+_OF_PATTERNS = ("*", "[", "?")
 
 
 def include(expander: Expander, site: Site) -> None:
@@ -69,7 +68,7 @@ def _is_optional(expander: Expander, node: Element) -> bool:
 def _paths(expander: Expander, site: Site) -> list[str]:
     name = expander.text_value(site.node, "filename", site.scope)
     path = expander.session.absolute(name)
-    if not _PATTERN.search(path):
+    if not any(sign in path for sign in _OF_PATTERNS):
         return [path]
     from glob import glob
 
