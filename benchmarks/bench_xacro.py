@@ -1,8 +1,9 @@
 """What expanding costs: real robots in this process, whole commands, and memory, beside PyPI's xacro.
 
 Run it with ``python -m benchmarks xacro``. The robots are those of the corpus, where it is beside the repository, else
-robots made for this. "Cold" forgets at the beginning of each pass, or of each single model, everything that was kept
-from earlier ones; within a pass over all models a file is read once.
+robots made for this. The environment variable LINKWRIGHT_ROBOTS names a folder with further descriptions, which are all
+expanded in one process, and then again. "Cold" forgets at the beginning of each pass, or of each single model,
+everything that was kept from earlier ones; within a pass over all models a file is read once.
 """
 
 from __future__ import annotations
@@ -10,8 +11,10 @@ from __future__ import annotations
 import gc
 import io
 import os
+import statistics
 import sys
 import tempfile
+import time
 import types
 from collections.abc import Callable
 from contextlib import redirect_stderr
@@ -19,7 +22,7 @@ from pathlib import Path
 
 from benchmarks import peers
 from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show, side_by_side
-from benchmarks.robots import SHIPPED, Model, models
+from benchmarks.robots import SHIPPED, Model, collected, models
 from linkwright.xacro import expand, macros, sources
 from linkwright.xacro.expressions import expression, literals, template, yamldata, yamlnodes
 
@@ -28,6 +31,9 @@ PASSES = 7
 SINGLES = 9
 STARTS = 11
 LARGEST = 4
+COLLECTION_PASSES = 3
+FEWEST_LINES = 15
+"""Less is a file of macros, and no robot."""
 PEER = "xacro"
 
 Engine = Callable[[Model], object]
@@ -80,7 +86,41 @@ def rows() -> list[Row]:
         other = theirs()
         largest = _largest(robots, other or ours)
         found = _in_process(robots, largest, other)
-        return found + _whole_commands(largest[0], Path(folder))
+        return found + _collection(other) + _whole_commands(largest[0], Path(folder))
+
+
+def _collection(other: Engine | None) -> list[Row]:
+    """The descriptions of LINKWRIGHT_ROBOTS that both programs expand, in processor time: all of them, and again."""
+    folder = os.environ.get("LINKWRIGHT_ROBOTS")
+    if not folder:
+        return []
+    robots = [model for model in collected(Path(folder)) if _expands(ours, model) and _expands(other or ours, model)]
+    engines: dict[str, Engine] = {"ours": ours, **({} if other is None else {PEER: other})}
+    first: dict[str, list[float]] = {name: [] for name in engines}
+    again: dict[str, list[float]] = {name: [] for name in engines}
+    for _ in range(COLLECTION_PASSES):
+        for name, engine in engines.items():
+            forget()
+            for times in (first[name], again[name]):
+                begin = time.process_time()
+                one_pass(engine, robots)
+                times.append(time.process_time() - begin)
+    what = f"{len(robots)} public descriptions, processor time"
+    return [
+        _row(
+            f"{what}, first pass", {name: statistics.median(each) for name, each in first.items()}, "a tenth of xacro's"
+        ),
+        _row(
+            f"{what}, again", {name: statistics.median(each) for name, each in again.items()}, "a twentieth of xacro's"
+        ),
+    ]
+
+
+def _expands(engine: Engine, model: Model) -> bool:
+    try:
+        return len(str(engine(model)).splitlines()) > FEWEST_LINES
+    except (Exception, SystemExit):  # noqa: BLE001 - xacro fails in any way
+        return False
 
 
 def _in_process(robots: list[Model], largest: list[Model], other: Engine | None) -> list[Row]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,6 +50,17 @@ def models(folder: Path) -> list[Model]:
         path.write_text(crawler(legs), encoding="utf-8")
         found.append(path)
     return [Model(str(path), {}, {SHIPPED.name: str(SHIPPED)}) for path in found]
+
+
+def collected(folder: Path) -> list[Model]:
+    """The descriptions below a folder, such as checkouts of public repositories, each with all packages there."""
+    packages: dict[str, str] = {}
+    for path in sorted(folder.rglob("package.xml")):
+        name = re.search(r"<name>\s*([\w-]+)\s*</name>", path.read_text(encoding="utf-8", errors="replace"))
+        if name:
+            packages.setdefault(name[1], str(path.parent))
+    files = [path for path in sorted(folder.rglob("*")) if path.suffix in (".urdf", ".xacro") and path.is_file()]
+    return [Model(str(path), {}, packages) for path in files]
 
 
 def crawler(legs: int) -> str:

@@ -8,8 +8,9 @@ from linkwright.xacro.kept import Kept
 from linkwright.xmltree import Document, Overlay, parse_file
 
 _LINKS = f"{os.sep}shares{os.sep}"
-_MOST_TEXT = 12_000_000
-"""How many bytes the files that are kept have together; a parsed one takes twenty times as much memory."""
+_MOST_TEXT = 24_000_000
+"""How many bytes the files that are kept have together, which a thousand robots have; a parsed one takes fifteen times
+as much memory."""
 kept: Kept[tuple[str, str], tuple[int, int, Document]] = Kept(_MOST_TEXT, lambda _, file: file[1])
 """Path and current folder -> time of change, size and document."""
 

@@ -9,7 +9,7 @@ from linkwright.xacro.kept import Kept
 
 _Form = TypeVar("_Form")
 
-_MOST_CHARACTERS = 400_000
+_MOST_CHARACTERS = 1_000_000
 _AROUND = 8
 """How long the texts that are kept may be together, with what each adds; compiled they are a hundred times as large."""
 
