@@ -8,7 +8,6 @@ from __future__ import annotations
 import errno
 import os
 import stat
-from contextlib import suppress
 
 NO_SPACE = frozenset({errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)})
 """A disk that is full, a quota or limit that is reached, a disk that is broken: writing in place would only destroy."""
@@ -135,5 +134,7 @@ def _write_all(descriptor: int, content: bytes) -> None:
 
 
 def _remove(path: str) -> None:
+    from contextlib import suppress  # which is slow to import, and seldom needed
+
     with suppress(OSError):
         os.unlink(path)

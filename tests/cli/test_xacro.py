@@ -9,6 +9,8 @@ import sys
 import pytest
 
 from linkwright.cli import main
+from linkwright.cli.command import parser_for
+from linkwright.cli.xacro import without_options
 
 ROBOT = """<?xml version="1.0"?>
 <robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -80,3 +82,20 @@ def test_value_without_colon(model, capsys):
 def test_output_that_cannot_be_written(model, tmp_path, capsys):
     assert main(["xacro", str(model), "-o", str(tmp_path)]) == 1
     assert "cannot write" in capsys.readouterr().err
+
+
+def test_a_command_line_without_options_asks_for_the_same_without_a_parser():
+    words = ["robot.xacro", "a:=1", "b:="]
+    assert vars(without_options(words)) == vars(parser_for("xacro").parse_args(words))
+    assert without_options([]) is None
+
+
+def test_a_plain_command_imports_no_parser_of_command_lines(tmp_path):
+    """It takes as long as the expansion of a small file."""
+    (tmp_path / "small.xacro").write_text('<robot name="r"/>', encoding="utf-8")
+    code = "import sys; from linkwright.cli import main; main(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
+    words = [sys.executable, "-c", code, "xacro", str(tmp_path / "small.xacro"), "a:=1"]
+    loaded = subprocess.run(words, check=True, capture_output=True, text=True).stderr.split()
+    slow = {"argparse", "ast", "contextlib", "dataclasses", "gettext", "inspect", "pathlib", "warnings", "xml.parsers"}
+    assert not slow & set(loaded)
+    assert "linkwright.xacro.engine" in loaded

@@ -5,22 +5,22 @@ Exit statuses: 0 fine, 1 findings or an error in what the user gave, 2 wrong usa
 
 from __future__ import annotations
 
-import argparse
 import gc
-import os
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NoReturn, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from linkwright._version import __version__
 from linkwright.cli.endings import FINE, USAGE, status_of
-from linkwright.cli.language import LANGUAGE_HELP, said_in_help, take_language, translate_help
+from linkwright.cli.language import LANGUAGE_HELP, said_in_help, take_language
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language
 from linkwright.interruption import end_at_once, raise_interrupts
 
 if TYPE_CHECKING:
+    import argparse
+
     from linkwright.cli.nested import SubVerb
 
 GROUPS = {
@@ -147,54 +147,14 @@ def verb(name: str) -> Verb:
 
 def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
     """The argument parser of one verb, as the command reference and the verb itself use it."""
+    from linkwright.cli.parsers import make_parser  # argparse takes as long as the expansion of a small file
+
     module = verb(name)
     prog = f"{program} {name}".strip()
-    parser = _Parser(prog=prog, description=VERBS[name], formatter_class=_formatter)
-    module.configure(parser)
-    translate_help(parser)
+    parser = make_parser(prog, VERBS[name], module.configure)
     if parser.usage is not None:
         parser.usage = parser.usage.replace(f"{PROGRAM} {name}", prog, 1)
     return parser
-
-
-class _Parser(argparse.ArgumentParser):
-    """Tells what a misspelt option may mean, and of a help text that cannot be written.
-
-    argparse passes over the latter, and Python from 3.15 on with it.
-    """
-
-    def error(self, message: str) -> NoReturn:
-        """Print a usage error and end the process."""
-        meant = None
-        unrecognised = said_in_help("unrecognized arguments: %s").removesuffix("%s")
-        if message.startswith(f"{unrecognised}-"):
-            option = message.removeprefix(unrecognised).split()[0].partition("=")[0]
-            meant = did_you_mean(option, _options_below(self))
-        super().error(f"{message}; {meant}" if meant else message)
-
-    def _print_message(self, message: str, file: Any = None) -> None:
-        if file is sys.stdout:
-            file.write(message)
-        else:
-            super()._print_message(message, file)
-
-
-def _options_below(parser: argparse.ArgumentParser) -> Iterator[str]:
-    """The long options of a parser and of those below it."""
-    for action in parser._actions:
-        yield from (name for name in action.option_strings if name.startswith("--"))
-        if isinstance(action, argparse._SubParsersAction):
-            for below in action.choices.values():
-                yield from _options_below(below)
-
-
-def _formatter(prog: str) -> argparse.HelpFormatter:
-    """A help formatter as wide as the terminal; left to itself, argparse would import much only to learn that width."""
-    try:
-        columns = int(os.environ.get("COLUMNS", "0")) or os.get_terminal_size().columns
-    except (ValueError, OSError):
-        columns = 80
-    return argparse.HelpFormatter(prog, width=columns - 2)
 
 
 def _dispatch(words: list[str], program: str) -> int:
@@ -207,8 +167,24 @@ def _dispatch(words: list[str], program: str) -> int:
         return FINE
     if name not in VERBS:
         return _unknown(name, _OPTIONS if name.startswith("-") else VERBS, program or PROGRAM)
-    parser = parser_for(name, program=program)
     module = verb(name)
+    arguments = _without_options(module, words[1:]) or _parsed(name, module, words, program)
+    if isinstance(arguments, int):
+        return arguments
+    if name not in _WITH_A_LOOP:
+        raise_interrupts()
+    return module.run(arguments)
+
+
+def _without_options(module: Verb, words: list[str]) -> argparse.Namespace | None:
+    """The arguments that a command line without options gives, where the verb knows them without a parser."""
+    known: Callable[[list[str]], argparse.Namespace | None] | None = getattr(module, "without_options", None)
+    return None if known is None or any(word.startswith("-") for word in words) else known(words)
+
+
+def _parsed(name: str, module: Verb, words: list[str], program: str) -> argparse.Namespace | int:
+    """The arguments that a command line gives, or the exit status where it gives none."""
+    parser = parser_for(name, program=program)
     below: Mapping[str, SubVerb] = getattr(module, "VERBS", {})
     if below:
         asked = next(iter(words[1:]), "-")
@@ -216,10 +192,7 @@ def _dispatch(words: list[str], program: str) -> int:
             return _unknown(asked, below, parser.prog)
     mixed = not below and name not in _IN_ORDER and any(word.startswith("-") for word in words)
     parse = parser.parse_intermixed_args if mixed else parser.parse_args
-    arguments = parse(words[1:])
-    if name not in _WITH_A_LOOP:
-        raise_interrupts()
-    return module.run(arguments)
+    return parse(words[1:])
 
 
 def _unknown(name: str, known: Iterable[str], prog: str) -> int:

@@ -6,7 +6,6 @@ import errno
 import os
 import sys
 from collections.abc import Callable, Iterable
-from contextlib import suppress
 
 from linkwright._version import __version__
 from linkwright.cli.language import UnknownLanguageError
@@ -112,17 +111,23 @@ def _trouble_of_the_system(error: OSError) -> Diagnostic | None:
 
 def _leave_output() -> None:
     """Let Python flush into nothing when it ends; it would complain once more."""
+    from contextlib import suppress  # which is slow to import, and seldom needed
+
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _print(diagnostics: Iterable[Diagnostic]) -> None:
+    from contextlib import suppress  # which is slow to import, and seldom needed
+
     with suppress(OSError):
         print_diagnostics(diagnostics, sys.stderr)
 
 
 def say(text: str) -> None:
     """Print a line to standard error; what nobody can read changes no exit status."""
+    from contextlib import suppress  # which is slow to import, and seldom needed
+
     with suppress(OSError):
         print(text, file=sys.stderr, flush=True)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 
 from linkwright.diagnostics.phrase import TERMS
@@ -55,28 +54,3 @@ def said_in_help(text: str) -> str:
     words = wording(lang)
     found = words.gettext(text)
     return words.pgettext(TERMS, text) if found == text else found
-
-
-# The name by which argparse asks for words of its own, such as "the following arguments are required". It is gettext's,
-# which looks for catalogues that there are none of, and loads `locale` for that.
-argparse._ = said_in_help  # type: ignore[attr-defined]  # argparse imports it so
-
-
-def translate_help(parser: argparse.ArgumentParser) -> None:
-    """Put the texts of a parser, and of the parsers below it, into the reader's language."""
-    if language() != "en":
-        _translate(parser)
-
-
-def _translate(parser: argparse.ArgumentParser) -> None:
-    parser.description = said_in_help(parser.description or "")
-    for group in parser._action_groups:
-        group.title = said_in_help(group.title or "")
-    for action in parser._actions:
-        if action.help and action.help != argparse.SUPPRESS:
-            action.help = said_in_help(action.help)
-        if isinstance(action, argparse._SubParsersAction):
-            for choice in action._choices_actions:
-                choice.help = said_in_help(choice.help or "")
-            for below in action.choices.values():
-                _translate(below)

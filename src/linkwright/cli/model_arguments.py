@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
 from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
 
 if TYPE_CHECKING:
+    import argparse
     from contextlib import ExitStack
 
     from linkwright.descriptions.pairs import Pair

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.model_arguments import add_values
@@ -12,11 +12,24 @@ from linkwright.cli.output import write_output
 from linkwright.diagnostics import Diagnostic, Severity, phrase, print_diagnostics
 
 if TYPE_CHECKING:
+    import argparse
+
     from linkwright.xacro.inputs import Inputs
 
 
 _QUIET, _PROPERTIES, _ALL_PROPERTIES = 0, 3, 4
 _USAGE = 2
+_DEFAULTS: dict[str, Any] = {
+    "args": False,
+    "deps": False,
+    "explain": None,
+    "format": "text",
+    "inorder": False,
+    "output": None,
+    "root_dir": None,
+    "verbosity": 1,
+}
+"""What holds without an option."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +56,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--format",
         choices=("text", "json"),
-        default="text",
         help="form of what --args and --explain print (default: text)",
     )
     parser.add_argument(
@@ -60,24 +72,28 @@ def configure(parser: argparse.ArgumentParser) -> None:
         dest="verbosity",
         action="store_const",
         const=_QUIET,
-        default=1,
         help="print errors only; the same as --verbosity 0",
     )
     parser.add_argument(
-        "-v", dest="verbosity", action="count", default=1, help="print more; the same as one --verbosity level higher"
+        "-v", dest="verbosity", action="count", help="print more; the same as one --verbosity level higher"
     )
     parser.add_argument(
         "--verbosity",
         metavar="LEVEL",
         type=int,
         dest="verbosity",
-        default=1,
         help="0: errors only, 1: warnings too (default), 2: the same, 3: log where the properties of the document are "
         "set and used, 4: those of macros and namespaces too",
     )
+    parser.set_defaults(**_DEFAULTS)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def without_options(words: list[str]) -> SimpleNamespace | None:
+    """The arguments that a file and values give; None where there is no file."""
+    return SimpleNamespace(file=words[0], values=words[1:], **_DEFAULTS) if words else None
+
+
+def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     """Do what is asked for; findings go to standard error, results to standard output or the file."""
     from linkwright.xacro.inputs import Inputs
     from linkwright.xacro.limits import Limits

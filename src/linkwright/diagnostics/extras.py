@@ -37,7 +37,7 @@ _BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vis
 
 
 _VERSION = sys.version_info[:2]
-_BEFORE = re.compile(r"python_version < '(\d+)\.(\d+)'")
+_BEFORE = r"python_version < '(\d+)\.(\d+)'"  # not compiled here: few commands need it
 
 
 def install_hint(extra: str, package: str = "") -> Phrase:
@@ -90,7 +90,7 @@ def _newest_python(package: str) -> tuple[int, ...]:
     except PackageNotFoundError:  # it runs out of a folder
         return ()
     found = [line for line in asked if re.match(rf"{re.escape(package)}\b", line)]
-    ends = [tuple(map(int, end.groups())) for line in found if (end := _BEFORE.search(line.replace('"', "'")))]
+    ends = [tuple(map(int, end.groups())) for line in found if (end := re.search(_BEFORE, line.replace('"', "'")))]
     return max(ends, default=()) if len(ends) == len(found) else ()
 
 

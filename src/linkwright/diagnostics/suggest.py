@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _LISTED = 8
 _ADDRESSES = ("http:", "https:", "ftp:")
-_ADDRESS = re.compile(r"(?:^|/)((?:https?|ftp):)/+(.+)")
+_ADDRESS = r"(?:^|/)((?:https?|ftp):)/+(.+)"  # not compiled here: few commands need it
 _MOST_COMPARED = 1_000
 """Of more names than these, only those are compared that begin alike and are about as long."""
 _WORD = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
@@ -142,7 +142,7 @@ def _parts(name: str) -> tuple[str, str]:
 def as_typed(path: str | os.PathLike[str]) -> str:
     """Return a path as its user typed it: an address of the web that was taken for a path has both slashes again."""
     shown = os.fspath(path)
-    address = _ADDRESS.search(shown)
+    address = re.search(_ADDRESS, shown)
     return shown if address is None else f"{address[1]}//{address[2]}"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -68,7 +67,9 @@ _BANNER = (
 
 def banner(name: str) -> list[Comment]:
     """The comments that say from which file a text was made."""
-    shown = re.sub("-+", "-", name)  # XML allows no two dashes in a comment
+    shown = name
+    while "--" in shown:  # which XML does not allow in a comment
+        shown = shown.replace("--", "-")
     return [
         Comment(_BANNER[0]),
         Comment(_BANNER[1].format(shown)),

@@ -12,8 +12,9 @@ from typing import NamedTuple
 from linkwright.diagnostics import Note, Phrase, SourceText, Span, phrase, term
 from linkwright.xmltree import Element, Text
 
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
-_BLOCK = re.compile(r"""<(/?)xacro:(if|unless|macro)\b(?:[^>"'/]|"[^"]*"|'[^']*'|/(?!>))*(/?)>""")
+# Not compiled here: few files need them.
+_COMMENT = r"(?s)<!--.*?-->"
+_BLOCK = r"""<(/?)xacro:(if|unless|macro)\b(?:[^>"'/]|"[^"]*"|'[^']*'|/(?!>))*(/?)>"""
 """A tag that begins or ends a condition or a macro."""
 
 
@@ -106,7 +107,7 @@ def definition_elsewhere(
     source: SourceText, tag: str, name: str, prefix: str = "xacro:", used_at: int | None = None
 ) -> Elsewhere | None:
     """Return where a file defines a name, when that is not in effect where it is wanted, at an offset."""
-    text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
+    text = re.sub(_COMMENT, lambda comment: " " * len(comment[0]), source.text)
     pattern = rf"""<{prefix}{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*["']{re.escape(name)}["']"""
     match = re.search(pattern, text)
     if match is None:
@@ -127,7 +128,7 @@ def definition_elsewhere(
 def _is_conditional(before: str) -> bool:
     """Whether what follows a text stands in a condition, and in no macro, whose definitions are its own."""
     open_tags: list[str] = []
-    for closing, tag, single in _BLOCK.findall(before):
+    for closing, tag, single in re.findall(_BLOCK, before):
         if closing:
             while open_tags and open_tags.pop() != tag:
                 pass

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import sys
 from _thread import allocate_lock  # what threading.Lock is, without the rest of it
-from collections.abc import Iterator
-from contextlib import contextmanager
 from time import thread_time
 from typing import NamedTuple
 
@@ -44,21 +42,27 @@ _active = 0
 _before = 0
 
 
-@contextmanager
-def room_for(limits: Limits) -> Iterator[None]:
+class room_for:  # noqa: N801 - it is called in a ``with`` statement, as a function is
     """Raise Python's recursion limit so that our own limits are met first; put it back when nobody needs it."""
-    global _active, _before  # noqa: PLW0603 - the recursion limit is one for the whole process
-    with _lock:
-        if _active == 0:
-            _before = sys.getrecursionlimit()
-        _active += 1
-        wanted = _before + limits.nesting * _FRAMES_PER_LEVEL
-        if wanted > sys.getrecursionlimit():
-            sys.setrecursionlimit(wanted)
-    try:
-        with seldom_collected():
-            yield
-    finally:
+
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
+        self._collection = seldom_collected()
+
+    def __enter__(self) -> None:
+        global _active, _before  # noqa: PLW0603 - the recursion limit is one for the whole process
+        with _lock:
+            if _active == 0:
+                _before = sys.getrecursionlimit()
+            _active += 1
+            wanted = _before + self._limits.nesting * _FRAMES_PER_LEVEL
+            if wanted > sys.getrecursionlimit():
+                sys.setrecursionlimit(wanted)
+        self._collection.__enter__()
+
+    def __exit__(self, *_: object) -> None:
+        global _active  # noqa: PLW0603 - see above
+        self._collection.__exit__()
         with _lock:
             _active -= 1
             if _active == 0:

@@ -11,10 +11,9 @@ from linkwright.diagnostics import phrase
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Element
 
-_PARAMETER = re.compile(
-    r"\s*(?P<name>[^\s:=]+?)\s*:?=\s*(?P<forward>\^\|?)?(?P<expression>(?:\$\{.*?\}|\$\(.*?\))(?=\s|$))?"
-)
-_BARE = re.compile(r"\s*(?P<name>\S+)\s*")
+# Not compiled here: not every file needs them.
+_PARAMETER = r"\s*(?P<name>[^\s:=]+?)\s*:?=\s*(?P<forward>\^\|?)?(?P<expression>(?:\$\{.*?\}|\$\(.*?\))(?=\s|$))?"
+_BARE = r"\s*(?P<name>\S+)\s*"
 
 
 class Parameter(NamedTuple):
@@ -50,9 +49,10 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
     parameters: list[Parameter] = []
     with_sign: dict[str, Parameter] = {}
     ends = _ends_of_words(text)
+    with_default, bare = re.compile(_PARAMETER), re.compile(_BARE)
     at = 0
     while at < len(text):
-        match = _PARAMETER.match(text, at)
+        match = with_default.match(text, at)
         if match is not None:
             start = match.end() if match["expression"] is None else match.start("expression")
             at = match.end() if start < match.end() else ends[start]
@@ -64,7 +64,7 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
             parameter = Parameter(name, text[start:at] or None, bool(match["forward"]), match.start("name"), start)
             with_sign[name] = parameter
         else:
-            match = _BARE.match(text, at)
+            match = bare.match(text, at)
             if match is None:
                 break  # only blanks are left
             at = match.end()

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import gc
 from _thread import allocate_lock  # what threading.Lock is, without the rest of it
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 _SELDOM = 50_000
 """After how many new objects the collector looks all the same."""
@@ -19,19 +17,20 @@ _active = 0
 _before = (0, 0, 0)
 
 
-@contextmanager
-def seldom_collected() -> Iterator[None]:
+class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
     """Let the garbage collector run less often inside a ``with`` block; what is new then counts as old."""
-    global _active, _before  # noqa: PLW0603 - there is one collector for the whole process
-    with _lock:
-        if _active == 0:
-            _before = gc.get_threshold()
-            if 0 < _before[0] < _SELDOM:
-                gc.set_threshold(_SELDOM, *_before[1:])
-        _active += 1
-    try:
-        yield
-    finally:
+
+    def __enter__(self) -> None:
+        global _active, _before  # noqa: PLW0603 - there is one collector for the whole process
+        with _lock:
+            if _active == 0:
+                _before = gc.get_threshold()
+                if 0 < _before[0] < _SELDOM:
+                    gc.set_threshold(_SELDOM, *_before[1:])
+            _active += 1
+
+    def __exit__(self, *_: object) -> None:
+        global _active  # noqa: PLW0603 - see above
         with _lock:
             _active -= 1
             if _active == 0:

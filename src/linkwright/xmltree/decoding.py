@@ -26,7 +26,7 @@ _BYTE_ORDER_MARKS = (
 )
 _UTF_16_OF_XML = (b"<\0", b"\0<")
 """How XML in UTF-16 begins where the byte order mark is missing."""
-_LIKE_GBK = re.compile(rb"(?:[\x00-\x7f]|[\xa1-\xf7][\xa1-\xfe])+").fullmatch
+_LIKE_GBK = rb"(?:[\x00-\x7f]|[\xa1-\xf7][\xa1-\xfe])+"  # compiled if needed
 """A text in which bytes beyond ASCII come in pairs, as in GBK and other encodings of East Asia."""
 _BEGINNING_OF_BINARY = 1024
 """Bytes in which pictures, archives, programs and meshes have a zero."""
@@ -63,7 +63,7 @@ def decoded(data: bytes, name: str) -> Decoded:
         return Decoded(data.decode(UTF_8))
     except UnicodeDecodeError:
         declared = re.match(_DECLARED, data)
-        if declared is None and _LIKE_GBK(data):
+        if declared is None and re.fullmatch(_LIKE_GBK, data):
             return _decode(data, UTF_8, name, phrase("it declares no other encoding, though it looks like GBK"))
         if declared is None:
             return _decode(data, UTF_8, name, phrase("it declares no other encoding"))

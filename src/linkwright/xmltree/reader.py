@@ -6,8 +6,8 @@ import os
 import re
 from bisect import bisect_right
 from collections.abc import Callable
+from pyexpat import ExpatError, ParserCreate  # what xml.parsers.expat is, without the packages around it
 from typing import TYPE_CHECKING, NoReturn
-from xml.parsers.expat import ExpatError, ParserCreate
 
 from linkwright.diagnostics import (
     Diagnostic,
@@ -27,7 +27,7 @@ from linkwright.xmltree.nodes import Comment, Document, Element, Node, Processin
 if TYPE_CHECKING:
     from pathlib import Path
 
-_BEYOND_ASCII = re.compile(rb"[\x80-\xff]+")
+_BEYOND_ASCII = rb"[\x80-\xff]+"  # not compiled here: few files need it
 _CDATA_START = len("<![CDATA[")
 
 
@@ -351,7 +351,7 @@ def _to_character_offsets(document: Document, data: bytes) -> None:
     """Turn the byte offsets of all nodes into character offsets."""
     ends: list[int] = []
     extra = [0]  # how many bytes more than characters there are up to each end
-    for run in _BEYOND_ASCII.finditer(data):
+    for run in re.finditer(_BEYOND_ASCII, data):
         ends.append(run.end())
         extra.append(extra[-1] + len(run[0]) - len(run[0].decode("utf-8", "replace")))
     nodes: list[Node] = [*document.prolog, document.root, *document.epilog]

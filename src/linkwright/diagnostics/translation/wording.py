@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import os
 from functools import cache
-from gettext import GNUTranslations, NullTranslations
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from gettext import NullTranslations
 
 
 @cache
 def wording(language: str) -> NullTranslations:
     """The catalogue of a language, read once; an empty one in a checkout where it was not compiled."""
+    from gettext import GNUTranslations, NullTranslations  # English needs none of it
+
     try:
         with open(f"{os.path.dirname(__file__)}/{language}.mo", "rb") as file:  # noqa: PTH120, PTH123 - pathlib is slow to import
             return GNUTranslations(file)

@@ -155,8 +155,9 @@ MATHEMATICS: dict[str, Any] = {
 }
 """Functions of ``math`` that are bounded."""
 
-_CLASS_BEGINS = re.compile(r"\[\^?\]?")
-_WRITTEN = re.compile(r"\\.|\]", re.DOTALL)
+# Not compiled here: few files need them.
+_CLASS_BEGINS = r"\[\^?\]?"
+_WRITTEN = r"(?s)\\.|\]"
 
 
 def split(pattern: str, text: str) -> list[str]:
@@ -171,8 +172,9 @@ def split(pattern: str, text: str) -> list[str]:
         re.error: it is no expression.
         RefusalError: it takes too long.
     """
-    begins = _CLASS_BEGINS.match(pattern)
-    ends = next((each.end() for each in _WRITTEN.finditer(pattern, begins.end() if begins else 0) if each[0] == "]"), 0)
+    begins = re.match(_CLASS_BEGINS, pattern)
+    written = re.compile(_WRITTEN).finditer(pattern, begins.end() if begins else 0)
+    ends = next((each.end() for each in written if each[0] == "]"), 0)
     if ends == len(pattern):
         return re.split(pattern, text)
     import regex

@@ -7,7 +7,7 @@ that can fail knows its place in the text, which makes the columns in messages e
 
 from __future__ import annotations
 
-import ast
+import _ast as ast  # the nodes alone: what ast adds takes long to import
 import operator
 import re
 from collections.abc import Callable, Iterator
@@ -207,9 +207,11 @@ class Compiler:
         return lambda _env: value
 
     def _joinedstr(self, node: ast.JoinedStr) -> Closure:
-        for part in ast.walk(node):  # before Python 3.12 the places inside of an f-string are not those in the text
+        from ast import copy_location, walk
+
+        for part in walk(node):  # before Python 3.12 the places inside of an f-string are not those in the text
             if isinstance(part, ast.expr):
-                ast.copy_location(part, node)
+                copy_location(part, node)
         parts = [self.compile(part) for part in node.values]
         return lambda env: sandbox.joined([part(env) for part in parts])
 

@@ -6,9 +6,8 @@ nothing is ever handed to Python's own ``eval``.
 
 from __future__ import annotations
 
-import ast
+import _ast as ast  # the nodes alone: what ast adds takes long to import
 import re
-import warnings
 from types import GeneratorType
 from typing import Any
 
@@ -21,7 +20,7 @@ from linkwright.xacro.faults import Fault
 _LONGEST = 20_000
 _ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
 """What is run through before it becomes a value: nested thousands deep, these would overflow the stack."""
-_WARNS = re.compile(r"\\|\d\.?[^\W\d]")
+_WARNS = r"\\|\d\.?[^\W\d]"  # not compiled here: few files need it
 _CLOSING = {"(": ")", "[": "]"}
 _HINTS = (
     ("{", phrase("'}' ends the expression, so there is no way to write a dict or set in it; load one from YAML")),
@@ -112,7 +111,9 @@ def _parse(source: str, stripped: str) -> ast.Expression:
     if len(stripped) > _LONGEST:
         raise Fault("XAC102", phrase("the expression is longer than {longest:,} characters", longest=_LONGEST))
     try:
-        if _WARNS.search(stripped):
+        if re.search(_WARNS, stripped):
+            import warnings
+
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 return _syntax_tree(stripped)

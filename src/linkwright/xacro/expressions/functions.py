@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import ast
+import _ast as ast  # the nodes alone: what ast adds takes long to import
 from collections.abc import Callable
 from typing import Any, NamedTuple
 

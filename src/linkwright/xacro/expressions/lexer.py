@@ -39,15 +39,12 @@ class Token(NamedTuple):
     end: int
 
 
-_TOKEN = re.compile(
-    r"""
+_PIECE = r"""(?x)
     \$(?P<escaped>\$+[{(])
   | \$\{(?P<expression>[^}]*)\}
   | \$\((?P<substitution>[^)]*)\)
   | (?P<text>[^$]+|\$[^{($]+|\$\Z)
-    """,
-    re.VERBOSE,
-)
+    """  # not compiled here: the texts of a small file seldom need it
 
 _KINDS = {
     "escaped": TokenKind.TEXT,
@@ -65,10 +62,11 @@ def tokenize(text: str) -> list[Token]:
     """
     if text.startswith("${") and text.find("}") == len(text) - 1:
         return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # what most texts with a dollar are
+    pattern = re.compile(_PIECE)
     tokens: list[Token] = []
     at = 0
     while at < len(text):
-        match = _TOKEN.match(text, at)
+        match = pattern.match(text, at)
         if match is None:
             raise _not_a_token(text, at)
         name = match.lastgroup

@@ -6,11 +6,11 @@ are strings.
 
 from __future__ import annotations
 
-import re
 from functools import lru_cache
 from typing import Any
 
-_NEVER_A_LITERAL = re.compile(r"[A-EGHJ-MO-SU-Za-eghj-mo-su-z$/<>(\[\"]")
+_NEVER_A_LITERAL = frozenset('ABCDEGHJKLMOPQRSUVWXYZabcdeghjklmopqrsuvwxyz$/<>(["')
+"""What no number and no boolean begins with."""
 _BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
@@ -23,7 +23,7 @@ def literal(value: Any) -> Any:
         return value
     if value[0] == "'" and value[-1] == "'" and len(value) >= 2:
         return value[1:-1]
-    if "_" in value or _NEVER_A_LITERAL.match(value):
+    if "_" in value or value[0] in _NEVER_A_LITERAL:
         return value
     return number_or_boolean(value)
 

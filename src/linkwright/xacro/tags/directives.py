@@ -15,7 +15,7 @@ from linkwright.xacro.tags.macro_calls import call_dynamically, define_macro
 from linkwright.xacro.tags.properties import define_property
 from linkwright.xmltree import Element
 
-_NAME = re.compile(r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?")
+_NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # not compiled here: few files need it
 """What XML allows as a name, nearly."""
 
 
@@ -148,7 +148,7 @@ def _warn_of_value(expander: Expander, site: Site, name: str, value: object) -> 
 
 
 def _check_name(expander: Expander, node: Element, attribute: str, what: str, name: str) -> None:
-    if not _NAME.fullmatch(name):
+    if not re.fullmatch(_NAME, name):
         message = (
             phrase("'{name}' cannot be the name of an {what}", name=name, what=term(what))
             if name

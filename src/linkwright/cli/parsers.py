@@ -1,0 +1,94 @@
+"""The argument parsers of commands: argparse with hints, and in the reader's language."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Iterator
+from typing import Any, NoReturn
+
+from linkwright.cli.language import said_in_help
+from linkwright.diagnostics import did_you_mean
+from linkwright.diagnostics.translation import language
+
+
+def make_parser(
+    program: str, description: str, configure: Callable[[argparse.ArgumentParser], None]
+) -> argparse.ArgumentParser:
+    """A parser whose texts are in the reader's language.
+
+    Args:
+        program: the name that usage lines begin with.
+        description: what the help says of the program.
+        configure: declares the arguments.
+    """
+    parser = _Parser(prog=program, description=description, formatter_class=_formatter)
+    configure(parser)
+    _translate_help(parser)
+    return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    """Tells what a misspelt option may mean, and of a help text that cannot be written.
+
+    argparse passes over the latter, and Python from 3.15 on with it.
+    """
+
+    def error(self, message: str) -> NoReturn:
+        """Print a usage error and end the process."""
+        meant = None
+        unrecognised = said_in_help("unrecognized arguments: %s").removesuffix("%s")
+        if message.startswith(f"{unrecognised}-"):
+            option = message.removeprefix(unrecognised).split()[0].partition("=")[0]
+            meant = did_you_mean(option, _options_below(self))
+        super().error(f"{message}; {meant}" if meant else message)
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        if file is sys.stdout:
+            file.write(message)
+        else:
+            super()._print_message(message, file)
+
+
+def _options_below(parser: argparse.ArgumentParser) -> Iterator[str]:
+    """The long options of a parser and of those below it."""
+    for action in parser._actions:
+        yield from (name for name in action.option_strings if name.startswith("--"))
+        if isinstance(action, argparse._SubParsersAction):
+            for below in action.choices.values():
+                yield from _options_below(below)
+
+
+def _formatter(prog: str) -> argparse.HelpFormatter:
+    """A help formatter as wide as the terminal; left to itself, argparse would import much only to learn that width."""
+    try:
+        columns = int(os.environ.get("COLUMNS", "0")) or os.get_terminal_size().columns
+    except (ValueError, OSError):
+        columns = 80
+    return argparse.HelpFormatter(prog, width=columns - 2)
+
+
+# The name by which argparse asks for words of its own, such as "the following arguments are required". It is gettext's,
+# which looks for catalogues that there are none of, and loads `locale` for that.
+argparse._ = said_in_help  # type: ignore[attr-defined]  # argparse imports it so
+
+
+def _translate_help(parser: argparse.ArgumentParser) -> None:
+    """Put the texts of a parser, and of the parsers below it, into the reader's language."""
+    if language() != "en":
+        _translate(parser)
+
+
+def _translate(parser: argparse.ArgumentParser) -> None:
+    parser.description = said_in_help(parser.description or "")
+    for group in parser._action_groups:
+        group.title = said_in_help(group.title or "")
+    for action in parser._actions:
+        if action.help and action.help != argparse.SUPPRESS:
+            action.help = said_in_help(action.help)
+        if isinstance(action, argparse._SubParsersAction):
+            for choice in action._choices_actions:
+                choice.help = said_in_help(choice.help or "")
+            for below in action.choices.values():
+                _translate(below)
