@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -132,6 +134,6 @@ def _grey(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return grey
 
 
-def _box(corners: NDArray[np.float32]) -> list[float]:
+def _box(corners: NDArray[np.floating[Any]]) -> list[float]:
     """The bounding box of four points: left, top, right, bottom."""
     return [*map(float, corners.min(axis=0)), *map(float, corners.max(axis=0))]
