@@ -2,7 +2,7 @@
 
 ``python -m benchmarks.pictures``, after ``make .build/ros/.ready`` and ``make .build/ros-kilted/.ready ROS=kilted``;
 ``--loops 3`` keeps as many cores busy beside it. Milliseconds are the processor's, for a picture. It measures what
-`docs/decisions/0095-large-messages-to-fast-dds.md` and `0105-large-messages-packet-by-packet.md` tell. Both sides of a
+`docs/decisions/0095-large-messages-to-fast-dds.md` and `0104-large-messages-packet-by-packet.md` tell. Both sides of a
 pair run it, each with its own rclpy.
 """
 

@@ -4,7 +4,7 @@ Cyclone sends all packets of a sample at once. A reader of Fast DDS receives int
 packets of an image are lost: a reliable reader asks for them again, which takes milliseconds for every three packets,
 and a best-effort reader drops the image. Here the packets are sent first, under the GUID and the sequence number of
 Cyclone's writer. Then Cyclone writes the sample, and its packets are duplicates to a reader that has them. Discovery,
-acknowledgements and what is sent again stay with Cyclone (`docs/decisions/0105-large-messages-packet-by-packet.md`).
+acknowledgements and what is sent again stay with Cyclone (`docs/decisions/0104-large-messages-packet-by-packet.md`).
 """
 
 from __future__ import annotations
