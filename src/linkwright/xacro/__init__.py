@@ -1,9 +1,26 @@
 """The macro language xacro, as ros/xacro 2.1 understands it, with positions and without its holes."""
 
-from linkwright.xacro.engine import expand
-from linkwright.xacro.expansion import Expansion
-from linkwright.xacro.inspection import arguments_of, explain
-from linkwright.xacro.limits import Limits
-from linkwright.xacro.origin import Origin
+from typing import TYPE_CHECKING
+
+from linkwright.deferred import deferred
+
+if TYPE_CHECKING:
+    from linkwright.xacro.engine import expand
+    from linkwright.xacro.expansion import Expansion
+    from linkwright.xacro.inspection import arguments_of, explain
+    from linkwright.xacro.limits import Limits
+    from linkwright.xacro.origin import Origin
 
 __all__ = ["Expansion", "Limits", "Origin", "arguments_of", "expand", "explain"]
+
+__getattr__ = deferred(
+    __name__,
+    {
+        "engine": ("expand",),
+        "expansion": ("Expansion",),
+        "inspection": ("arguments_of", "explain"),
+        "limits": ("Limits",),
+        "origin": ("Origin",),
+    },
+)
+"""The engine is loaded where a file is expanded: a check of a plain URDF asks for origins and kept files alone."""
