@@ -1,6 +1,7 @@
 import type { BufferGeometry } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { progressText } from "../src/panels/over-scene/mesh-notice";
+import { mended } from "../src/scene/meshes/collada";
 import { readMesh } from "../src/scene/meshes/formats";
 import type { MeshFiles } from "../src/scene/meshes/mesh-files";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";
@@ -64,6 +65,17 @@ function glb(json: string, said?: number, version = 2): ArrayBuffer {
   new Uint8Array(data).set(text, 20);
   return data;
 }
+
+describe("COLLADA that XML forbids", () => {
+  it.each([
+    ['<node id="<STL_BINARY>" name=\'a<b\'/>', '<node id="&lt;STL_BINARY>"  name=\'a&lt;b\' />'],
+    ['<author a="1"b="2">R&D &amp; &#65; &lt;</author>', '<author a="1" b="2" >R&amp;D &amp; &#65; &lt;</author>'],
+    ["<a><!-- made -- by hand --><b/></a>", "<a><b/></a>"],
+    ["<p>1 0 2</p>", "<p>1 0 2</p>"],
+  ])("is read as RViz reads it: %s", (text, expected) => {
+    expect(mended(text)).toBe(expected);
+  });
+});
 
 describe("STL", () => {
   it("is read, binary and text, also binary that begins as text does", async () => {

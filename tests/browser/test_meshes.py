@@ -53,6 +53,16 @@ def test_every_kind_is_drawn(start, open_page, robot):
     becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
 
 
+def test_collada_is_read_as_loosely_as_rviz_reads_it(start, open_page, robot, tmp_path):
+    """Exporters write what XML forbids: assimp names the nodes of an STL ``<STL_BINARY>``."""
+    proper = (tmp_path / "box.dae").read_text()
+    loose = proper.replace('<node id="body"', '<!-- made -- by hand --><node id="<STL_BINARY>"', 1)
+    assert loose != proper
+    (tmp_path / "loose.dae").write_text(loose)
+    page = open_page(start("view", robot(link("loose", f"file://{tmp_path}/loose.dae", 2))))
+    becomes(lambda: rows(page).get("loose", ("", ""))[0], "ok")
+
+
 STL_OF_NAN = b"\0" * 80 + struct.pack("<I12fH", 1, *[0.0] * 3, math.nan, *[0.0] * 8, 0)
 
 BROKEN = {
