@@ -57,7 +57,7 @@ class PixelNoise:
             self._more, self._less = (np.maximum(each, 0).astype(np.uint8) for each in (drawn, -drawn))
         start = int(self._generator.integers(_PLACES))
         more, less = (each[start : start + colour.size].reshape(colour.shape) for each in (self._more, self._less))
-        noisy = np.maximum(colour, less)  # in bytes, in a sixth of the time of larger numbers that are clipped
+        noisy: Pixels = np.maximum(colour, less)  # in bytes, in a sixth of the time of larger numbers that are clipped
         noisy -= less
         np.invert(noisy, out=noisy)  # and so with how much is missing to white
         np.maximum(noisy, more, out=noisy)
