@@ -8,6 +8,7 @@ import sys
 
 from linkwright.cli import main
 from tests.geometry.test_mesh_faults import COLLADA
+from tests.imports import loaded_by
 from tests.places import PACKAGE
 
 
@@ -28,11 +29,9 @@ def test_checking_a_robot_loads_nothing_of_worlds():
 
     As long takes `importlib.metadata`, which `linkwright.extensions` does without.
     """
-    code = "import sys; from linkwright.cli import main; main(sys.argv[1:]); print(*sorted(sys.modules))"
-    command = [sys.executable, "-c", code, "check", str(PACKAGE / "urdf" / "mbot_base.xacro")]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    assert "linkwright.lint.engine" in done.stdout.split()
-    loaded = set(done.stdout.split())
+    words = ["check", str(PACKAGE / "urdf" / "mbot_base.xacro")]
+    loaded = loaded_by(f"from linkwright.cli import main; main({words})")
+    assert "linkwright.lint.engine" in loaded
     assert not {"asyncio", "importlib.metadata", "linkwright.sdf", "linkwright.graph", "tomllib"} & loaded
     assert "linkwright.lint.rules.names_text" in loaded
     assert not {"linkwright.lint.rules.launch_nodes", "linkwright.lint.rules.package_manifest"} & loaded

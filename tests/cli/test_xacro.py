@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import io
-import subprocess
-import sys
 
 import pytest
 
 from linkwright.cli import main
 from linkwright.cli.command import parser_for
 from linkwright.cli.xacro import without_options
+from tests.imports import loaded_by
 
 ROBOT = """<?xml version="1.0"?>
 <robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -36,10 +35,9 @@ def test_text_goes_to_standard_output(model, capsys):
 
 def test_the_command_loads_little(model):
     """What takes long to import is not, where a file is only expanded: people type this often, and build tools do."""
-    code = "import sys; from linkwright.cli import main; main(sys.argv[1:]); print(*sorted(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code, "xacro", str(model)], check=True, capture_output=True, text=True)
+    loaded = loaded_by(f"from linkwright.cli import main; main(['xacro', {str(model)!r}])")
     seldom_needed = {"asyncio", "linkwright.packages", "linkwright.xmltree.positions", "locale", "numpy", "pathlib"}
-    assert not (seldom_needed | {"tempfile", "unicodedata", "yaml"}) & set(done.stdout.split())
+    assert not (seldom_needed | {"tempfile", "unicodedata", "yaml"}) & loaded
 
 
 def test_values_and_output_file(model, tmp_path, capsys):
@@ -93,9 +91,7 @@ def test_a_command_line_without_options_asks_for_the_same_without_a_parser():
 def test_a_plain_command_imports_no_parser_of_command_lines(tmp_path):
     """It takes as long as the expansion of a small file."""
     (tmp_path / "small.xacro").write_text('<robot name="r"/>', encoding="utf-8")
-    code = "import sys; from linkwright.cli import main; main(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
-    words = [sys.executable, "-c", code, "xacro", str(tmp_path / "small.xacro"), "a:=1"]
-    loaded = subprocess.run(words, check=True, capture_output=True, text=True).stderr.split()
+    loaded = loaded_by(f"from linkwright.cli import main; main(['xacro', {str(tmp_path / 'small.xacro')!r}, 'a:=1'])")
     slow = {"argparse", "ast", "contextlib", "dataclasses", "gettext", "inspect", "pathlib", "warnings", "xml.parsers"}
-    assert not slow & set(loaded)
+    assert not slow & loaded
     assert "linkwright.xacro.engine" in loaded

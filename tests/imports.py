@@ -1,0 +1,20 @@
+"""Which modules a program loads."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+_ALWAYS = "import importlib, typing"
+"""What every program of ours imports; with Python 3.10 these load more than with later ones."""
+
+
+def loaded_by(code: str) -> set[str]:
+    """The modules that a process loads for some code, besides those of `_ALWAYS`."""
+    return _modules(code) - _modules(_ALWAYS)
+
+
+def _modules(code: str) -> set[str]:
+    program = f"import sys; {code}; print(*sys.modules, file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
+    return set(done.stderr.splitlines()[-1].split())
