@@ -22,9 +22,12 @@ settings.load_profile("unhurried")
 
 _MODULE_OF_EXTRA = re.compile(r"^pytestmark = \[?\s*pytest\.mark\.extra\(", re.MULTILINE)
 
-# Shells start what runs in the background without SIGINT, and programs inherit that: tests of Ctrl-C would never end.
+# Shells start what runs in the background without SIGINT, nohup without SIGHUP, and programs inherit that: tests of how
+# they end would never end.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 @pytest.hookimpl(wrapper=True)
