@@ -26,9 +26,11 @@ TITLES = {
     "viewer": ("Viewer", "查看器"),
     "page": ("Page", "网页"),
     "simulation": ("Simulation", "仿真"),
+    "control": ("ros2_control", "ros2_control"),
     "drives": ("Controllers of drives", "底盘控制器"),
     "sizes": ("Sizes", "规模"),
     "voice": ("Voice", "语音"),
+    "vision": ("Detectors", "检测器"),
     "contributing": ("A first test", "第一次测试"),
 }
 _ENGLISH = """# Benchmarks
