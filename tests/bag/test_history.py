@@ -10,7 +10,7 @@ import pytest
 from linkwright.bag import History, shrinking
 from linkwright.bag.saving import in_simulated_time, last_reset_ns
 from linkwright.bag.shrinking import whole
-from linkwright.bag.stillness import content_of
+from linkwright.bag.stillness import Content, content_of
 from linkwright.messages import TFMessage, TransformBatch, deserialize, get_message, serialize
 from tests.waiting import wait_until
 
@@ -347,3 +347,28 @@ def test_what_is_thinned_goes_back_ten_minutes_and_no_further() -> None:
         clock.ns = frame * SECOND
         history.add("/camera", bytes(15_000))
     assert 500 <= (clock.ns - history.start_ns) / SECOND <= 600
+
+
+def content_of_poses(children: tuple[str, ...], numbers: list[list[float]], stamp_ns: int = 0) -> Content:
+    batch = TransformBatch(("odom",) * len(children), children, stamp_ns, np.array(numbers))
+    found = content_of(TFMessage.TYPE_NAME, serialize(TFMessage(batch=batch)))
+    assert found is not None
+    return found
+
+
+def test_the_content_of_transforms_has_their_frames_and_poses_without_stamps() -> None:
+    left, right = [1.0, 2, 3, 0, 0, 0, 1], [4.0, 5, 6, 0, 0, 1, 0]
+    for children, numbers in ((("a", "b"), [left, right]), (("c", "d"), [left, right]), (("c", "d"), [right, left])):
+        found = content_of_poses(children, numbers, 7)
+        assert found.what.replace("\0", "") == "\n".join(children)
+        assert np.frombuffer(found.poses).reshape(-1, 7).tolist() == numbers
+        assert found == content_of_poses(children, numbers, 9_000_000_000)
+        assert found.is_repeated_by(content_of_poses(children, numbers))
+    assert not content_of_poses(("a", "b"), [left, right]).is_repeated_by(content_of_poses(("a", "c"), [left, right]))
+
+
+@pytest.mark.parametrize("number", [float("inf"), float("nan")])
+def test_poses_that_are_not_finite_repeat_themselves_to_the_bit_alone(number: float) -> None:
+    pose = content_of_poses(("a",), [[number, 2, 3, 0, 0, 0, 1]])
+    assert pose.is_repeated_by(content_of_poses(("a",), [[number, 2, 3, 0, 0, 0, 1]], 5))
+    assert not pose.is_repeated_by(content_of_poses(("a",), [[number, 2, 3.1, 0, 0, 0, 1]]))
