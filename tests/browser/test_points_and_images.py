@@ -220,7 +220,7 @@ def test_an_image_has_a_panel_of_its_own(live, open_page):
 
 
 def layers(page: Any) -> list[str]:
-    """The layers of which the browser composes the page, by the attributes of their elements."""
+    """The layers that the browser composes the page of, by the attributes of their elements."""
     tools = page.context.new_cdp_session(page)
     told: list[list[dict[str, Any]]] = []
     tools.on("LayerTree.layerTreeDidChange", lambda event: told.append(event.get("layers", [])))

@@ -41,7 +41,7 @@ _MOST_SWEEPS = 30
 
 
 def largest_entry(tensor: Array | Matrix) -> float:
-    """The largest absolute value in a tensor; 0 where one is no finite number."""
+    """The largest absolute value in a tensor; 0 where an entry is not finite."""
     entries = [abs(float(entry)) for entry in chain.from_iterable(tensor)]
     return max(entries) if all(map(isfinite, entries)) else 0.0
 

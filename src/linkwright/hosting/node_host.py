@@ -109,7 +109,7 @@ class NodeHost:
     async def give_out_pages(self) -> None:
         """Give out the pages of the viewers that are planned, and load meanwhile what these are made of.
 
-        A server that cannot listen is told of when its viewer is started.
+        A server that cannot listen raises its error when its viewer is started.
         """
         planned = [plan for plan in self._planned if plan.is_viewer]
         for plan in planned:

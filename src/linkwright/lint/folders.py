@@ -26,7 +26,7 @@ Parts: TypeAlias = "tuple[Path, frozenset[str], frozenset[str]]"
 
 MISSING_PACKAGE = "PKG101"
 _OF_NAMED_FILES = frozenset({"LINT302", "SDF160", "SDF162"})
-"""Findings whose information matters where a file was named: it is no robot by itself, or Gazebo fetches its models."""
+"""Findings that matter as information where a file was named: it is a part of a robot, or Gazebo fetches its models."""
 _GIVEN_BY_USERS = "XAC214"
 """An environment variable without a value: whoever starts the robot sets it."""
 _NO_LINK = "URDF150"

@@ -86,7 +86,7 @@ class MeshFacts:
         return None
 
     def outline(self, shape: Visual | Collision) -> Outline | None:
-        """The outline of a shape's mesh, scaled, in the shape's frame; None where it cannot be read or is no mesh."""
+        """The outline of a shape's mesh, scaled, in the shape's frame; None without a readable mesh."""
         if not isinstance(shape.geometry, Mesh):
             return None
         try:

@@ -140,7 +140,7 @@ class WheelHasLimits(Rule):
     A revolute joint stops at its limits, so the wheel turns once and stands. A wheel turns without end, which is what
     `continuous` means. A joint that steers the wheel has limits by right: it is told by its axis, which is not that of
     the wheel's cylinder, or, where the wheel has no cylinder, does not lie to the side. A part that
-    carries wheels, such as the arm of a rover, is no wheel.
+    carries wheels, such as the arm of a rover, is not a wheel.
 
     ## Example
 
