@@ -26,16 +26,21 @@ FLOOR = """
 </visual></link></model>"""
 
 
+def renderer_of(simulation: Simulation, way: str):
+    """A renderer of one way; a test of a way that the system lacks is skipped."""
+    try:
+        return make_renderer(simulation, way)
+    except Exception as error:  # noqa: BLE001 - a library that is not there fails in many ways
+        pytest.skip(f"no {way} here: {error}")
+
+
 @pytest.fixture(params=WAYS)
 def make(request: pytest.FixtureRequest):
     """Makes a renderer one way; the ways that the system lacks are left out."""
     made = []
 
     def renderer(simulation: Simulation):
-        try:
-            each = make_renderer(simulation, request.param)
-        except Exception as error:  # noqa: BLE001 - a library that is not there fails in many ways
-            pytest.skip(f"no {request.param} here: {error}")
+        each = renderer_of(simulation, request.param)
         made.append(each)
         return each
 
@@ -298,10 +303,7 @@ def drawn(request: pytest.FixtureRequest):
     def draw(simulation: Simulation):
         from OpenGL import GL
 
-        try:
-            renderer = make_renderer(simulation, request.param)
-        except Exception as error:  # noqa: BLE001 - a library that is not there fails in many ways
-            pytest.skip(f"no {request.param} here: {error}")
+        renderer = renderer_of(simulation, request.param)
         try:
             renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR)
             (query,) = GL.glGenQueries(1, np.zeros(1, np.uint32))
