@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import io
 import re
 import socket
@@ -64,6 +65,27 @@ async def test_the_viewer_comes_first(tmp_path: Path) -> None:
         await until("Robot initialized")
         printed = await until("joint_state_publisher_gui-2]: started")
         assert names_started(printed) == ["viewer-3", "robot_state_publisher-1", "joint_state_publisher_gui-2"]
+
+
+async def test_a_page_whose_viewer_cannot_be_made_is_given_out_no_longer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "m.urdf").write_text(GOOD)
+    printed = io.StringIO()
+    options = HostOptions(port=0, open_browser=False, network=False)
+    finder = PackageFinder(start=tmp_path, environment={})
+    view = ModelView(XacroCall(tmp_path / "m.urdf"), finder, options, LaunchLog(printed, printed))
+
+    def refuse(*_: object, **__: object) -> None:
+        raise RuntimeError("no viewer today")
+
+    monkeypatch.setattr("linkwright.viewer.Viewer", refuse)
+    with contextlib.suppress(RuntimeError):
+        await view.run(None)
+    port = re.search(r"Viewer: http://127\.0\.0\.1:(\d+)/", printed.getvalue())
+    assert port is not None, printed.getvalue()
+    with socket.socket() as asking:
+        assert asking.connect_ex(("127.0.0.1", int(port[1]))) != 0
 
 
 async def test_the_address_is_told_before_the_viewer_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -113,7 +113,7 @@ class ViewerHost:
             from linkwright.hosting.world_config import show_world
 
             show_world(config)
-        server = self._servers.pop(plan.process_name, None)
+        server = self._servers.get(plan.process_name)  # still ours to close where no viewer can be made
         is_given_out = server is not None
         if server is None:
             server = PageServer(session.options.host, self._port_for(plan))
@@ -127,6 +127,7 @@ class ViewerHost:
             options=plan.node_options(session.descriptions.library),
             history=session.options.history,
         )
+        self._servers.pop(plan.process_name, None)
         viewer.guests = GuestRecordings(viewer)
         await viewer.start()
         self._viewers[plan.process_name] = plan, viewer
