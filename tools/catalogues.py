@@ -104,7 +104,7 @@ class Source:
         if named == "GROUPS":
             inner = [each for each in ast.walk(node.value) if isinstance(each, ast.Dict) and each is not node.value]
             texts = [text for verbs in inner for text in verbs.values]
-        elif named == "LANGUAGE_HELP":
+        elif named and named.endswith("_HELP"):
             texts = [node.value]
         elif isinstance(node, ast.keyword) and node.arg and node.arg.endswith(("help", "title", "description")):
             texts = [node.value]

@@ -11,7 +11,9 @@ import sys
 import pytest
 from PIL import Image
 
-from linkwright.cli.command import parser_for
+from linkwright.cli.command import SUMMARY_HELP, parser_for
+from linkwright.cli.language import said_in_help
+from linkwright.diagnostics.translation import set_language
 from tests.docs.pages import READMES
 from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
@@ -32,6 +34,16 @@ def test_badges_say_what_the_project_says(page):
     ]
 
 
+@pytest.mark.parametrize(("page", "language"), [(READMES[0], "en"), (READMES[1], "zh")])
+def test_one_sentence_says_what_linkwright_is(page, language):
+    set_language(language)
+    try:
+        assert f"\n**{said_in_help(SUMMARY_HELP)}**\n" in page.read_text(encoding="utf-8")
+    finally:
+        set_language(None)
+    assert PROJECT["description"] == SUMMARY_HELP
+
+
 def test_the_picture_moves_for_ten_seconds_and_is_small():
     assert PICTURE.stat().st_size < 2_000_000
     with Image.open(PICTURE) as picture:
@@ -48,7 +60,7 @@ def test_the_readme_of_a_package_has_no_links_into_the_repository():
     text = load_tool("package_readme").package_readme()
     prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
     assert [target for target in re.findall(r"\]\(([^)]*)\)", prose) if not target.startswith("https://")] == []
-    assert "a tutorial, pages about the viewer" in " ".join(prose.split())
+    assert "build mbot from an empty folder: its description," in " ".join(prose.replace("*", "").split())
 
 
 def test_the_readme_of_a_package_installs_from_an_index():

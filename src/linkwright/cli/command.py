@@ -24,49 +24,55 @@ if TYPE_CHECKING:
     from linkwright.cli.nested import SubVerb
 
 GROUPS = {
-    "descriptions": {
-        "view": "show a URDF or xacro file in the browser, with sliders for its joints",
-        "drive": "put a robot into a simulated world and drive it; masses, collisions and wheels are inferred",
-        "xacro": "expand a xacro file to URDF, list its arguments, or explain its parts",
-        "check": "check URDF and xacro files, and the packages in folders; of one file, print the link tree",
-        "diff": "say what changed from one description to another, or since a commit: links, joints, origins, masses",
-        "explain": "say what a diagnostic code means and what to do, or what an element or attribute of URDF means",
-        "inertia": "judge mass and inertia of each link by its shapes, print those computed from them, or write them",
-        "world": "list the worlds and models that there are, begin a new world, or check one",
-        "diagram": "draw the links and joints of a model as urdf_to_graphviz does (.gv and PDF or SVG)",
-        "export": "write a model as one HTML file that opens in any browser, or as glTF (.glb)",
-        "convert": "write a robot or world as one SDF file, as gz makes it of a URDF, as URDF, or as MJCF for MuJoCo",
+    "robot descriptions": {
+        "view": "show a URDF or xacro file in the browser, with joint sliders",
+        "check": "check URDF, xacro and SDF files and whole packages; for one file, print its link tree",
+        "xacro": "expand a xacro file to URDF, list its arguments, or explain its elements",
+        "diff": "compare two descriptions, or a description with a commit: links, joints, origins, masses",
+        "explain": "explain a diagnostic code, or an element or attribute of URDF",
+        "inertia": "compare masses and inertias with the shapes, compute them, or write them",
+        "diagram": "draw links and joints as urdf_to_graphviz does (.gv and PDF or SVG)",
+        "export": "write a robot as one HTML file for any browser, or as glTF (.glb)",
+        "convert": "convert a robot or world to SDF, to URDF, or to MJCF for MuJoCo",
     },
-    "packages and running them": {
-        "pkg": "create ROS packages, and tell where they are and what is in them",
-        "run": "run an executable of a package: ours, a built one, or an entry point of its sources",
-        "sim": "simulate a world, with a robot in it, in the browser or without",
-        "sweep": "run a scenario over parameters and seeds, in many processes, and make a table of what comes of it",
-        "dataset": "make pictures of a world with labels, in COCO and YOLO form, to teach a detector with",
-        "spawn": "put a robot or model into a world that is being simulated",
-        "launch": "run a ROS 2 launch file, with its rviz2 as a page in the browser",
-        "test": "run the tests of a file for launch_testing, beside the launch that it describes",
-        "shell": "open a shell in which ros2, launch_test, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon exist",
-        "completion": "print what makes TAB complete command lines in bash, zsh or fish",
-        "bag": "record topics, play recordings and tell what is in them",
-        "models": "fetch models for speech and vision that others trained, check and remove them",
-        "voice": "try engines of speech on recordings, and enrol words",
-        "vision": "find things in pictures with detectors",
+    "packages and launch files": {
+        "launch": "run a ROS 2 launch file; rviz2 opens as a page in the browser",
+        "run": "run an executable of a package, built or from its sources",
+        "pkg": "create ROS packages, find them, and list their contents",
+        "test": "run the launch_testing tests of a file",
+        "shell": "open a shell with ros2, launch_test, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon",
     },
-    "the running graph, as ros2 does": {
+    "simulation": {
+        "drive": "drive a robot in a simulated world; missing masses, collisions and wheels are inferred",
+        "sim": "simulate a world, with or without a robot, in the browser or headless",
+        "world": "list worlds and models, create a world, or check one",
+        "spawn": "add a robot or model to a running simulation",
+        "sweep": "run a scenario over parameters and seeds in parallel, and tabulate the results",
+        "dataset": "render labelled images of a world in COCO and YOLO form, to train a detector",
+    },
+    "vision and voice": {
+        "vision": "detect objects in images; train and evaluate detectors",
+        "voice": "try speech engines on recordings, and enrol words",
+        "models": "download, verify and remove models for speech and vision",
+    },
+    "the running graph, as in ros2": {
         "topic": "list, print, publish and measure topics",
         "node": "list and describe nodes",
         "param": "list, read and set parameters of nodes",
         "service": "list and call services",
         "action": "list actions and send goals",
         "interface": "list and show types of messages, services and actions",
-        "lifecycle": "look at and change the states of managed nodes",
-        "component": "load nodes into containers, list and unload them",
-        "control": "look at and change the controllers and the hardware of ros2_control",
-        "bridge": "carry topics and services between DDS and Zenoh, both ways",
-        "daemon": "accepted for ros2's sake: there is no daemon, and none is needed",
+        "lifecycle": "show and change the states of managed nodes",
+        "component": "load, list and unload components in containers",
+        "control": "show and change the controllers and hardware of ros2_control",
+        "bag": "record topics, play recordings, and describe them",
+        "bridge": "carry topics and services between DDS and Zenoh",
         "doctor": "explain what is wrong with the running nodes, topics and frames",
-        "multicast": "send or wait for a datagram, to see whether the network carries multicast",
+        "multicast": "send or receive a datagram, to test multicast on the network",
+        "daemon": "accepted for compatibility with ros2; Linkwright has no daemon",
+    },
+    "this program": {
+        "completion": "print the completion script for bash, zsh or fish",
     },
 }
 """The verbs in the order in which the help lists them, with what it says of them.
@@ -84,13 +90,19 @@ _IN_ORDER = frozenset({"pkg", "run", "shell"})
 """Verbs whose words are taken in order, beside those with verbs of their own: what follows is another command's.
 Elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
 
-_WITH_A_LOOP = frozenset(
-    {"view", "drive", "run", "sim", "spawn", "launch", "bag", *GROUPS["the running graph, as ros2 does"]}
-)
+_WITH_A_LOOP = frozenset({"view", "drive", "run", "sim", "spawn", "launch", *GROUPS["the running graph, as in ros2"]})
 """Verbs that run an event loop or another program, which care for Ctrl-C themselves; before they do there is nothing to
 be cleaned up."""
 
 PROGRAM = "linkwright"
+
+SUMMARY_HELP = (
+    "A ROS 2 workbench for a robot: "
+    "describe it, check it, see it, simulate it, drive it and test it, without installing ROS."
+)
+"""What Linkwright is, in one sentence: the same in pyproject.toml, the READMEs and the documentation."""
+
+MORE_HELP = "`linkwright COMMAND --help` describes a command. `linkwright --version` prints the version."
 
 _OPTIONS = ("--help", "--lang", "--version")
 """Those that stand before a command, or for one."""
@@ -205,10 +217,10 @@ def _unknown(name: str, known: Iterable[str], prog: str) -> int:
 
 def _overview() -> str:
     width = max(map(len, VERBS))
-    lines = ["usage: linkwright COMMAND ...", "", "Robot descriptions the ROS 2 way, without ROS."]
+    lines = ["usage: linkwright COMMAND ...", "", said_in_help(SUMMARY_HELP)]
     for title, verbs in GROUPS.items():
         lines += ["", f"{said_in_help(title)}:"]
         lines += [f"  {name:{width}}  {said_in_help(text)}" for name, text in verbs.items()]
-    lines += ["", "options of all commands:", f"  --lang LANGUAGE  {said_in_help(LANGUAGE_HELP)}"]
-    lines += ["", "`linkwright COMMAND --help` says more. `linkwright --version` prints the version."]
+    lines += ["", f"{said_in_help('options of all commands')}:", f"  --lang LANGUAGE  {said_in_help(LANGUAGE_HELP)}"]
+    lines += ["", said_in_help(MORE_HELP)]
     return "\n".join(lines)
