@@ -40,7 +40,7 @@ def measured(library: str, kind: str, rate: float) -> dict[str, float] | None:
         )
         for side in ("receive", "send")
     ]
-    outputs = [each.communicate(timeout=90)[0].splitlines() for each in sides]
+    outputs = [side.communicate(timeout=90)[0].splitlines() for side in sides]
     if not all(outputs):
         return None
     received, sent = (Result(**json.loads(lines[-1])) for lines in outputs)

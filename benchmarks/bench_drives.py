@@ -63,7 +63,9 @@ class _Fleet:
         assert not isinstance(measured, Interfaces)
         controller.commands = [CommandInterface(*_parts(each)) for each in asked]
         controller.states = [StateInterface(*_parts(each), 0.1) for each in measured]
-        controller.references = [CommandInterface("drive", each) for each in controller.reference_interfaces()]
+        controller.references = [
+            CommandInterface("drive", reference_interface) for reference_interface in controller.reference_interfaces()
+        ]
         controller.on_activate()
         controller.chained = True
         return controller

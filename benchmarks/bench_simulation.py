@@ -188,7 +188,7 @@ async def _row(case: Case) -> Row:
         await graph.close()
         if bullet is not None:
             bullet.close()
-    ours, *others = (statistics.median(each) * 1000 * NANOSECONDS / _SLICE for each in turns if each)
+    ours, *others = (statistics.median(turn) * 1000 * NANOSECONDS / _SLICE for turn in turns if turn)
     names = ("MuJoCo", "pybullet")
     beside: dict[str, float | None] = dict(zip(names, others, strict=False))
     return Row(case.what, ours, "ms", case.target, beside | ({"pybullet": None} if case.bullet and not bullet else {}))

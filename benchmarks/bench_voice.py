@@ -52,7 +52,7 @@ class _Tally:
     delays: list[float] = field(default_factory=list)
 
     def __add__(self, other: _Tally) -> _Tally:
-        return _Tally(*(getattr(self, each.name) + getattr(other, each.name) for each in fields(self)))
+        return _Tally(*(getattr(self, field.name) + getattr(other, field.name) for field in fields(self)))
 
     def rows(self, about: str) -> Iterator[Row]:
         yield Row(
@@ -142,12 +142,12 @@ def rows() -> list[Row]:
         tallies = list(pool.map(_tallies, speakers, [Path(folder)] * len(speakers)))
         found: list[Row] = []
         for about in CONDITIONS:
-            tally = sum((each[about] for each in tallies), _Tally())
+            tally = sum((tally[about] for tally in tallies), _Tally())
             found += tally.rows(about)
             if tally.delays:
                 found.append(Row(f"{about}: stop known after its end, median", 1e3 * median(tally.delays), "ms"))
                 found.append(Row(f"{about}: stop known after its end, latest", 1e3 * max(tally.delays), "ms", "300"))
-        other = sum((each[_OTHER_VOICE] for each in tallies), _Tally())
+        other = sum((tally[_OTHER_VOICE] for tally in tallies), _Tally())
         found += list(other.rows(_OTHER_VOICE))
         if speakers:
             reading = pool.submit(_reading, speakers, Path(folder))

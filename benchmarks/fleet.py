@@ -123,10 +123,10 @@ def measure(robots: int) -> dict[str, float]:
         ]
         listener = start(session_settings, "benchmarks.fleet", "listen", str(robots))
         begin = time.monotonic()
-        for each in (*parts, listener):
-            ending.callback(each.kill)
-            assert each.stdout is not None
-            assert each.stdout.readline() == "ready\n"
+        for part in (*parts, listener):
+            ending.callback(part.kill)
+            assert part.stdout is not None
+            assert part.stdout.readline() == "ready\n"
         joined = time.monotonic() - begin
         used = {each.pid: psutil.Process(each.pid) for each in (router, *parts)}
         discovery = settle(used)

@@ -112,5 +112,5 @@ def _recorded(storage: str, gigabytes: float) -> Iterator[tuple[Path, float]]:
                     seen = scan(angle_min=-3.14, angle_max=3.14, angle_increment=0.0087, range_max=30.0, ranges=ranges)
                     seen.header = made.header
                     writer.write("/scan", stamp, serialize(seen))
-        (file,) = [each for each in (Path(folder) / "drive").iterdir() if each.suffix in (".mcap", ".db3")]
+        (file,) = [path for path in (Path(folder) / "drive").iterdir() if path.suffix in (".mcap", ".db3")]
         yield file, (count - 1) / _RATE

@@ -264,7 +264,10 @@ _HARD_EXPRESSIONS = [
 ]
 _HARD_SEEDS: dict[str, list[str]] = {
     "expression-text": _HARD_EXPRESSIONS,
-    "xacro-text": [f'{BUILT_IN}<a v="${{{each.replace("<", "&lt;")}}}"/></robot>' for each in _HARD_EXPRESSIONS],
+    "xacro-text": [
+        f'{BUILT_IN}<a v="${{{hard_expression.replace("<", "&lt;")}}}"/></robot>'
+        for hard_expression in _HARD_EXPRESSIONS
+    ],
     "yaml-text": [
         "{" + ", ".join(f"{n * 2305843009213693951}: 1" for n in range(60)) + "}",
         "a: &a [x, x, x]\nb: &b [*a, *a, *a]\nc: &c [*b, *b, *b]\nd: [*c, *c, *c]",

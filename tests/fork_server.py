@@ -131,8 +131,8 @@ def main() -> None:
     """Import, serve until the tests end, and be a program in each process that was forked."""
     for name in _IMPORTED:
         package = importlib.import_module(name)
-        for each in pkgutil.walk_packages(getattr(package, "__path__", ()), f"{name}."):
-            importlib.import_module(each.name)
+        for walk_package in pkgutil.walk_packages(getattr(package, "__path__", ()), f"{name}."):
+            importlib.import_module(walk_package.name)
     gc.collect()
     gc.freeze()  # Looking for garbage would write to memory that is shared, and so copy it.
     control = socket.socket(fileno=int(sys.argv[1]))

@@ -23,7 +23,7 @@ class Outside(Transport):
         pass
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
-        return list(dict.fromkeys(each.node for each in self.publishers if each.node is not None))
+        return list(dict.fromkeys(publisher.node for publisher in self.publishers if publisher.node is not None))
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
         return self.publishers

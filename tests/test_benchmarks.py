@@ -10,7 +10,7 @@ import pytest
 
 NODES = {"soak_parts"}
 """Programs that run where ROS 2's names can be imported."""
-MODULES = {each.name for each in pkgutil.iter_modules(benchmarks.__path__)} - NODES - {"__main__"}
+MODULES = {iter_module.name for iter_module in pkgutil.iter_modules(benchmarks.__path__)} - NODES - {"__main__"}
 
 
 @pytest.mark.parametrize("name", sorted(MODULES))

@@ -200,7 +200,7 @@ def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Includ
     while way:
         here = way[-1]
         steps = [(here[0] + dx, here[1] + dy) for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1))]
-        new = [each for each in steps if each not in seen and all(0 <= value < size for value in each)]
+        new = [step for step in steps if step not in seen and all(0 <= value < size for value in step)]
         if not new:
             way.pop()
             continue

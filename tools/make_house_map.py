@@ -42,7 +42,7 @@ def house_map() -> Grid:
     """The map: 5 cm cells, the frame of the world."""
     world = read_world(str(PACKAGE / "worlds" / "house.world")).world
     grid = _seen(world)
-    bare = _seen(replace(world, models=tuple(each for each in world.models if each.name == WALLS)))
+    bare = _seen(replace(world, models=tuple(model for model in world.models if model.name == WALLS)))
     grid.cells[(grid.cells == UNKNOWN) & (bare.cells == OCCUPIED)] = OCCUPIED
     return grid
 

@@ -61,7 +61,7 @@ def typescript(annotation: object, aliases: Mapping[Any, str]) -> str:
 
 def generate() -> dict[str, str]:
     """Every file by its name: one for each module, and the index that the page imports from."""
-    names = [each.name for each in pkgutil.iter_modules(protocol.__path__)]
+    names = [iter_module.name for iter_module in pkgutil.iter_modules(protocol.__path__)]
     modules = {name: importlib.import_module(f"{protocol.__name__}.{name}") for name in names}
     homes = {own: _file(name) for name, module in modules.items() for own in _own_names(module)}
     files = {
@@ -103,7 +103,7 @@ def _module_text(name: str, module: ModuleType, homes: Mapping[str, str]) -> str
 def _index_text(homes: Mapping[str, str]) -> str:
     """The unions of what is registered, and everything that the modules export."""
     unions = {
-        base.__name__: sorted(each.__name__ for each in base.__subclasses__() if each.__name__ in homes)
+        base.__name__: sorted(subclass.__name__ for subclass in base.__subclasses__() if subclass.__name__ in homes)
         for base in _UNIONS
     }
     lines = [_HEAD.format(source="src/linkwright/viewer/protocol/__init__.py")]

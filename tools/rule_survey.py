@@ -59,7 +59,7 @@ def print_table(found: dict[Path, list[Diagnostic]]) -> None:
     robots: Counter[tuple[int, str]] = Counter()
     order = list(Severity)
     for diagnostics in found.values():
-        keys = [(order.index(each.severity), each.code) for each in diagnostics]
+        keys = [(order.index(diagnostic.severity), diagnostic.code) for diagnostic in diagnostics]
         findings.update(keys)
         robots.update(set(keys))
     print(f"{len(found)} descriptions and packages")
@@ -71,7 +71,7 @@ def print_table(found: dict[Path, list[Diagnostic]]) -> None:
 
 def print_sample(found: dict[Path, list[Diagnostic]], code: str) -> None:
     """Findings of a code, one of each robot before the second of any."""
-    mine = [[each for each in diagnostics if each.code == code] for diagnostics in found.values()]
+    mine = [[diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in found.values()]
     picked = [each[turn] for turn in range(_SAMPLE) for each in mine if len(each) > turn]
     for each in picked[:_SAMPLE]:
         print(f"{each.severity.value}[{each.code}] {each.span or '-'}: {each.message} ({each.hint or '-'})")

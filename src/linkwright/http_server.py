@@ -21,7 +21,7 @@ def _enter_package() -> None:
     if spec is None or spec.loader is None or spec.origin is None:
         return  # the import below says what is wrong
     package, loader, lock = module_from_spec(spec), spec.loader, RLock()
-    installed = [each.stem for each in Path(spec.origin).parents[1].glob("aiohttp-*.dist-info")]
+    installed = [path.stem for path in Path(spec.origin).parents[1].glob("aiohttp-*.dist-info")]
 
     def missing(name: str) -> Any:
         if name == "__version__" and len(installed) == 1:
@@ -40,7 +40,7 @@ def _enter_package() -> None:
 
 def _leave_package() -> None:
     """Take all of aiohttp from among the loaded modules, so that it is loaded from the beginning."""
-    for name in [each for each in sys.modules if each == "aiohttp" or each.startswith("aiohttp.")]:
+    for name in [module for module in sys.modules if module == "aiohttp" or module.startswith("aiohttp.")]:
         del sys.modules[name]
 
 

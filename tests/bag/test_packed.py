@@ -38,7 +38,7 @@ def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length:
 @pytest.mark.parametrize("plugin", PLUGINS)
 def test_the_file_alone_says_what_its_folder_says(tmp_path: Path, plugin: StoragePlugin, mode: CompressionMode) -> None:
     folder = recorded(tmp_path / "bag", plugin, mode)
-    (file,) = (each for each in folder.iterdir() if each.name != "metadata.yaml")
+    (file,) = (path for path in folder.iterdir() if path.name != "metadata.yaml")
     alone = tmp_path / file.name
     shutil.copy(file, alone)
     assert is_recording(alone)
@@ -59,7 +59,7 @@ def test_of_a_packed_file_that_was_cut_off_what_is_whole_is_read(tmp_path: Path)
     cut = tmp_path / "cut.mcap.zstd"
     cut.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     with BagReader(cut) as bag:
-        assert [each.code for each in bag.findings] == ["BAG109"]
+        assert [finding.code for finding in bag.findings] == ["BAG109"]
         assert 0 < len(list(bag.messages())) < 20_000
 
 

@@ -119,7 +119,7 @@ def test_a_recording_without_an_index_is_given_one(tmp_path: Path, way: str, com
         assert list(bag.messages()) == whole
         assert bag.state_at(TOPICS, at) == state
         assert bag.counts(4) == counts
-        assert {each.name: each.count for each in bag.topics} == {name: sum(row) for name, row in counts.items()}
+        assert {topic.name: topic.count for topic in bag.topics} == {name: sum(row) for name, row in counts.items()}
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
@@ -147,7 +147,7 @@ def test_any_moment_is_found_as_if_all_were_read(tmp_path: Path, storage: str) -
             before = [each for each in whole if each[1] <= at]
             transforms = [each for each in before if each[0] == "/tf"]
             since = min(at, transforms[-1][1] if transforms and transforms[-1][1] < at - 2 * SECOND else at)
-            moving = [each for each in transforms if each[1] >= since - 2 * SECOND]
+            moving = [transform for transform in transforms if transform[1] >= since - 2 * SECOND]
             last = [[each for each in before if each[0] == topic][-1:] for topic in ("/a", "/b")]
             static = [each for each in before if each[0] == "/tf_static"]
             assert sorted(bag.state_at(topics, at)) == sorted([*static, *moving, *last[0], *last[1]])
@@ -300,7 +300,7 @@ def test_a_recording_without_messages_says_so(tmp_path: Path) -> None:
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/tf", TF, [DEFAULT_QOS])
     with BagReader(tmp_path / "bag") as bag:
-        assert [each.code for each in bag.findings] == ["BAG113"]
+        assert [finding.code for finding in bag.findings] == ["BAG113"]
 
 
 async def test_at_the_end_it_stays_or_begins_anew(shown: Shown) -> None:
@@ -351,7 +351,7 @@ async def test_a_chunk_that_is_damaged_pauses_and_tells(tmp_path: Path) -> None:
     shown.playback.play()
     shown.playback.seek(START + 12 * SECOND)
     await shown.settle()
-    assert [each.diagnostics[0].code for each in shown.failures] == ["BAG102"]
+    assert [failure.diagnostics[0].code for failure in shown.failures] == ["BAG102"]
     assert not shown.playback.playing
     shown.playback.close()
     shown.bag.close()

@@ -78,7 +78,7 @@ async def test_another_file_is_begun_and_told_of(scene, tmp_path: Path) -> None:
     assert scene.events == [("bag_0.mcap", "bag_1.mcap")]
     assert scene.recorded() == ["one", "two"]
     with BagReader(tmp_path / "bag") as bag:
-        assert [each.name for each in bag.files] == ["bag_0.mcap", "bag_1.mcap"]
+        assert [file.name for file in bag.files] == ["bag_0.mcap", "bag_1.mcap"]
 
 
 async def test_a_snapshot_is_all_that_is_written_in_snapshot_mode(scene) -> None:

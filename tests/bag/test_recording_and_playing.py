@@ -309,7 +309,7 @@ async def test_a_type_that_no_package_has_is_known_by_what_the_recording_carries
         graph.create_node("listener").create_subscription(
             probe,
             "/probe",
-            lambda m: heard.append((m.depth, [each.label for each in m.samples], m.header.frame_id)),
+            lambda m: heard.append((m.depth, [sample.label for sample in m.samples], m.header.frame_id)),
             10,
         )
         player = Player(player_node, bag, PlayOptions())
@@ -355,7 +355,9 @@ async def test_only_topics_that_an_expression_finds_are_played(
     with record(tmp_path, [0]) as bag:
         for options in (PlayOptions(pattern="^/other"), PlayOptions(without_pattern="chat")):
             assert Player(player_node, bag, options).publishers == ()
-        assert [each.name for each in Player(player_node, bag, PlayOptions(pattern="chat")).publishers] == ["/chatter"]
+        assert [publisher.name for publisher in Player(player_node, bag, PlayOptions(pattern="chat")).publishers] == [
+            "/chatter"
+        ]
 
 
 async def test_playing_ends_at_a_moment(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:

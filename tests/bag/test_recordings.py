@@ -166,7 +166,7 @@ def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
                     START + number * 1_000_000_000 + step * 400_000_000
                 )  # the last one is after the next file's first
                 writer.write("/chatter", stamp, serialize(String(data=f"{number}.{step}")))
-        (file,) = (each for each in (folder / f"part{number}").iterdir() if each.name != "metadata.yaml")
+        (file,) = (path for path in (folder / f"part{number}").iterdir() if path.name != "metadata.yaml")
         made.append(folder / "drive" / f"{name}{file.suffix}")
         made[-1].parent.mkdir(exist_ok=True)
         file.rename(made[-1])
@@ -181,7 +181,7 @@ def said(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
 def test_numbered_files_without_metadata_are_one_recording(tmp_path: Path, storage: str) -> None:
     files = parts(tmp_path, storage, ["drive_10", "drive_9", "drive_11"])
     with BagReader(tmp_path / "drive") as bag:
-        assert {each.name: each.count for each in bag.topics} == {"/chatter": 9, "/other": 1}
+        assert {topic.name: topic.count for topic in bag.topics} == {"/chatter": 9, "/other": 1}
         assert (bag.start_ns, bag.end_ns) == (START, START + 2_800_000_000)
         whole = list(bag.messages())
         assert said(whole) == ["0.0", "early", "0.1", "0.2", "1.0", "1.1", "1.2", "2.0", "2.1", "2.2"]
@@ -198,7 +198,7 @@ def test_a_part_in_which_nothing_was_written_is_left_out(tmp_path: Path) -> None
     parts(tmp_path, "mcap", ["drive_0", "drive_1"])
     (tmp_path / "drive" / "drive_2.mcap").touch()
     with BagReader(tmp_path / "drive") as bag:
-        assert [each.code for each in bag.findings] == ["BAG109"]
+        assert [finding.code for finding in bag.findings] == ["BAG109"]
         assert len(list(bag.messages())) == 7
 
 

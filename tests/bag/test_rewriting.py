@@ -54,7 +54,7 @@ def test_files_of_a_second_each_hold_the_recording_and_the_metadata_list_them(tm
     folder = write(tmp_path / "drive", storage, compression=compression, max_seconds=1)
     suffix = (".mcap" if storage == "mcap" else ".db3") + (".zstd" if compression == "file" else "")
     names = [f"drive_{number}{suffix}" for number in range(4)]
-    assert sorted(each.name for each in folder.iterdir()) == [*names, "metadata.yaml"]
+    assert sorted(path.name for path in folder.iterdir()) == [*names, "metadata.yaml"]
     told = metadata(folder)
     assert told["relative_file_paths"] == names
     assert [(each["path"], each["message_count"]) for each in told["files"]] == list(
@@ -68,7 +68,7 @@ def test_files_of_a_second_each_hold_the_recording_and_the_metadata_list_them(tm
 @pytest.mark.parametrize("storage", STORAGES)
 def test_files_are_split_by_their_size(tmp_path, storage) -> None:
     folder = write(tmp_path / "drive", storage, max_size=150_000)
-    sizes = [each.stat().st_size for each in folder.iterdir() if each.suffix in (".mcap", ".db3")]
+    sizes = [path.stat().st_size for path in folder.iterdir() if path.suffix in (".mcap", ".db3")]
     assert len(sizes) >= 3
     assert max(sizes) < 200_000
     assert content(folder) == whole()
@@ -171,4 +171,4 @@ def test_options_of_another_form_are_refused_before_anything_is_made(tmp_path, d
     with pytest.raises(LinkwrightError, match=said):
         rewrite([source], path)
     shutil.rmtree(source)
-    assert [each.name for each in tmp_path.iterdir()] == ["options.yaml"]
+    assert [path.name for path in tmp_path.iterdir()] == ["options.yaml"]

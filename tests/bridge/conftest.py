@@ -108,8 +108,8 @@ def spin_all(condition: Callable[[], object], *processes: Process) -> None:
     """Run the callbacks of several processes until something holds."""
 
     def holds() -> bool:
-        for each in processes[1:]:
-            each.executor.spin_once(timeout_sec=0.0)
+        for process in processes[1:]:
+            process.executor.spin_once(timeout_sec=0.0)
         return bool(condition())
 
     processes[0].spin_until(holds)

@@ -196,7 +196,7 @@ def test_requests_of_three_clients_are_answered_each_to_who_asked(networks, serv
     there.node.create_service(AddTwoInts, "add", add)
     asking = [networks.make(client)(name) for name in ("first", "second", "third")]
     clients = [each.node.create_client(AddTwoInts, "add") for each in asking]
-    spin_all(lambda: all(each.service_is_ready() for each in clients), *asking, there)
+    spin_all(lambda: all(client.service_is_ready() for client in clients), *asking, there)
     answers = [[] for _ in clients]
     waiting = [None for _ in clients]
 
@@ -207,12 +207,12 @@ def test_requests_of_three_clients_are_answered_each_to_who_asked(networks, serv
                 waiting[which] = None
             if waiting[which] is None and len(answers[which]) < CALLS:
                 waiting[which] = each.call_async(AddTwoInts.Request(a=1000 * which, b=len(answers[which])))
-        return all(len(each) == CALLS for each in answers)
+        return all(len(answer) == CALLS for answer in answers)
 
     spin_all(all_answered, there, *asking)
     assert answers == [[1000 * which + number for number in range(CALLS)] for which in range(3)]
     there.close()
-    spin_all(lambda: not any(each.service_is_ready() for each in clients), *asking)
+    spin_all(lambda: not any(client.service_is_ready() for client in clients), *asking)
 
 
 @pytest.mark.parametrize(("server", "client"), WAYS)

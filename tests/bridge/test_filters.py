@@ -29,4 +29,4 @@ def test_what_is_no_pattern_is_refused(pattern):
     for names in (((pattern,), ()), ((), (pattern,))):
         with pytest.raises(LinkwrightError) as refused:
             NameFilter(*names)
-        assert [each.code for each in refused.value.diagnostics] == ["CLI453"]
+        assert [diagnostic.code for diagnostic in refused.value.diagnostics] == ["CLI453"]

@@ -117,7 +117,7 @@ class LiveViewer:
         """The status rows of a display: name -> level, text."""
 
         def read() -> dict[str, tuple[str, str]]:
-            display = next(each for each in self.viewer.displays if each.config.name == name)
+            display = next(display for display in self.viewer.displays if display.config.name == name)
             return {row.name: (row.level, row.text) for row in display.status}
 
         return self.run(read)

@@ -43,7 +43,7 @@ def opened(page: Page, name: str) -> str:
 
 
 def found_in_panels(page: Page, *names: str) -> list[str]:
-    return [f"{name}: {each}" for name in names for each in violations(page, opened(page, name))]
+    return [f"{name}: {violation}" for name in names for violation in violations(page, opened(page, name))]
 
 
 def found_in_menu(page: Page) -> list[str]:

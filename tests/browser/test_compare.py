@@ -164,7 +164,7 @@ def test_joints_move_both_and_edits_of_either_are_followed(start, open_page, fil
     page = open_page(start("view", *map(str, files)))
     page.get_by_text("5 differences").wait_for()
     page.locator('[data-joint="turn"] input[type=range]').fill("1.5707963")
-    becomes(lambda: [round(each, 2) for each in bounds(page, 0, "arm")], [0, 0.3, 0.6])
+    becomes(lambda: [round(bound, 2) for bound in bounds(page, 0, "arm")], [0, 0.3, 0.6])
     until(page, "Math.abs(lw.frames['old/arm'].orientation[0] - Math.SQRT1_2) < 1e-3")
     new.write_text(NEW.replace('xyz="0 0.3 0.6"', 'xyz="0 0 0.6"'), encoding="utf-8")
     page.get_by_text("4 differences").wait_for()
@@ -205,7 +205,7 @@ def test_the_list_is_in_front_in_a_small_window(start, open_page, files):
     assert first is not None
     assert first["y"] + first["height"] <= panel["y"] + panel["height"]
     groups = [each.bounding_box() for each in page.locator(".difference-group").all()]
-    assert max(each["x"] + each["width"] for each in groups) > 700, "they stand in columns"
+    assert max(group["x"] + group["width"] for group in groups) > 700, "they stand in columns"
 
 
 def test_the_panel_has_no_finding_of_axe_core(start, open_page, files):

@@ -32,7 +32,7 @@ def page(start, open_page, tmp_path: Path) -> Page:
 def drop(page: Page, *paths: Path) -> None:
     """Drag files from the desktop onto the page, and let go."""
     session = page.context.new_cdp_session(page)
-    data = {"items": [], "files": [str(each) for each in paths], "dragOperationsMask": 1}
+    data = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
     for kind in ("dragEnter", "dragOver", "drop"):
         session.send("Input.dispatchDragEvent", {"type": kind, "x": 500, "y": 400, "data": data})
     session.detach()

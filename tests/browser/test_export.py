@@ -216,9 +216,9 @@ def test_a_glb_that_is_shown_again_is_the_same_robot(live, open_page, tmp_path):
     again = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
     viewer.publish("/robot_description", String(data=again), DESCRIPTION_QOS)
     (told,) = drawn(open_page(viewer))["base"]
-    bounds = [each["bounds"] for shapes in before.values() for each in shapes]
+    bounds = [shape["bounds"] for shapes in before.values() for shape in shapes]
     for corner, choose in (("min", min), ("max", max)):
-        expected = [choose(each[corner][axis] for each in bounds) for axis in range(3)]
+        expected = [choose(bound[corner][axis] for bound in bounds) for axis in range(3)]
         assert told["bounds"][corner] == pytest.approx(expected, abs=1e-4)
     assert len(told["materials"]) == 4
 

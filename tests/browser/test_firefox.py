@@ -156,4 +156,4 @@ def test_without_webgl_the_page_says_so_and_its_panels_work(start, launch, tmp_p
     browser.evaluate("document.querySelector('[data-joint=upper_joint] .slider').focus()")
     browser.press(RIGHT)
     browser.until("lw.frames.fore?.position[0] > 0.01")
-    assert all("WebGL" in each for each in browser.errors), browser.errors
+    assert all("WebGL" in error for error in browser.errors), browser.errors

@@ -133,7 +133,7 @@ def test_properties_act_at_once_and_content_goes_with_its_display(live, open_pag
 
     def change(name: str, path: tuple[str, ...], value: object) -> None:
         def act() -> None:
-            display = next(each for each in viewer.viewer.displays if each.config.name == name)
+            display = next(display for display in viewer.viewer.displays if display.config.name == name)
             display.set_property(path, value)
 
         viewer.run(act)
@@ -211,7 +211,7 @@ def test_rows_of_frames_links_and_joints_follow_what_is_drawn(live, open_page):
     assert (frames["axes"], frames["names"]) == (2, 2)
     assert frames["bounds"]["max"][2] == pytest.approx(1.2, abs=1e-3)
     assert (robot["axes"], robot["jointAxes"], robot["masses"], robot["inertias"]) == (2, 1, 1, 1)
-    identities = {each.config.name: each.id for each in viewer.viewer.displays}
+    identities = {display.config.name: display.id for display in viewer.viewer.displays}
     tf, model = identities["Frames"], identities["Robot"]
     for key in (f"{tf}", f"{tf}/Frames", f"{tf}/Frames/tip"):
         row(page, key).locator(".twist").click()

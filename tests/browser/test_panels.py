@@ -78,7 +78,7 @@ def test_a_file_of_rviz_opens_with_the_panels_that_rviz_shows(live, open_page, t
     settled(page, "Displays", "Views")
     # What the others leave is the scene's.
     columns = ("Displays", "Views", "Diagnostics")
-    becomes(lambda: [column_width(page, each) for each in columns], pytest.approx([320, 290, 290], abs=3))
+    becomes(lambda: [column_width(page, column) for column in columns], pytest.approx([320, 290, 290], abs=3))
     assert not is_unsaved(page)
     page.keyboard.press("Control+s")
     assert viewer.run(viewer.viewer.config.text) == path.read_text()

@@ -239,7 +239,7 @@ def test_a_picture_is_composed_without_painting_the_page_around_it(live, open_pa
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
     until(page, "lw.displays[0]?.drawn?.width === 40")
     own = ("CANVAS height 20 width 40", "CANVAS data-engine", "DIV class orientation")
-    becomes(lambda: [any(each.startswith(what) for each in layers(page)) for what in own], [True, True, True])
+    becomes(lambda: [any(layer.startswith(what) for layer in layers(page)) for what in own], [True, True, True])
 
 
 def test_a_compressed_image_is_read_by_the_browser(live, open_page):

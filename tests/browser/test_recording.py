@@ -51,7 +51,7 @@ def topics(page: Page) -> dict[str, int]:
     """The topics of the newest file, and how many messages they have."""
     with BagReader(state(page, "recording")["files"][0]) as bag:
         assert not bag.findings
-        return {each.name: each.count for each in bag.topics}
+        return {topic.name: topic.count for topic in bag.topics}
 
 
 def span(page: Page) -> float:

@@ -65,7 +65,7 @@ class Robot:
 
     @property
     def seconds(self) -> float:
-        return sum(each.size for each in self.samples) / 16_000
+        return sum(sample.size for sample in self.samples) / 16_000
 
     def says(self, topic: str, text: str) -> None:
         self.viewer.publish(f"/voice/{topic}", get_message(STRING)(data=text))
@@ -95,7 +95,7 @@ def test_the_key_talks_while_it_is_held(talking: tuple[Robot, Page]) -> None:
     wait_until(lambda: robot.held == [True, False], SECONDS)
     until(page, "lw.panels.voice.mode === 'ready'")
     # Blocks of a tenth of a second but for the last; without gaps a tone has one line in its spectrum.
-    assert {each.size for each in robot.samples[:-1]} == {1600}
+    assert {sample.size for sample in robot.samples[:-1]} == {1600}
     sound = np.concatenate(robot.samples)[1600:11200].astype(float)
     spectrum = np.abs(np.fft.rfft(sound * np.hanning(sound.size))) ** 2
     strongest = int(np.argmax(spectrum))

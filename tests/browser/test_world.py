@@ -137,9 +137,11 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     page.mouse.move(x + 60, y, steps=4)
     page.mouse.up()
     page.keyboard.up("Control")
-    wait_until(lambda: [each for each in requests("/set_entity_state") if abs(each.state.pose.position.y) > 0.1])
-    assert {each.state.name for each in requests("/set_entity_state")} == {"crate"}
-    assert all(each.state.pose.position.z == 0 for each in requests("/set_entity_state"))
+    wait_until(
+        lambda: [request for request in requests("/set_entity_state") if abs(request.state.pose.position.y) > 0.1]
+    )
+    assert {request.state.name for request in requests("/set_entity_state")} == {"crate"}
+    assert all(request.state.pose.position.z == 0 for request in requests("/set_entity_state"))
 
     page.mouse.move(x, y)
     for key in ("Control", "Shift"):
@@ -151,7 +153,7 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     for key in ("Control", "Shift"):
         page.keyboard.up(key)
     pulls = requests("/apply_link_wrench")
-    assert {each.link_name for each in pulls} == {"crate::link"}
+    assert {pull.link_name for pull in pulls} == {"crate::link"}
     assert pulls[-1].wrench.force.y > 1
 
     page.mouse.click(x, y, button="right")

@@ -139,7 +139,7 @@ def test_a_diff_shows_each_fix_of_a_package_once(here, capsys):
     write(here, {"one/package.xml": f"<package>\n  <name>one</name>\n{line * 3}</package>\n", "one/r.urdf": GOOD})
     assert main(["check", "--diff", "one"]) == 1
     diff = capsys.readouterr().out
-    assert [each for each in diff.splitlines() if each.startswith(("-", "+"))] == [
+    assert [line for line in diff.splitlines() if line.startswith(("-", "+"))] == [
         "--- one/package.xml",
         "+++ one/package.xml",
         *2 * ["-" + line.rstrip()],

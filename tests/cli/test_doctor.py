@@ -203,7 +203,7 @@ def test_a_parameter_file_for_nodes_that_do_not_run(in_graph, capsys, tmp_path):
     in_graph(robot)
     path = tmp_path / "params.yaml"
     sections = ("/**", "robot_state_publisher", "joint_state_publsher", "/left/*")
-    path.write_text("".join(f"{each}: {{ros__parameters: {{a: 1}}}}\n" for each in sections))
+    path.write_text("".join(f"{section}: {{ros__parameters: {{a: 1}}}}\n" for section in sections))
     said = doctor(capsys, "--params-file", str(path), status=1)
     assert said.count("DOC702") == 2
     assert "section '/joint_state_publsher' of" in said

@@ -107,7 +107,7 @@ def test_a_configuration_that_cannot_be_saved_stays_as_it_was(tmp_path: Path) ->
 
 @needs_limits
 @needs_rosbags
-@pytest.mark.parametrize(("storage", "single_file"), [*((each, False) for each in STORAGES), ("mcap", True)])
+@pytest.mark.parametrize(("storage", "single_file"), [*((storage, False) for storage in STORAGES), ("mcap", True)])
 def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(
     tmp_path: Path, storage: str, single_file: bool
 ) -> None:
@@ -126,7 +126,7 @@ def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(
 
     with full_disk(120_000), pytest.raises(LinkwrightError) as caught:
         fill()
-    assert [each.code for each in caught.value.diagnostics] == ["BAG108"]
+    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["BAG108"]
     assert "ends here: " in str(caught.value)
     writer.write("/chatter", 1, said)  # nothing more is written, and nothing said again
     writer.flush()

@@ -22,7 +22,7 @@ def asked(in_graph) -> list[Any]:
     requests: list[Any] = []
 
     def spawn(request: Any, response: Any) -> Any:
-        response.success = request.name not in [each.name for each in requests]
+        response.success = request.name not in [request.name for request in requests]
         response.status_message = f"spawned {request.name}" if response.success else "it is there"
         requests.append(request)
         return response

@@ -88,7 +88,7 @@ def test_the_displays_of_an_rviz_file_are_shown(folder: Path, file: str, monkeyp
     asked: list[HostOptions] = []
 
     def show(path: object, *arguments: object, **_: object) -> int:
-        asked.extend(each for each in arguments if isinstance(each, HostOptions))
+        asked.extend(argument for argument in arguments if isinstance(argument, HostOptions))
         return 0
 
     monkeypatch.setattr(bag_view, "run_bag_view", show)

@@ -69,7 +69,7 @@ def test_a_dictionary_that_is_none_or_is_not_wanted_is_refused(picture, capsys):
 def test_pictures_with_boxes_are_written_each_under_a_name_of_its_own(picture, tmp_path, capsys):
     folder = tmp_path / "drawn"
     assert main(["vision", "detect", str(picture), str(picture), "-m", "colours", "--output", str(folder)]) == 0
-    assert sorted(each.name for each in folder.iterdir()) == ["scene-2_detections.png", "scene_detections.png"]
+    assert sorted(path.name for path in folder.iterdir()) == ["scene-2_detections.png", "scene_detections.png"]
     with Image.open(folder / "scene_detections.png") as file:
         assert file.size == (160, 120)
         assert (np.asarray(file)[80, 100:130] != 150).any()

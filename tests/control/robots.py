@@ -35,8 +35,8 @@ def joint(
 
 def robot(control: str, *, parameters: str = "", mimic: str = "", joints: tuple[str, ...] = ("hip", "knee")) -> str:
     """A robot whose joints are in a row, with one system of mock hardware."""
-    links = "<link name='base'/>" + "".join(f"<link name='{each}_link'/>" for each in joints)
-    above = ["base", *(f"{each}_link" for each in joints)]
+    links = "<link name='base'/>" + "".join(f"<link name='{joint}_link'/>" for joint in joints)
+    above = ["base", *(f"{joint}_link" for joint in joints)]
     moving = "".join(
         f"<joint name='{each}' type='revolute'><parent link='{parent}'/><child link='{each}_link'/><axis xyz='0 0 1'/>"
         f"<limit lower='-3' upper='3' effort='10' velocity='5'/>{mimic if each == joints[-1] else ''}</joint>"
@@ -53,7 +53,7 @@ def described(text: str) -> tuple[list[HardwareDescription], list[str]]:
     reading = DescriptionLibrary().read(text)
     assert reading.robot is not None
     found, findings = hardware_of(reading.robot)
-    return found, [f"{each.code} {each.message}" for each in findings]
+    return found, [f"{finding.code} {finding.message}" for finding in findings]
 
 
 def manager(graph: Graph, text: str, parameters: dict[str, Any] | None = None, **given: dict[str, Any]) -> Any:

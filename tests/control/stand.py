@@ -42,8 +42,13 @@ class Stand:
             controller.on_configure()
         controller.commands = _chosen(self.commands, controller.command_interfaces())
         controller.states = _chosen(self.states, controller.state_interfaces())
-        controller.references = [CommandInterface(controller.name, each) for each in controller.reference_interfaces()]
-        controller.exported = [StateInterface(controller.name, each) for each in controller.exported_states()]
+        controller.references = [
+            CommandInterface(controller.name, reference_interface)
+            for reference_interface in controller.reference_interfaces()
+        ]
+        controller.exported = [
+            StateInterface(controller.name, exported_state) for exported_state in controller.exported_states()
+        ]
         controller.on_activate()
         return controller
 
@@ -78,4 +83,4 @@ def _chosen(there: dict[str, Any], asked: Any) -> list[Any]:
 
 def values(interfaces: list[Interface]) -> list[float]:
     """The values of interfaces."""
-    return [each.value for each in interfaces]
+    return [interface.value for interface in interfaces]

@@ -105,9 +105,9 @@ def names(table: Any) -> set[str]:
     """The names of the parameters of a table and those in it, without those that they stand below."""
     hints = get_type_hints(table)
     found: set[str] = set()
-    for each in fields(table):
-        inside = each.metadata.get("table") or (hints[each.name] if is_dataclass(hints[each.name]) else None)
-        found |= {each.name} if inside is None else names(inside)
+    for field in fields(table):
+        inside = field.metadata.get("table") or (hints[field.name] if is_dataclass(hints[field.name]) else None)
+        found |= {field.name} if inside is None else names(inside)
     return found
 
 

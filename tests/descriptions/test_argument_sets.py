@@ -67,7 +67,7 @@ def test_a_command_with_the_default_of_a_launch_argument(workspace: Path) -> Non
 def test_each_choice_of_a_launch_argument_is_a_set(workspace: Path) -> None:
     text = launch_file("choices=['a_', 'b_']")
     found = sets(workspace, "arm/launch/view.launch.py", text)
-    assert [each["prefix"] for each in values(found)] == ["a_", "b_"]
+    assert [value["prefix"] for value in values(found)] == ["a_", "b_"]
     assert found[1].varied == ("prefix",)
     assert found[0].span is not None
     assert found[0].span.file.endswith("view.launch.py")

@@ -37,7 +37,10 @@ def compared(old: str, new: str) -> Comparison:
 
 def found(old: str, new: str) -> list[tuple[str, str, str, str, str | None, str | None]]:
     differences = compared(old, new).differences
-    return [(each.subject, each.name, each.kind, each.property, each.old, each.new) for each in differences]
+    return [
+        (difference.subject, difference.name, difference.kind, difference.property, difference.old, difference.new)
+        for difference in differences
+    ]
 
 
 def test_a_robot_does_not_differ_from_itself():
@@ -129,7 +132,9 @@ def test_new_names_of_all_parts_are_recognised():
     for name in ("base", "arm", "hand", "shoulder", "wrist"):
         new = new.replace(f'"{name}"', f'"left_{name}"')
     comparison = compared(ROBOT, new)
-    assert {each.kind for each in comparison.differences if each.subject != "extension"} == {"renamed"}
+    assert {difference.kind for difference in comparison.differences if difference.subject != "extension"} == {
+        "renamed"
+    }
     assert comparison.links == {"base": "left_base", "arm": "left_arm", "hand": "left_hand"}
     assert comparison.joints == {"shoulder": "left_shoulder", "wrist": "left_wrist"}
 

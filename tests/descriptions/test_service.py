@@ -122,7 +122,7 @@ class TestWhatUrdfdomReadsAllTheSame:
         path.write_text(written)
         found = examine(path, partly=True)
         assert list(found.robot.links) == ["a"]
-        assert [(each.severity.value, each.code) for each in found.diagnostics] == [("warning", code)]
+        assert [(diagnostic.severity.value, diagnostic.code) for diagnostic in found.diagnostics] == [("warning", code)]
 
     @pytest.mark.parametrize("name", ["$(arg lost)/a", "${lost}a"])
     def test_is_for_xacro_where_a_link_has_no_name_without_it(self, tmp_path, name):
@@ -130,7 +130,7 @@ class TestWhatUrdfdomReadsAllTheSame:
         path.write_text(f'<robot name="r" {PREFIX}><link name="{name}"/></robot>')
         found = examine(path, partly=True)
         assert found.robot is None
-        assert [(each.severity.value, each.code) for each in found.problems] in (
+        assert [(problem.severity.value, problem.code) for problem in found.problems] in (
             [("error", "XAC211")],
             [("error", "XAC201")],
         )
@@ -148,7 +148,9 @@ class TestWhatUrdfdomReadsAllTheSame:
         assert second.attributes == {"name": "c", "note": "x&y", "x": "&1"}
         assert second.attribute_span("note").line == 4
         assert [child.data for child in found.document.root.children if isinstance(child, Comment)] == [" < \x02 "]
-        assert [(each.severity.value, each.code) for each in found.diagnostics[:-1]] == [("warning", "XML206")] * 5
+        assert [(diagnostic.severity.value, diagnostic.code) for diagnostic in found.diagnostics[:-1]] == [
+            ("warning", "XML206")
+        ] * 5
         assert found.diagnostics[-1].code == "URDF152"  # two roots
 
     def test_what_urdfdom_refuses_is_read_with_what_xacro_can_make_of_it(self, tmp_path):
@@ -156,8 +158,11 @@ class TestWhatUrdfdomReadsAllTheSame:
         part = '<xacro:if value="$(arg unknown)"><geometry><sphere radius="1"/></geometry></xacro:if>'
         path.write_text(f'<robot name="r" {PREFIX}><link name="a"><visual>{part}</visual></link></robot>')
         found = examine(path, partly=True)
-        assert [(each.severity.value, each.code) for each in found.problems] == [("error", "XAC211")]
-        assert "URDF130" not in [each.code for each in found.diagnostics if each.severity.value == "error"][1:]
+        assert [(problem.severity.value, problem.code) for problem in found.problems] == [("error", "XAC211")]
+        assert (
+            "URDF130"
+            not in [diagnostic.code for diagnostic in found.diagnostics if diagnostic.severity.value == "error"][1:]
+        )
 
     @pytest.mark.parametrize(
         "written",
@@ -206,4 +211,4 @@ class TestWhatUrdfdomReadsAllTheSame:
         path = tmp_path / "r.urdf"
         path.write_text(f'<robot name="r" {PREFIX}><xacro:arm/></robot>')
         found = examine(path, partly=True)
-        assert [(each.severity.value, each.code) for each in found.problems] == [("error", "XAC401")]
+        assert [(problem.severity.value, problem.code) for problem in found.problems] == [("error", "XAC401")]

@@ -78,7 +78,7 @@ def test_a_check_says_once_that_it_did_not_look_into_meshes(without, tmp_path):
         folder.mkdir()
         small_mesh(folder)
         (folder / "robot.urdf").write_text(ROBOT)
-        return [each for each in examine(folder / "robot.urdf").diagnostics if each.code == "INR104"]
+        return [diagnostic for diagnostic in examine(folder / "robot.urdf").diagnostics if diagnostic.code == "INR104"]
 
     assert unread_in(tmp_path / "with") == []
     without("trimesh")

@@ -16,7 +16,7 @@ PAGES = [DOCS / "checking.md", DOCS / "zh" / "checking.md"]
 
 
 def block(page, title):
-    return next(each.text for each in blocks(page) if each.title == title)
+    return next(block.text for block in blocks(page) if block.title == title)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
@@ -46,6 +46,6 @@ def test_the_suppressions_shown_suppress_and_each_is_needed(page, tmp_path, caps
 
 
 def test_the_json_shown_has_the_form_that_is_written():
-    shown = json.loads(next(each.text for each in blocks(PAGES[0]) if each.language == "json"))
+    shown = json.loads(next(block.text for block in blocks(PAGES[0]) if block.language == "json"))
     written = to_data(Diagnostic("LW221", "m", SourceText("f", "x").span(0, 1), hint="h"))
     assert list(shown["diagnostics"][0]) == list(written)

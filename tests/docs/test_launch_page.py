@@ -50,5 +50,5 @@ def test_the_composed_launch_file_loads(tmp_path: Path, capsys) -> None:
 def test_the_error_shown_is_the_one_printed(language: str) -> None:
     page = PAGES[language]
     words = next(shlex.split(line) for line in commands(page) if "bringup" in line)
-    printed = TOOL.output_of(words[1:], [(each.title, each.text) for each in files(page)], language)
+    printed = TOOL.output_of(words[1:], [(file.title, file.text) for file in files(page)], language)
     assert printed in [block.text for block in blocks(page) if block.language == "text"]

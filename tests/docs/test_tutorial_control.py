@@ -134,7 +134,7 @@ def test_the_tests_of_the_page_pass(package: Path) -> None:
 
 
 def test_the_languages_show_the_same_files_and_commands() -> None:
-    english, chinese = ([(each.title, each.text) for each in blocks(page)] for page in LANGUAGES.values())
+    english, chinese = ([(block.title, block.text) for block in blocks(page)] for page in LANGUAGES.values())
     assert english == chinese
 
 

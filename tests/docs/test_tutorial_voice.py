@@ -75,7 +75,7 @@ def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys: pytest.Cap
 
 async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
-    (block,) = [each for each in blocks(LANGUAGES["en"]) if each.title == "my_commands.yaml"]
+    (block,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "my_commands.yaml"]
     file = tmp_path / block.title
     file.write_text(block.text, encoding="utf-8")
     async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
@@ -104,7 +104,7 @@ async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
 
 
 def test_the_file_on_the_page_about_voice_is_right() -> None:
-    (block,) = [each for each in blocks(DOCS / "voice.md") if each.title == "my_commands.yaml"]
+    (block,) = [block for block in blocks(DOCS / "voice.md") if block.title == "my_commands.yaml"]
     found = parse_commands(SourceText(block.title, block.text))
     assert found.understand("please go forward seven metres") is None
     for said in (

@@ -48,7 +48,7 @@ def test_the_launch_file_includes_that_of_the_simulation(package: Path, capsys: 
 
 
 def test_the_languages_show_the_same_files() -> None:
-    english, chinese = ([(each.title, each.text) for each in blocks(page)] for page in LANGUAGES.values())
+    english, chinese = ([(block.title, block.text) for block in blocks(page)] for page in LANGUAGES.values())
     assert english == chinese
 
 

@@ -81,7 +81,9 @@ def only(seen: Observation, code: str):
 
 
 def without(seen: Observation, *children: str) -> Observation:
-    return replace(seen, transforms=tuple(each for each in seen.transforms if each.child not in children))
+    return replace(
+        seen, transforms=tuple(transform for transform in seen.transforms if transform.child not in children)
+    )
 
 
 def more(seen: Observation, *endpoints: EndpointInfo) -> Observation:
@@ -121,7 +123,7 @@ def test_nobody_publishes_joint_states():
     seen = replace(
         without(WELL, "wheel", "copy"),
         joints=(),
-        endpoints=tuple(each for each in WELL.endpoints if each.name != "/joint_states"),
+        endpoints=tuple(endpoint for endpoint in WELL.endpoints if endpoint.name != "/joint_states"),
     )
     found = only(seen, "DOC401")
     assert found.message == "nobody publishes joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
@@ -163,7 +165,10 @@ def test_a_joint_has_states_that_nobody_turns_into_transforms():
 
 
 def test_frames_with_a_prefix_are_the_robots():
-    named = tuple(replace(each, parent=f"r1/{each.parent}", child=f"r1/{each.child}") for each in WELL.transforms)
+    named = tuple(
+        replace(transform, parent=f"r1/{transform.parent}", child=f"r1/{transform.child}")
+        for transform in WELL.transforms
+    )
     assert examine(replace(WELL, transforms=named)) == []
 
 

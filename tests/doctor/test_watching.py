@@ -31,7 +31,7 @@ class Outside(Transport):
         pass
 
     def remote_nodes(self) -> list[NodeIdentity]:
-        return list({each.node for each in self.endpoints if each.node is not None})
+        return list({endpoint.node for endpoint in self.endpoints if endpoint.node is not None})
 
     def remote_endpoints(self) -> list[EndpointInfo]:
         return self.endpoints
@@ -145,8 +145,8 @@ async def test_what_a_bridge_hands_on_is_neither_a_second_publisher_nor_far_from
         await asyncio.sleep(0.01)
     (transform,) = watched.result().transforms
     assert len(transform.senders) == 1
-    assert {each.topic for each in watched.result().stamps} == {"/robot1/tf", "/tf"}
-    assert {each.behind_ns for each in watched.result().stamps} == {0}
+    assert {stamp.topic for stamp in watched.result().stamps} == {"/robot1/tf", "/tf"}
+    assert {stamp.behind_ns for stamp in watched.result().stamps} == {0}
 
 
 async def test_a_simulators_own_stamps_and_poses_are_taken_for_what_they_are(joined: Graph) -> None:
@@ -165,8 +165,8 @@ async def test_a_simulators_own_stamps_and_poses_are_taken_for_what_they_are(joi
             each.publish(message)
         await asyncio.sleep(0.01)
     seen = watched.result()
-    assert [(each.parent, each.child) for each in seen.transforms] == [("odom", "base")]
-    assert [(each.topic, each.behind_ns) for each in seen.stamps] == [("/robot1/tf", 0)]
+    assert [(transform.parent, transform.child) for transform in seen.transforms] == [("odom", "base")]
+    assert [(stamp.topic, stamp.behind_ns) for stamp in seen.stamps] == [("/robot1/tf", 0)]
 
 
 async def test_what_was_kept_for_late_subscribers_and_what_goes_by_a_steady_clock_is_of_no_age(joined: Graph) -> None:
@@ -183,7 +183,7 @@ async def test_what_was_kept_for_late_subscribers_and_what_goes_by_a_steady_cloc
             message.header.stamp.sec = 0 if each is unset else 17
             each.publish(message)
         await asyncio.sleep(0.01)
-    assert [(each.topic, each.zero) for each in watched.result().stamps] == [("/scan", False), ("/unset", True)]
+    assert [(stamp.topic, stamp.zero) for stamp in watched.result().stamps] == [("/scan", False), ("/unset", True)]
 
 
 @pytest.mark.parametrize("topic", ["/tf", "/tf_static"])
@@ -191,7 +191,7 @@ async def test_transforms_that_are_published_and_have_not_come_are_waited_for(jo
     sender = joined.create_node("robot_state_publisher").create_publisher(TRANSFORMS, topic, 10)
     message = sender.msg_type(transforms=[TransformStamped(child_frame_id="base")])
     asyncio.get_running_loop().call_later(0.5, sender.publish, message)
-    assert [each.child for each in (await seen_of(joined, Outside())).transforms] == ["base"]
+    assert [transform.child for transform in (await seen_of(joined, Outside())).transforms] == ["base"]
 
 
 async def test_transforms_that_never_come_are_waited_for_a_few_seconds_only(joined: Graph, monkeypatch) -> None:

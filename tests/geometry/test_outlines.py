@@ -20,14 +20,14 @@ points = st.tuples(numbers, numbers, numbers)
 
 
 def binary_stl(triangles):
-    rows = [struct.pack("<12fH", 0, 0, 0, *(part for point in each for part in point), 0) for each in triangles]
+    rows = [struct.pack("<12fH", 0, 0, 0, *(part for point in triangle for part in point), 0) for triangle in triangles]
     return bytes(80) + struct.pack("<I", len(rows)) + b"".join(rows)
 
 
 def text_stl(triangles):
     lines = ["solid part"]
-    for each in triangles:
-        corners = iter([repr(part) for point in each for part in point])
+    for triangle in triangles:
+        corners = iter([repr(part) for point in triangle for part in point])
         shown = iter(["0", "0", "1"])
         words = [word.decode() for word in FACET]
         lines.append(" ".join(next(shown, None) or next(corners) if word == "?" else word for word in words))
@@ -36,7 +36,7 @@ def text_stl(triangles):
 
 def obj(points, polygons):
     lines = [f"v {' '.join(map(repr, point))}" for point in points]
-    return "\n".join(lines + [f"f {' '.join(f'{place + 1}//1' for place in each)}" for each in polygons]).encode()
+    return "\n".join(lines + [f"f {' '.join(f'{place + 1}//1' for place in polygon)}" for polygon in polygons]).encode()
 
 
 def assert_same(data, kind, folder):
@@ -60,7 +60,7 @@ def test_any_triangles(tmp_path_factory, triangles):
 @given(st.lists(st.sampled_from(TRIANGLES), min_size=1), st.lists(st.sampled_from(SQUARES)))
 def test_any_part_of_a_cube(tmp_path_factory, triangles, squares):
     assert_same(obj(CUBE, [*triangles, *squares]), "obj", tmp_path_factory.getbasetemp())
-    flat = [tuple(CUBE[place] for place in each) for each in triangles]
+    flat = [tuple(CUBE[place] for place in triangle) for triangle in triangles]
     assert_same(binary_stl(flat), "stl", tmp_path_factory.getbasetemp())
 
 

@@ -52,7 +52,7 @@ def test_the_values_of_launch_files_that_make_a_robot_are_offered(box: Path) -> 
     form = form_of(box)
     assert form is not None
     assert (form.file, form.names) == ("box.xacro", ["model"])
-    assert sorted((each.label, each.values["model"]) for each in form.choices) == [
+    assert sorted((choice.label, choice.values["model"]) for choice in form.choices) == [
         ("model:=large", "large"),
         ("model:=small", "small"),
     ]
@@ -62,7 +62,7 @@ def test_the_values_of_launch_files_that_make_a_robot_are_offered(box: Path) -> 
 def test_a_value_that_makes_no_robot_is_asked_for_again(box: Path) -> None:
     form = form_of(box, model="huge")
     assert form is not None
-    assert {each.values["model"] for each in form.choices} == {"small", "large"}
+    assert {choice.values["model"] for choice in form.choices} == {"small", "large"}
 
 
 def test_an_argument_that_nobody_gives_is_asked_for_without_a_value(tmp_path: Path) -> None:

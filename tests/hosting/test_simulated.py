@@ -75,8 +75,8 @@ async def test_a_robot_that_falls_for_want_of_collisions_is_told_in_the_viewers(
     world = SimulatedWorld("empty", file, description, description.text, "seen", headless=True)
     view = SimulatedView(world, PackageFinder(start=tmp_path), OPTIONS, LaunchLog(io.StringIO(), io.StringIO()))
     running = asyncio.create_task(view.run(None))
-    await eventually(lambda: "SIM143" in [each.code for each in view.reload.findings()] or running.done())
-    [finding] = [each for each in view.reload.findings() if each.code == "SIM143"]
+    await eventually(lambda: "SIM143" in [finding.code for finding in view.reload.findings()] or running.done())
+    [finding] = [finding for finding in view.reload.findings() if finding.code == "SIM143"]
     assert (finding.span.file, finding.span.line) == (str(file), 2)
     view.interrupt("the test is over")
     assert await running

@@ -158,7 +158,7 @@ async def test_a_broken_world_is_told_and_what_runs_goes_on(tmp_path):
     async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         (tmp_path / "a.world").write_text("<sdf version='1.7'><world></sdf>")
         await it.until("error[XML")
-        assert [each.code[:3] for each in it.view.reload.findings()] == ["XML"]
+        assert [finding.code[:3] for finding in it.view.reload.findings()] == ["XML"]
         assert await it.look(has("ground", "falling"))
         (tmp_path / "a.world").write_text(world(box("new", "5 5 1 0 0 0")))
         await it.until("repaired")

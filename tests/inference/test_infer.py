@@ -120,7 +120,7 @@ def test_a_round_mesh_is_a_wheel_and_touches_as_a_cylinder(tyre):
     assert found.drive is not None
     assert found.drive.radius == pytest.approx(0.08, rel=1e-6)
     assert found.drive.left[0].width == pytest.approx(0.04, rel=1e-6)
-    collision = next(each for each in found.findings if each.diagnostic.code == "DRIVE101").added[0]
+    collision = next(finding for finding in found.findings if finding.diagnostic.code == "DRIVE101").added[0]
     shape = next(collision.first("geometry").elements())
     assert shape.tag == "cylinder"
     assert float(shape.attributes["radius"]) == pytest.approx(0.08)

@@ -43,7 +43,7 @@ def shown(found: Inference) -> str:
         lines.append(f"left {left}; right {right}")
     lines += [f"casters {' '.join(found.casters)}"] if found.casters else []
     lines += [f"held {' '.join(found.held)}"] if found.held else []
-    lines += [f"{each.code} {each.severity.value} {each.message}" for each in found.diagnostics]
+    lines += [f"{diagnostic.code} {diagnostic.severity.value} {diagnostic.message}" for diagnostic in found.diagnostics]
     return "".join(f"{line}\n" for line in lines)
 
 
@@ -60,11 +60,16 @@ def test_a_completed_robot_lacks_nothing(robot):
     assert write(document) == before, "the document that was read stays as it is"
     again = examine(text)
     assert not again.diagnostics
-    assert {each.code for each in inferred(text).diagnostics} <= {"DRIVE201", "DRIVE202", "DRIVE203", "DRIVE205"}
+    assert {diagnostic.code for diagnostic in inferred(text).diagnostics} <= {
+        "DRIVE201",
+        "DRIVE202",
+        "DRIVE203",
+        "DRIVE205",
+    }
 
 
 @pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
 def test_what_is_added_has_a_place_in_the_users_file(robot):
     document, found = read_and_inferred(robot)
-    assert all(each.span is not None and each.source is not None for each in found.diagnostics)
+    assert all(diagnostic.span is not None and diagnostic.source is not None for diagnostic in found.diagnostics)
     assert all(each.source is not None for each in completed(document, found).root.walk())

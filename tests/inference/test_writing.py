@@ -38,7 +38,7 @@ def test_the_file_says_what_the_completed_robot_has(write, tmp_path, robot):
     again = load(tmp_path / "r.urdf")
     assert dict(again.links) == dict(expected.links)
     assert dict(again.joints) == dict(expected.joints)
-    assert [each.tag for each in again.extensions] == [each.tag for each in expected.extensions]
+    assert [extension.tag for extension in again.extensions] == [extension.tag for extension in expected.extensions]
     kept = iter(text.splitlines())
     for line in robot.splitlines():
         if "/>" not in line and "axis" not in line:

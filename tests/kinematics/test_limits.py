@@ -21,9 +21,9 @@ def followed(limiter: SpeedLimiter, wanted: list[float]) -> list[float]:
 @given(WANTED)
 def test_no_bound_is_passed(wanted):
     speeds = [0.0, *followed(SpeedLimiter((-1.0, 2.0), (-4.0, 3.0)), wanted)]
-    assert all(-1.0 <= each <= 2.0 for each in speeds)
+    assert all(-1.0 <= speed <= 2.0 for speed in speeds)
     changes = [(after - before) / STEP for before, after in pairwise(speeds)]
-    assert all(-4.0 - 1e-9 <= each <= 3.0 + 1e-9 for each in changes)
+    assert all(-4.0 - 1e-9 <= change <= 3.0 + 1e-9 for change in changes)
 
 
 @given(WANTED)
@@ -31,7 +31,7 @@ def test_the_jerk_is_bounded(wanted):
     speeds = [0.0, 0.0, *followed(SpeedLimiter(jerk=(-50.0, 40.0)), wanted)]
     changes = [(after - before) / STEP for before, after in pairwise(speeds)]
     jerks = [(after - before) / STEP for before, after in pairwise(changes)]
-    assert all(-50.0 - 1e-6 <= each <= 40.0 + 1e-6 for each in jerks)
+    assert all(-50.0 - 1e-6 <= jerk <= 40.0 + 1e-6 for jerk in jerks)
 
 
 def test_each_direction_has_its_own_bounds_for_speeding_up_and_braking():

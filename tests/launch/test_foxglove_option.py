@@ -21,7 +21,7 @@ def launched(monkeypatch, options: LaunchOptions) -> list[Node]:
     monkeypatch.setattr(launch_run, "_run", run)
     load = lambda _: (LaunchDescription([]), {})  # noqa: E731 - as launch files are loaded
     assert launch_run.run_description(load, {}, PackageFinder(), options, "nothing") == 0
-    return [each for each in seen[0].entities if isinstance(each, Node)]
+    return [entity for entity in seen[0].entities if isinstance(entity, Node)]
 
 
 def test_it_adds_the_bridge(monkeypatch):

@@ -231,7 +231,9 @@ class TestLaunches:
 
     def test_their_arguments(self, write: Any) -> None:
         files = self.files(write)
-        names = {each.name for each in load_launch_file(files["demo"]).get_launch_arguments()}
+        names = {
+            get_launch_argument.name for get_launch_argument in load_launch_file(files["demo"]).get_launch_arguments()
+        }
         assert {"db", "debug", "use_rviz", "publish_frequency", "rviz_config", "capabilities"} <= names
 
     def test_what_they_start(self, write: Any) -> None:

@@ -65,7 +65,7 @@ def test_arguments_of_a_file_that_includes_itself_are_known(write: Write) -> Non
     assert check_arguments(load_launch_file(path), {"rounds": "2", "other": "1"}) == []
     with pytest.raises(LinkwrightError) as caught:
         print_description(LaunchTarget(str(path)))
-    assert [each.code for each in caught.value.diagnostics] == ["LAUNCH156"]
+    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["LAUNCH156"]
 
 
 DEEP = {

@@ -284,7 +284,7 @@ async def test_a_page_whose_port_is_taken_ends_a_launch_of_gazebo_with_one_error
 async def test_a_simulation_has_the_variables_of_its_group(launch: Callable[..., Any], simulators: Simulators) -> None:
     server = include("ros_gz_sim", "gz_sim.launch.py", gz_args="-r -s a.sdf")
     await launch(GroupAction([SetEnvironmentVariable("GZ_SIM_RESOURCE_PATH", "/worlds"), server]))
-    assert [each["GZ_SIM_RESOURCE_PATH"] for each in simulators.environments] == ["/worlds"]
+    assert [environment["GZ_SIM_RESOURCE_PATH"] for environment in simulators.environments] == ["/worlds"]
 
 
 async def test_other_commands_of_gz_are_processes(launch: Callable[..., Any], simulators: Simulators) -> None:

@@ -88,7 +88,7 @@ def generate_launch_description():
 )
 def test_a_plain_name_is_xacro_where_a_launch_file_expands_it(check, launch, expected):
     found = check({"arm/urdf/arm.urdf": PLAIN, "arm/urdf/can.stl": "", "arm/launch/view.launch.py": launch})
-    assert [each for each in codes(found) if each[1] == "LW114"] == expected
+    assert [code for code in codes(found) if code[1] == "LW114"] == expected
 
 
 def test_a_value_that_is_given_and_fails_is_an_error_that_names_it(check):
@@ -255,7 +255,7 @@ def generate_launch_description():
              ' type:=', LaunchConfiguration('type')])
 """
     files = {"arm/urdf/arm.urdf.xacro": ARM, "arm/urdf/small.xacro": PART, "arm/launch/view.launch.py": launch}
-    assert [each for each in codes(check(files)) if each[1] == "XML101"] == [(severity, "XML101")]
+    assert [code for code in codes(check(files)) if code[1] == "XML101"] == [(severity, "XML101")]
 
 
 @pytest.mark.parametrize(

@@ -16,18 +16,18 @@ def look(model: Model, settings: Settings) -> Checked:
 @pytest.mark.parametrize("model", MODELS, ids=str)
 def test_robots(model: Model) -> None:
     checked = look(model, Settings(select=("ALL",)))
-    findings = [each for each in checked.diagnostics if isinstance(each, Finding)]
-    assert all(each.span is not None for each in findings if each.element is not None)
-    on_joints_and_structure = [each for each in findings if each.code.startswith(("LW1", "LW2"))]
+    findings = [diagnostic for diagnostic in checked.diagnostics if isinstance(diagnostic, Finding)]
+    assert all(finding.span is not None for finding in findings if finding.element is not None)
+    on_joints_and_structure = [finding for finding in findings if finding.code.startswith(("LW1", "LW2"))]
     assert not [each for each in on_joints_and_structure if each.severity is Severity.ERROR]
 
 
 @pytest.mark.parametrize("corpus", CORPORA, ids=lambda corpus: corpus.folder.name)
 def test_default_rules_about_structure_and_joints_find_little_in_them(corpus: Corpus) -> None:
     found = {
-        (each.code, each.span)
+        (diagnostic.code, diagnostic.span)
         for model in corpus.models
-        for each in look(model, Settings()).diagnostics
-        if each.code.startswith(("LW1", "LW2"))
+        for diagnostic in look(model, Settings()).diagnostics
+        if diagnostic.code.startswith(("LW1", "LW2"))
     }
     assert len(found) < 20

@@ -590,7 +590,9 @@ def test_a_file_that_another_program_finds_from_the_packages_folder(tmp_path, na
     (tmp_path / "urdf/arm.xacro").write_text("<robot/>")
     text = robot(f'<link name="a"/><xacro:include filename="{name}"/>', PREFIX)
     (tmp_path / "urdf/r.urdf.xacro").write_text(text)
-    (found,) = (each for each in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if each.code == "XML101")
+    (found,) = (
+        diagnostic for diagnostic in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if diagnostic.code == "XML101"
+    )
     assert found.severity.name == severity
     assert ("write 'arm.xacro'" in (found.hint or "")) is (severity == "WARNING")
 
@@ -604,7 +606,9 @@ def test_files_that_another_program_finds_from_the_packages_folder_are_one_findi
         (tmp_path / f"urdf/{name}.xacro").write_text("<robot/>")
     includes = "".join(f'<xacro:include filename="urdf/{name}.xacro"/>' for name in ("arm", "leg", "head", "tail"))
     (tmp_path / "urdf/r.urdf.xacro").write_text(robot(f'<link name="a"/>{includes}', PREFIX))
-    found = [each for each in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if each.code == "XML101"]
+    found = [
+        diagnostic for diagnostic in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if diagnostic.code == "XML101"
+    ]
     assert [(each.severity.name, str(each.message).partition("(")[2]) for each in found] == [
         ("WARNING", "and 2 more)"),
         ("ERROR", ""),
@@ -687,7 +691,7 @@ def test_an_empty_macro_takes_what_those_take_that_it_stands_for(told, body, cod
 def test_a_package_of_ours_is_proposed_for_its_own_name_alone(tmp_path, name, hint):
     mesh = f'<link name="l"><visual><geometry><mesh filename="package://{name}/a.stl"/></geometry></visual></link>'
     (tmp_path / "r.urdf").write_text(robot(mesh))
-    (found,) = (each for each in examine(tmp_path / "r.urdf").diagnostics if each.code == "LW423")
+    (found,) = (diagnostic for diagnostic in examine(tmp_path / "r.urdf").diagnostics if diagnostic.code == "LW423")
     assert ("my_robot_description" in (found.hint or "")) is hint
 
 

@@ -88,7 +88,7 @@ def with_slips(folder: Path) -> Path:
 @pytest.mark.parametrize("which", ["ours", *(["published"] if PUBLISHED.is_dir() else [])])
 def test_the_tutorial_package_has_its_known_slips(which, tmp_path):
     package = PUBLISHED if which == "published" else with_slips(tmp_path)
-    found = {(each.code, each.message) for each in examine_package(package, _ALL).diagnostics}
+    found = {(diagnostic.code, diagnostic.message) for diagnostic in examine_package(package, _ALL).diagnostics}
     assert ("LW821", "the pattern 'urdf/sensors/*.*' in setup.py matches no file") in found
     assert ("LW808", "the e-mail address 'lll@todo.todo' is a placeholder") in found
     assert any(code == "LW848" for code, _ in found)

@@ -82,7 +82,7 @@ def test_cmake_comments_strings_and_variables():
     file = read_cmake(SourceText("CMakeLists.txt", text))
     assert file.project is not None
     assert file.project.text == "robot"
-    assert [each.text for each in file.directories] == ["urdf", "mesh files", "rviz/", "launch"]
+    assert [directory.text for directory in file.directories] == ["urdf", "mesh files", "rviz/", "launch"]
     assert [each.text for each in file.files] == ["scripts/run.py"]
     assert file.executables == {"driver", "run.py"}
     assert file.is_complete
@@ -141,7 +141,7 @@ share = os.path.join(get_package_share_directory('a'), 'urdf.d')
 model = os.path.join(share, 'robot.urdf')
 """
     facts = read_launch_file(SourceText("x.launch.py", text), "x.launch.py")
-    assert [(each.package, each.path) for each in facts.paths] == [("a", "urdf.d/robot.urdf")]
+    assert [(path.package, path.path) for path in facts.paths] == [("a", "urdf.d/robot.urdf")]
 
 
 @pytest.mark.parametrize("text", ["", "Node()", "Node(package=1)", "Command()", "FindPackageShare()", "\0", "def"])

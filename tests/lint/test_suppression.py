@@ -11,13 +11,13 @@ from linkwright.lint.suppression import directives
 
 def ranges(text: str) -> list[list[str] | None]:
     return [
-        None if each.ranges is None else [text[start:end] for start, end in each.ranges]
-        for each in directives(SourceText("f", text))
+        None if directive.ranges is None else [text[start:end] for start, end in directive.ranges]
+        for directive in directives(SourceText("f", text))
     ]
 
 
 def words(text: str) -> list[list[str]]:
-    return [[word for word, _ in each.selectors] for each in directives(SourceText("f", text))]
+    return [[word for word, _ in directive.selectors] for directive in directives(SourceText("f", text))]
 
 
 @pytest.mark.parametrize(

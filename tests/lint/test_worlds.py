@@ -143,7 +143,7 @@ def _items():
     if not MANIFEST.is_file():
         return []
     items = json.loads(MANIFEST.read_text(encoding="utf-8"))["items"]
-    return [pytest.param(each, id=each["name"]) for each in items if each["entry"].endswith((".world", ".sdf"))]
+    return [pytest.param(item, id=item["name"]) for item in items if item["entry"].endswith((".world", ".sdf"))]
 
 
 @pytest.mark.parametrize("item", _items())

@@ -268,7 +268,7 @@ def test_the_messages_of_humble_are_those_of_rosbags():
         structure = LIBRARY.structure(name)
         wanted = [field for field, _ in fields if field != "structure_needs_at_least_one_member"]
         assert [field.name for field in structure.fields] == wanted
-        assert [each.name for each in structure.constants] == [each[0] for each in constants]
+        assert [constant.name for constant in structure.constants] == [constant[0] for constant in constants]
 
 
 def test_services():

@@ -67,8 +67,8 @@ def test_stamps_of_the_time_of_sending():
     array_message = get_message("visualization_msgs/msg/MarkerArray")()
     values = {"markers": [{"header": {"stamp": "now", "frame_id": "a"}}, {"header": "auto"}]}
     setters = set_fields(array_message, values, expand_header_auto=True, expand_time_now=True)
-    for each in setters:
-        each(Time(9))
+    for setter in setters:
+        setter(Time(9))
     assert [marker.header.stamp.sec for marker in array_message.markers] == [9, 9]
     assert array_message.markers[0].header.frame_id == "a"
     with pytest.raises(FieldValueError):
@@ -110,7 +110,7 @@ def test_what_is_wrong_is_told(name, values, code, message, hint):
 def test_all_mistakes_are_told_together():
     with pytest.raises(FieldValueError) as caught:
         made(JointState, {"nam": 1, "position": "a", "header": {"stamp": {"sec": "x", "nsec": 1}}})
-    assert [each.code for each in caught.value.diagnostics] == ["MSG301", "MSG302", "MSG302", "MSG301"]
+    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["MSG301", "MSG302", "MSG302", "MSG301"]
 
 
 def test_a_byte_and_its_like():

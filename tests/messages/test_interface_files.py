@@ -48,7 +48,7 @@ def fields(text):
 def faults(text, kind="msg"):
     with pytest.raises(DefinitionError) as caught:
         parsed(text, kind)
-    return [(each.code, str(each.span), each.message) for each in caught.value.diagnostics]
+    return [(diagnostic.code, str(diagnostic.span), diagnostic.message) for diagnostic in caught.value.diagnostics]
 
 
 class TestFields:
@@ -111,7 +111,7 @@ class TestFields:
 
     def test_constants(self):
         text = 'int32 A=1\nint32 B = -2 # b\nstring NAME="a=b"\nstring PLAIN= x y \nfloat64 PI2=6.28\nbool ON=true\n'
-        constants = {each.name: each.value for each in parsed(text).constants}
+        constants = {constant.name: constant.value for constant in parsed(text).constants}
         assert constants == {"A": 1, "B": -2, "NAME": "a=b", "PLAIN": "x y", "PI2": 6.28, "ON": True}
 
     def test_parts(self):
@@ -324,7 +324,7 @@ class TestIdl:
         }
         defaults = {field.name: field.default for field in definition.fields if field.default is not None}
         assert defaults == {"x": 2.5, "numbers": (1, 2), "flag": True}
-        constants = {each.name: each.value for each in definition.constants}
+        constants = {constant.name: constant.value for constant in definition.constants}
         assert constants == {"MOST": 5, "NAME": "hi; there", "LENGTH": 1.5}
 
     def test_services_and_empty_structures(self):

@@ -54,8 +54,8 @@ def test_all_forms_are_the_same_message(transforms, changed):
     for _ in range(3):  # read one by one, then known again
         received = deserialize(data, TFMessage)
         batch = received.batch
-        assert batch.children == tuple(each.child_frame_id for each in transforms)
-        assert batch.stamp_ns == max((each.header.stamp.nanoseconds for each in transforms), default=0)
+        assert batch.children == tuple(transform.child_frame_id for transform in transforms)
+        assert batch.stamp_ns == max((transform.header.stamp.nanoseconds for transform in transforms), default=0)
         np.testing.assert_array_equal(batch.poses, message.batch.poses)
         assert serialize(received) == data
         assert received.transforms == transforms

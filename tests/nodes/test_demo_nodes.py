@@ -27,7 +27,7 @@ async def test_the_test_picture_moves(stage):
     DemoCamera(stage.graph, stage.options({"width": 64, "height": 48, "frequency": 10.0}))
     await stage.clock.advance(0.21)
     assert len(pictures) == 2
-    first, second = (np.asarray(each.data).reshape(48, 64, 3) for each in pictures)
+    first, second = (np.asarray(picture.data).reshape(48, 64, 3) for picture in pictures)
     assert (pictures[0].encoding, pictures[0].step, pictures[0].header.frame_id) == ("bgr8", 192, "camera_frame")
     assert (np.roll(first, 4, axis=1) == second).all()
     assert len(np.unique(first[0], axis=0)) == 8

@@ -219,7 +219,7 @@ async def test_parameters_are_read_set_and_followed():
         change = {"name": "/robot.speed", "value": 2, "type": "float64"}
         await client.send("setParameters", parameters=[change], id="two")
         answers = [await client.until("parameterValues") for _ in range(2)]
-        assert [each["parameters"][0]["value"] for each in answers] == [2.0, 2.0]
+        assert [answer["parameters"][0]["value"] for answer in answers] == [2.0, 2.0]
         assert w.node.get_parameter("speed").value == 2.0
         await client.send("getParameters", parameterNames=[], id="all")
         names = {each["name"] for each in (await client.until("parameterValues"))["parameters"]}

@@ -308,8 +308,8 @@ class TestParameters:
     async def test_that_mean_nothing_are_all_told(self, stage, parameters, messages):
         with pytest.raises(LinkwrightError) as caught:
             stage.joint_state_publisher(**parameters)
-        assert [each.message for each in caught.value.diagnostics] == messages
-        assert {each.code for each in caught.value.diagnostics} == {"NODE201"}
+        assert [diagnostic.message for diagnostic in caught.value.diagnostics] == messages
+        assert {diagnostic.code for diagnostic in caught.value.diagnostics} == {"NODE201"}
 
     async def test_changes_take_effect(self, stage, clock):
         publisher = stage.joint_state_publisher(zeros={"b": 0.5})

@@ -130,7 +130,9 @@ async def test_a_datum_and_the_services(test):
     back = (await test.call("/toLL", get_service("robot_localization/srv/ToLL").Request(map_point=there))).ll_point
     assert (back.latitude, back.longitude) == pytest.approx((ask.ll_point.latitude, ask.ll_point.longitude), abs=1e-9)
     several = get_service("robot_localization/srv/FromLLArray").Request(ll_points=[ask.ll_point] * 2)
-    assert [each.x for each in (await test.call("/fromLLArray", several)).map_points] == pytest.approx([20.0, 20.0])
+    assert [map_point.x for map_point in (await test.call("/fromLLArray", several)).map_points] == pytest.approx(
+        [20.0, 20.0]
+    )
     datum = get_service("robot_localization/srv/SetDatum").Request()
     datum.geo_pose.position = ask.ll_point
     turn(datum.geo_pose.orientation, 0.0)

@@ -41,7 +41,7 @@ def installed(tmp_path, monkeypatch: pytest.MonkeyPatch) -> Iterator[NodeRegistr
 
 
 def test_ours_are_declared_in_the_metadata() -> None:
-    declared = {each.name for each in entry_points(group="linkwright.nodes")}
+    declared = {entry_point.name for entry_point in entry_points(group="linkwright.nodes")}
     assert {"/".join(key) for key in EXECUTABLES} == declared
     assert ("tf2_ros", "tf2_echo") in EXECUTABLES
     assert ("tf2_ros", "nothing") not in EXECUTABLES

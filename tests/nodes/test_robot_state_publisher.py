@@ -469,7 +469,7 @@ async def test_parameters_override_the_quality_of_service(stage):
     (info,) = publisher.node.get_publishers_info_by_topic("/tf")
     assert info.qos_profile.depth == 7
     infos = publisher.node.get_subscriptions_info_by_topic("/joint_states")
-    mine = next(each for each in infos if each.node_name == "robot_state_publisher")
+    mine = next(info for info in infos if info.node_name == "robot_state_publisher")
     assert mine.qos_profile.reliability is ReliabilityPolicy.RELIABLE
     names = [name for name in publisher.node.parameter_names() if name.startswith("qos_overrides")]
     assert sorted(names) == [

@@ -31,7 +31,7 @@ def said(test, level):
 
 async def send(test, topic, message):
     """Publish, with a publisher that the node has found before."""
-    if not any(each.name == topic for each in test.node.publishers):
+    if not any(publisher.name == topic for publisher in test.node.publishers):
         test.node.create_publisher(type(message), topic, 10)
         await test.settle()
     test.publish(topic, message)

@@ -131,7 +131,7 @@ async def test_the_type_follows_who_comes_later(start, stage):
 @pytest.mark.parametrize(("stamped", "kind"), [(True, TWIST_STAMPED), (False, TWIST)])
 async def test_the_type_is_the_one_asked_for(start, stage, stamped, kind):
     start(kind=None, stamped=stamped)
-    assert [each.type_name for each in stage.graph.endpoints() if each.name == "/cmd_vel"] == [kind]
+    assert [endpoint.type_name for endpoint in stage.graph.endpoints() if endpoint.name == "/cmd_vel"] == [kind]
 
 
 async def test_a_key_that_is_lost_stops_the_robot(start, stage):
@@ -194,14 +194,14 @@ async def test_closing_the_node_stops_the_robot(start):
 async def test_without_a_terminal_it_says_so(stage):
     with pytest.raises(LinkwrightError) as raised:
         TeleopTwistKeyboard(stage.graph, NodeOptions())
-    assert [each.code for each in raised.value.diagnostics] == ["NODE901"]
+    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE901"]
     assert stage.graph.topics().get("/cmd_vel") is None
 
 
 async def test_a_negative_speed_is_refused(stage):
     with pytest.raises(LinkwrightError) as raised:
         TeleopTwistKeyboard(stage.graph, NodeOptions(parameters={"speed": -1.0}))
-    assert [each.code for each in raised.value.diagnostics] == ["NODE902"]
+    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["NODE902"]
 
 
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, None], ids=str)

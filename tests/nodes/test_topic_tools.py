@@ -76,7 +76,7 @@ async def test_relay_has_the_quality_of_its_sources_and_goes_with_them(test):
     assert copy.qos_profile.durability is DurabilityPolicy.VOLATILE
     assert copy.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
     assert len([text for text in said(test, "WARN") if text.startswith("Some, but not all, publishers")]) == 2
-    for publisher in [each for each in test.node.publishers if each.name == "/chatter"]:
+    for publisher in [publisher for publisher in test.node.publishers if publisher.name == "/chatter"]:
         test.node.destroy_publisher(publisher)
     await test.settle()
     assert test.graph.count_publishers("/copy") == 0

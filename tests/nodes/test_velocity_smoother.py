@@ -63,8 +63,8 @@ async def line(stage):
         return lines[-1]
 
     yield start
-    for each in lines:
-        each.node.close()
+    for line in lines:
+        line.node.close()
 
 
 async def test_a_step_becomes_a_ramp_within_the_limits(line, stage):
@@ -167,7 +167,9 @@ async def test_it_is_a_managed_node(line, stage):
     await stage.clock.advance(1.0)
     assert one.speeds()[-1] == 0.0
     node.trigger_cleanup()
-    assert "/cmd_vel_smoothed" not in {each.name for each in stage.graph.endpoints() if each.node.name != "audience"}
+    assert "/cmd_vel_smoothed" not in {
+        endpoint.name for endpoint in stage.graph.endpoints() if endpoint.node.name != "audience"
+    }
 
 
 @pytest.mark.parametrize(

@@ -90,7 +90,7 @@ def main() -> None:
         "ros_discovery_info": writer(participant, "ros_discovery_info", info, LASTING),
     }
     limit = time.monotonic() + 60
-    while time.monotonic() < limit and not all(each.get_matched_subscriptions() for each in writers.values()):
+    while time.monotonic() < limit and not all(writer.get_matched_subscriptions() for writer in writers.values()):
         time.sleep(0.02)
     print("matched", *(name for name, each in writers.items() if each.get_matched_subscriptions()), flush=True)
     shout(lottery, 7400 + 250 * number + 10)

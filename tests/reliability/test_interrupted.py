@@ -203,7 +203,7 @@ def test_a_recording_is_whole(machine: Machine) -> None:
     machine.program(TALKER)
     bag = machine.folder / "bag"
     recorder = machine.command("bag", "record", "/chatter", "-o", bag)
-    wait_until(lambda: sum(each.stat().st_size for each in bag.glob("*")) > 100 if bag.is_dir() else False)
+    wait_until(lambda: sum(path.stat().st_size for path in bag.glob("*")) > 100 if bag.is_dir() else False)
     recorder.wait_for("Subscribed to topic '/chatter'")
     listener = machine.program(LISTENER)
     listener.wait_for("heard", times=60)  # which the recorder hears too

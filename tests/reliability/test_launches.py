@@ -21,11 +21,11 @@ def test_two_of_one_kind_warn_and_both_work(machine: Machine) -> None:
     )
     path = machine.write("a.launch.py", launch_file(*actions))
     launches = [machine.launch(path), machine.launch(path)]
-    for each in launches:
-        each.wait_for("has nodes of the same names")
-        each.wait_for("I heard: ", times=4)
-    for each in launches:
-        assert each.count("Another process has a node") == 0
+    for launch in launches:
+        launch.wait_for("has nodes of the same names")
+        launch.wait_for("I heard: ", times=4)
+    for launch in launches:
+        assert launch.count("Another process has a node") == 0
     assert machine.verb("node", "list").count("/talker") == 2
     assert launches[0].interrupt() == 130
     before = launches[1].count("I heard: ")

@@ -75,7 +75,7 @@ def test_bag_record_is_whole_however_it_is_ended(machine: Machine, storage: str,
     recording = machine.command("bag", "record", "-a", "-o", "bag", "-s", storage)
     recording.wait_for("Subscribed to topic '/chatter'")
     folder = machine.folder / "bag"
-    wait_until(lambda: sum(each.stat().st_size for each in folder.iterdir()) > 1_000_000, what=lambda: recording.text)
+    wait_until(lambda: sum(path.stat().st_size for path in folder.iterdir()) > 1_000_000, what=lambda: recording.text)
     for each in signals:
         recording.process.send_signal(each)
         time.sleep(0.35)  # later than what counts as one keypress
@@ -93,6 +93,6 @@ def test_the_recording_of_a_launch_is_whole(machine: Machine) -> None:
     launch = machine.launch(machine.write("a.launch.py", launch_file(record)))
     launch.wait_for("Subscribed to topic '/chatter'")
     folder = machine.folder / "bag"
-    wait_until(lambda: sum(each.stat().st_size for each in folder.iterdir()) > 1_000_000, what=lambda: launch.text)
+    wait_until(lambda: sum(path.stat().st_size for path in folder.iterdir()) > 1_000_000, what=lambda: launch.text)
     launch.interrupt()
     assert count(folder) > 100

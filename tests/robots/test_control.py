@@ -203,8 +203,8 @@ def test_the_tests_of_the_package_pass(load: Any) -> None:
     exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
     tests = [value for name, value in names.items() if name.startswith("test_")]
     assert len(tests) == 5
-    for each in tests:
-        each()
+    for test in tests:
+        test()
 
 
 def test_nothing_is_found_in_the_package(capsys: pytest.CaptureFixture[str]) -> None:

@@ -56,7 +56,7 @@ def test_wheels_and_casters_touch_the_ground_that_the_footprint_lies_on(choice: 
     assert min(heights.values()) == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("choice", [each for each in CHOICES if "laser" in each], ids=name)
+@pytest.mark.parametrize("choice", [choice for choice in CHOICES if "laser" in choice], ids=name)
 def test_the_scan_passes_over_every_other_part(choice: dict[str, str]) -> None:
     robot = robot_of(choice)
     plane = height(robot, "laser_link")
@@ -76,8 +76,8 @@ def test_a_sensor_alone_is_where_the_tutorial_puts_it(sensor: str) -> None:
 def test_the_base_is_that_of_the_tutorial() -> None:
     base, ours = load(PACKAGE / "urdf" / "mbot_base.urdf"), robot_of({})
     for link in base.links.values():
-        assert [each.geometry for each in ours.links[link.name].visuals] == [each.geometry for each in link.visuals]
-        assert [each.geometry for each in ours.links[link.name].collisions] == [each.geometry for each in link.visuals]
+        assert [visual.geometry for visual in ours.links[link.name].visuals] == [visual.geometry for visual in link.visuals]
+        assert [collision.geometry for collision in ours.links[link.name].collisions] == [visual.geometry for visual in link.visuals]
     for joint in base.joints.values():
         assert ours.joints[joint.name].origin == joint.origin
 

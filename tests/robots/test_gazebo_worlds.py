@@ -143,7 +143,7 @@ def bridge() -> list[dict[str, Any]]:
 def test_what_rviz_shows_is_published(name: str) -> None:
     text = (GAZEBO_PACKAGE / "rviz" / f"{name}.rviz").read_text(encoding="utf-8")
     displays = yaml.safe_load(text)["Visualization Manager"]["Displays"]
-    shown = {each["Topic"]["Value"].lstrip("/") for each in displays if "Topic" in each}
+    shown = {display["Topic"]["Value"].lstrip("/") for display in displays if "Topic" in display}
     assert shown <= {each["ros_topic_name"] for each in bridge()}
     assert "odom" in shown
 

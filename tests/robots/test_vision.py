@@ -29,7 +29,7 @@ def follow_object(monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]:
     for package in (CONTROL_PACKAGE, VISION_PACKAGE):
         monkeypatch.syspath_prepend(str(package))
     yield importlib.import_module("my_robot_vision.follow_object")
-    for name in [each for each in sys.modules if each.partition(".")[0] in ("my_robot_control", "my_robot_vision")]:
+    for name in [module for module in sys.modules if module.partition(".")[0] in ("my_robot_control", "my_robot_vision")]:
         del sys.modules[name]
 
 
@@ -57,8 +57,8 @@ def test_what_the_node_decides(follow_object: Any) -> None:
     exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
     tests = [value for name, value in names.items() if name.startswith("test_")]
     assert len(tests) == 3
-    for each in tests:
-        each()
+    for test in tests:
+        test()
 
 
 def test_the_package_is_checked(capsys: pytest.CaptureFixture[str]) -> None:

@@ -70,7 +70,7 @@ def of(kind: type, name: str) -> SearchStrategy[Any]:
     hint = _hints(kind)[name]
     if Element in (hint, *get_args(hint)):
         return st.none()
-    usual = next(each.default for each in dataclasses.fields(kind) if each.name == name)
+    usual = next(field.default for field in dataclasses.fields(kind) if field.name == name)
     found = _values(hint)
     return found if usual is dataclasses.MISSING else st.just(usual) | found
 
@@ -81,7 +81,7 @@ def _values(hint: Any) -> SearchStrategy[Any]:
         return simple[hint]
     arguments = get_args(hint)
     if get_origin(hint) in (Union, types.UnionType):
-        return st.one_of(*(_values(each) for each in arguments if each is not Polyline))
+        return st.one_of(*(_values(argument) for argument in arguments if argument is not Polyline))
     if get_origin(hint) is tuple:
         if arguments[-1] is Ellipsis:
             least = 1 if arguments[0] is Polyline else 0
@@ -96,4 +96,6 @@ def objects(kind: type) -> SearchStrategy[Any]:
         return poses()
     if kind is Pbr:
         return st.builds(Pbr, metal=_workflow(_SPECULAR), specular=_workflow(_METAL))
-    return st.deferred(lambda: st.builds(kind, **{each.name: of(kind, each.name) for each in dataclasses.fields(kind)}))
+    return st.deferred(
+        lambda: st.builds(kind, **{field.name: of(kind, field.name) for field in dataclasses.fields(kind)})
+    )

@@ -21,9 +21,9 @@ WORLDS = Path(__file__).parents[3] / "shared" / "worlds"
 MANIFEST = WORLDS / "manifest.json"
 ITEMS = json.loads(MANIFEST.read_text(encoding="utf-8"))["items"] if MANIFEST.is_file() else []
 FILES = [
-    pytest.param(each, id=f"{each['source']}/{each['name']}")
-    for each in ITEMS
-    if each["kind"] == "world" and each["entry"].endswith((".world", ".sdf"))
+    pytest.param(item, id=f"{item['source']}/{item['name']}")
+    for item in ITEMS
+    if item["kind"] == "world" and item["entry"].endswith((".world", ".sdf"))
 ]
 NAMES = {
     Box: "box",
@@ -62,11 +62,11 @@ def test_a_world_has_what_is_known_to_be_in_it(item):
     assert found.sdf is not None
     world = found.sdf.worlds[0]
     links = list(placed_links(world))
-    collisions = Counter(NAMES[type(each.geometry)] for place in links for each in place.link.collisions)
-    visuals = Counter(NAMES[type(each.geometry)] for place in links for each in place.link.visuals)
+    collisions = Counter(NAMES[type(collision.geometry)] for place in links for collision in place.link.collisions)
+    visuals = Counter(NAMES[type(visual.geometry)] for place in links for visual in place.link.visuals)
     assert len(links) == facts["links"]
     assert (dict(collisions), dict(visuals)) == (facts["collisions"], facts["visuals"])
-    assert Counter(each.type for each in world.lights) == Counter(facts["lights"])
+    assert Counter(light.type for light in world.lights) == Counter(facts["lights"])
     assert len(world.actors) == facts["actors"]
     assert len(world.includes) <= facts["unresolved_includes"]
 
@@ -86,11 +86,11 @@ def test_models_stand_where_they_are_known_to(item):
             sign = 1.0 if sum(a * b for a, b in zip(place[3:], expected[3:], strict=True)) > 0 else -1.0
             assert place[:3] == pytest.approx(expected[:3], abs=1e-9)
             assert [sign * each for each in place[3:]] == pytest.approx(expected[3:], abs=1e-9)
-    there = {each.name for each in (*world.models, *world.lights)}
-    left_out = {each.uri for each in world.includes}
+    there = {model.name for model in (*world.models, *world.lights)}
+    left_out = {include.uri for include in world.includes}
     assert {name for name, each in known.items() if each.get("include") not in left_out and not _is_ours(each)} <= there
 
 
 @pytest.mark.parametrize("item", FILES)
 def test_a_world_that_simulators_take_has_no_errors(item):
-    assert [each for each in examined(item).diagnostics if each.severity.value == "error"] == []
+    assert [diagnostic for diagnostic in examined(item).diagnostics if diagnostic.severity.value == "error"] == []

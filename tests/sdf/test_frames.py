@@ -123,7 +123,7 @@ def test_links_of_a_world_have_their_place_and_know_whether_they_move():
         <model name="s"><static>1</static><pose relative_to="m">0 1 0 0 0 0</pose><model name="i">
         <pose>0 0 1 0 0 0</pose><link name="l"/></model></model>"""
     )
-    assert [(each.name, each.pose[:3], each.static) for each in placed_links(found)] == [
+    assert [(placed_link.name, placed_link.pose[:3], placed_link.static) for placed_link in placed_links(found)] == [
         ("m::a", (0, 0, 1), False),
         ("m::b", (1, 0, 1), False),
         ("s::i::l", (0, 1, 2), True),

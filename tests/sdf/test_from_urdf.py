@@ -55,7 +55,7 @@ LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
 
 def test_links_stand_at_their_joints():
     model = converted(link("a") + link("b") + joint("j", "a", "b", origin="1 2 3", rpy=f"0 0 {pi / 2}"))
-    assert [(each.name, each.pose.relative_to) for each in model.links] == [("a", ""), ("b", "j")]
+    assert [(link.name, link.pose.relative_to) for link in model.links] == [("a", ""), ("b", "j")]
     assert model.joints[0].pose == RawPose(Pose((1.0, 2.0, 3.0), (0.0, 0.0, pi / 2)), "a")
     assert (model.joints[0].type, model.joints[0].parent, model.joints[0].child) == ("fixed", "a", "b")
     assert Frames(model).pose("b")[:3] == (1.0, 2.0, 3.0)
@@ -86,7 +86,7 @@ def test_a_mimic_joint_follows():
     model = converted(
         link("a") + link("b") + link("c") + turning + joint("k", "a", "c", kind="revolute", inside=inside)
     )
-    axis = next(each.axis for each in model.joints if each.name == "k")
+    axis = next(joint.axis for joint in model.joints if joint.name == "k")
     assert axis is not None
     assert axis.mimic is not None
     assert (axis.mimic.joint, axis.mimic.multiplier, axis.mimic.offset) == ("j", -2.0, 0.5)
@@ -94,7 +94,7 @@ def test_a_mimic_joint_follows():
 
 def test_a_root_called_world_is_the_world():
     model = converted('<link name="world"/>' + link("a") + joint("j", "world", "a", origin="0 0 1"), lump=True)
-    assert [each.name for each in model.links] == ["a"]
+    assert [link.name for link in model.links] == ["a"]
     assert (model.joints[0].parent, model.joints[0].pose.relative_to) == ("world", "__model__")
     assert Frames(model).pose("a")[:3] == (0.0, 0.0, 1.0)
     assert check_references(Sdf("1.11", models=(model,))) == []
@@ -108,7 +108,7 @@ def test_a_floating_link_moves_freely_and_a_planar_one_too():
     conversion = model_from_robot(robot, lump_fixed_joints=False)
     assert conversion.model.joints == ()
     assert Frames(conversion.model).pose("b")[:3] == (1.0, 0.0, 0.0)
-    assert [(each.code, str(each.message)) for each in conversion.diagnostics] == [
+    assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in conversion.diagnostics] == [
         ("SDF171", "joint 'p' is planar, which SDF does not have: it is left out")
     ]
 
@@ -116,9 +116,9 @@ def test_a_floating_link_moves_freely_and_a_planar_one_too():
 def test_shapes_are_named_as_gz_names_them():
     inside = f"<visual>{BOX}</visual><visual>{BOX}</visual>" + f'<visual name="a_top">{BOX}</visual>'
     model = converted(link("a", inside + f'<visual name="lid">{BOX}</visual>' + f"<collision>{BOX}</collision>"))
-    names = [each.name for each in model.links[0].visuals]
+    names = [visual.name for visual in model.links[0].visuals]
     assert names == ["a_visual", "a_visual_1", "a_top_visual_2", "a_fixed_joint_lump__lid_visual_3"]
-    assert [each.name for each in model.links[0].collisions] == ["a_collision"]
+    assert [collision.name for collision in model.links[0].collisions] == ["a_collision"]
     assert model.links[0].visuals[0].geometry == Box((1.0, 2.0, 3.0))
 
 
@@ -222,13 +222,13 @@ def test_words_and_sensors_of_joints():
     dynamics = found.axis.dynamics
     assert (dynamics.spring_stiffness, dynamics.spring_reference, dynamics.damping) == (3.0, 0.5, 2.0)
     assert found.provide_feedback
-    assert [each.type for each in found.sensors] == ["force_torque"]
+    assert [sensor.type for sensor in found.sensors] == ["force_torque"]
 
 
 def test_links_and_joints_that_urdf_cannot_have():
     loop = '<gazebo><joint name="loop" type="revolute"><parent>a</parent><child>b</child></joint></gazebo>'
     model = converted(link("a") + link("b") + joint("j", "a", "b", kind="revolute", inside=LIMIT) + loop)
-    assert [each.name for each in model.joints] == ["j", "loop"]
+    assert [joint.name for joint in model.joints] == ["j", "loop"]
 
 
 def test_what_is_wrong_in_gazebo_is_told_at_its_place():
@@ -250,7 +250,7 @@ def test_a_gazebo_element_that_is_too_deep_is_left_out():
     deep = "<model>" * 300 + "</model>" * 300
     robot = examine(f'<robot name="r">{link("a")}<gazebo>{deep}</gazebo></robot>').robot
     conversion = model_from_robot(robot, lump_fixed_joints=False)
-    assert [each.code for each in conversion.diagnostics] == ["SDF133"]
+    assert [diagnostic.code for diagnostic in conversion.diagnostics] == ["SDF133"]
     assert conversion.model.models == ()
 
 
@@ -264,21 +264,21 @@ def test_lumped_links_are_frames_and_their_shapes_and_sensors_move():
         "<mu1>0.5</mu1></gazebo>",
         lump=True,
     )  # fmt: skip
-    assert [each.name for each in model.links] == ["base"]
+    assert [link.name for link in model.links] == ["base"]
     assert model.joints == ()
     frames = Frames(model)
     assert frames.pose("optical")[:3] == pytest.approx((1.0, 1.0, 1.0))
-    assert [each.name for each in model.frames] == ["to_arm", "arm", "to_camera", "camera", "to_optical", "optical"]
+    assert [frame.name for frame in model.frames] == ["to_arm", "arm", "to_camera", "camera", "to_optical", "optical"]
     base = model.links[0]
-    assert [each.name for each in base.visuals] == [
+    assert [visual.name for visual in base.visuals] == [
         "base_visual",
         "base_fixed_joint_lump__camera_visual_1",
         "base_fixed_joint_lump__optical_visual_2",
     ]
     assert base.collisions[1].pose.pose.xyz == pytest.approx((1.0, 1.0, 0.0))
     assert base.sensors[0].pose.pose.xyz == pytest.approx((1.0, 1.0, 2.0))
-    frictions = [each.surface.friction for each in base.collisions]
-    assert [each.mu if each else None for each in frictions] == [None, 0.5, None]
+    frictions = [collision.surface.friction for collision in base.collisions]
+    assert [friction.mu if friction else None for friction in frictions] == [None, 0.5, None]
     assert check_references(Sdf("1.11", models=(model,))) == []
 
 
@@ -308,7 +308,7 @@ def test_lumped_inertia_stays_in_the_axes_of_the_first():
 def test_what_hangs_from_a_lumped_link_hangs_from_the_body():
     turning = joint("j", "b", "c", kind="revolute", origin="0 1 0", inside=LIMIT)
     model = converted(link("a") + link("b") + link("c") + joint("k", "a", "b", origin="1 0 0") + turning, lump=True)
-    assert [each.name for each in model.links] == ["a", "c"]
+    assert [link.name for link in model.links] == ["a", "c"]
     assert (model.joints[0].parent, model.joints[0].pose.pose.xyz) == ("a", (1.0, 1.0, 0.0))
     assert Frames(model).pose("c")[:3] == (1.0, 1.0, 0.0)
 
@@ -329,11 +329,11 @@ def test_links_without_mass_are_left_out_only_when_lumping():
         + joint("g", "base", "ghost", kind="continuous") + joint("h", "ghost", "tip", kind="continuous")
     )  # fmt: skip
     kept = model_from_robot(robot, lump_fixed_joints=False)
-    assert [each.name for each in kept.model.links] == ["footprint", "base", "ghost", "tip"]
-    assert [each.code for each in kept.diagnostics] == ["SDF172"]
+    assert [link.name for link in kept.model.links] == ["footprint", "base", "ghost", "tip"]
+    assert [diagnostic.code for diagnostic in kept.diagnostics] == ["SDF172"]
     lumped = model_from_robot(robot, lump_fixed_joints=True)
-    assert [each.name for each in lumped.model.links] == ["footprint"]
-    assert [(each.code, str(each.message)) for each in lumped.diagnostics] == [
+    assert [link.name for link in lumped.model.links] == ["footprint"]
+    assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in lumped.diagnostics] == [
         ("SDF170", "link 'ghost' has no mass, so it is left out with all that hangs from it")
     ]
 
@@ -341,7 +341,7 @@ def test_links_without_mass_are_left_out_only_when_lumping():
 def test_a_sensor_of_a_lumped_joint_is_told_of():
     said = '<gazebo reference="j"><sensor name="ft" type="force_torque"/></gazebo>'
     conversion = model_from_robot(robot_of(link("a") + link("b") + joint("j", "a", "b") + said), lump_fixed_joints=True)
-    assert [(each.code, str(each.message)) for each in conversion.diagnostics] == [
+    assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in conversion.diagnostics] == [
         ("SDF171", "sensor 'ft' is left out: the links of joint 'j' become one")
     ]
 
@@ -352,7 +352,7 @@ def test_a_joint_with_the_name_of_a_link():
     for lump in (False, True):
         conversion = model_from_robot(robot, lump_fixed_joints=lump)
         assert Frames(conversion.model).pose("c")[:3] == (1.0, 1.0, 0.0)
-        assert {each.code for each in conversion.diagnostics} == {"SDF171"}
+        assert {diagnostic.code for diagnostic in conversion.diagnostics} == {"SDF171"}
 
 
 def test_a_chain_of_many_links():
@@ -398,20 +398,20 @@ def test_real_robots(entry, arguments, packages, facts):
     for lump in (False, True):
         conversion = model_from_robot(robot, lump_fixed_joints=lump)
         model = conversion.model
-        assert [each for each in conversion.diagnostics if each.severity.value == "error"] == []
-        references = {each.code for each in check_references(Sdf("1.11", models=(model,)))}
+        assert [diagnostic for diagnostic in conversion.diagnostics if diagnostic.severity.value == "error"] == []
+        references = {check_reference.code for check_reference in check_references(Sdf("1.11", models=(model,)))}
         assert references <= {"SDF132"}, "what nothing in it has a mass has no links left"
         frames = Frames(model)
         for name in robot.links:
             if name != "world" and (name in frames.named or not lump):
                 frames.pose(name)
         if facts is not None and not lump:
-            sensors = [each for link in model.links for each in link.sensors]
+            sensors = [sensor for link in model.links for sensor in link.sensors]
             assert len(model.links) == facts["links"] - ("world" in robot.links)
             assert len(model.joints) == sum(facts["joints"].values())
-            assert {each.name for each in sensors} == {each["name"] for each in facts["sensors"]}
-            written = sum(each.tag == "plugin" for gazebo in robot.extensions if "reference" not in gazebo.attributes
-                          for each in gazebo.elements())  # fmt: skip
+            assert {sensor.name for sensor in sensors} == {each["name"] for each in facts["sensors"]}
+            written = sum(element.tag == "plugin" for gazebo in robot.extensions if "reference" not in gazebo.attributes
+                          for element in gazebo.elements())  # fmt: skip
             assert len(model.plugins) == written
             assert sum(len(link.visuals) for link in model.links) == sum(facts["visuals"].values())
             assert sum(len(link.collisions) for link in model.links) == sum(facts["collisions"].values())

@@ -20,7 +20,7 @@ BOX = sdf('<model name="box"><link name="l"/></model>')
 
 
 def models(found) -> list[str]:
-    return [each.name for each in found.sdf.worlds[0].models]
+    return [model.name for model in found.sdf.worlds[0].models]
 
 
 def test_a_model_is_found_in_the_folders_of_each_variable(tmp_path):
@@ -148,8 +148,8 @@ def test_our_sun_and_ground_are_there(tmp_path):
     found = examined(tmp_path, inside)
     assert found.sdf is not None
     world = found.sdf.worlds[0]
-    assert [each.name for each in world.lights] == ["sun"]
-    assert [(each.name, each.static) for each in world.models] == [("ground_plane", True)]
+    assert [light.name for light in world.lights] == ["sun"]
+    assert [(model.name, model.static) for model in world.models] == [("ground_plane", True)]
 
 
 def test_an_include_says_what_is_different_here(tmp_path):
@@ -163,7 +163,7 @@ def test_an_include_says_what_is_different_here(tmp_path):
     first, second = found.sdf.worlds[0].models
     assert (first.name, first.pose.pose.xyz, first.static, first.plugins) == ("box", (1, 1, 1), False, ())
     assert (second.name, second.pose.pose.xyz, second.static) == ("other", (0, 0, 2), True)
-    assert [each.filename for each in second.plugins] == ["p"]
+    assert [plugin.filename for plugin in second.plugins] == ["p"]
 
 
 def test_models_include_models_and_know_where_they_stand(tmp_path):
@@ -182,7 +182,7 @@ def test_models_include_models_and_know_where_they_stand(tmp_path):
     found = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path / "models"))
     assert found.diagnostics == ()
     assert found.sdf is not None
-    places = {each.name: each.pose[:3] for each in placed_links(found.sdf.worlds[0])}
+    places = {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(found.sdf.worlds[0])}
     assert places == {"car::body": (5, 0, 0), "car::left::rim": (5, 1, 0)}
 
 
@@ -206,7 +206,7 @@ def test_merged_parts_are_parts_of_the_model_around_them(tmp_path):
     assert found.diagnostics == ()
     assert found.sdf is not None
     model = found.sdf.worlds[0].models[0]
-    assert [each.name for each in model.links] == ["base", "pole", "lamp"]
+    assert [link.name for link in model.links] == ["base", "pole", "lamp"]
     frames = Frames(model)
     assert frames.pose("pole")[:3] == pytest.approx((-1, 0, 6))
     assert frames.pose("lamp")[:3] == pytest.approx((-1, 0, 7))
@@ -222,7 +222,7 @@ def test_what_a_merged_model_could_not_include_is_told_of_once(tmp_path):
         """<model name="m"><include merge="true"><uri>mast</uri></include>
         <joint name="j" type="fixed"><parent>world</parent><child>pole::link</child></joint></model>""",
     )
-    assert [each.code for each in found.diagnostics] == ["SDF160"]
+    assert [diagnostic.code for diagnostic in found.diagnostics] == ["SDF160"]
 
 
 def test_a_merged_model_without_its_placement_frame_is_told_of_and_placed_without(tmp_path):
@@ -232,7 +232,7 @@ def test_a_merged_model_without_its_placement_frame_is_told_of_and_placed_withou
         """<model name="m"><link name="base"/><include merge="true"><uri>mast</uri><pose>0 0 5 0 0 0</pose></include>
         </model>""",
     )
-    assert [each.code for each in found.diagnostics] == ["SDF141"]
+    assert [diagnostic.code for diagnostic in found.diagnostics] == ["SDF141"]
     assert found.sdf is not None
     assert Frames(found.sdf.worlds[0].models[0]).pose("pole")[:3] == (0, 0, 5)
 
@@ -247,8 +247,8 @@ def test_lights_and_actors_are_included_too(tmp_path):
     )
     assert found.sdf is not None
     world = found.sdf.worlds[0]
-    assert [(each.name, each.pose.pose.xyz) for each in world.lights] == [("l", (0, 0, 3))]
-    assert [each.name for each in world.actors] == ["walker"]
+    assert [(light.name, light.pose.pose.xyz) for light in world.lights] == [("l", (0, 0, 3))]
+    assert [actor.name for actor in world.actors] == ["walker"]
 
 
 def test_what_cannot_be_included_is_said_once_and_the_rest_stays(tmp_path):
@@ -267,9 +267,9 @@ def test_what_cannot_be_included_is_said_once_and_the_rest_stays(tmp_path):
         "<include><uri>doubtful</uri></include><include><uri>doubtful</uri><name>e</name></include>"
         '<model name="m"><static>1</static></model>',
     )
-    assert sorted(each.code for each in found.diagnostics) == ["SDF150", "SDF160", "SDF161", "XML203"]
+    assert sorted(diagnostic.code for diagnostic in found.diagnostics) == ["SDF150", "SDF160", "SDF161", "XML203"]
     assert models(found) == ["m", "again", "d", "e"]
-    doubtful = next(each for each in found.diagnostics if each.code == "SDF150")
+    doubtful = next(diagnostic for diagnostic in found.diagnostics if diagnostic.code == "SDF150")
     assert doubtful.span is not None
     assert doubtful.span.file.endswith("doubtful/model.sdf")
     assert doubtful.notes[-1].span is not None
@@ -282,7 +282,7 @@ def test_names_in_a_model_that_could_not_be_had_are_not_called_wrong(tmp_path):
         """<model name="m"><link name="l"/><include><uri>model://arm</uri><name>arm</name></include>
         <joint name="j" type="fixed"><parent>l</parent><child>arm::base</child></joint></model>""",
     )
-    assert [each.code for each in found.diagnostics] == ["SDF160"]
+    assert [diagnostic.code for diagnostic in found.diagnostics] == ["SDF160"]
 
 
 def test_where_a_model_is_known_or_was_renamed_what_is_missing_is_a_warning_and_else_an_information(tmp_path):
@@ -390,7 +390,7 @@ def test_few_lines_cannot_include_without_end(tmp_path, monkeypatch):
     files = {f"m{at}/model.sdf": sdf(f'<model name="m{at}">{twice.format(at + 1)}</model>') for at in range(30)}
     write(tmp_path, {**files, "m30/model.sdf": BOX})
     found = examined(tmp_path, "<include><uri>model://m0</uri></include>", GZ_SIM_RESOURCE_PATH=str(tmp_path))
-    assert [each.code for each in found.diagnostics].count("SDF161") == 1
+    assert [diagnostic.code for diagnostic in found.diagnostics].count("SDF161") == 1
 
 
 @pytest.mark.parametrize("name", ["w.sdf.xacro", "w.sdf", "w.world"])
@@ -435,7 +435,7 @@ def test_what_is_unknown_or_not_there_is_told_of_once(tmp_path):
     box = "<include><uri>model://box</uri></include>"
     inside = f'<mine/><mine/><yours/>{gone}{gone}{box}<model name="m"><static>1</static><mine/></model>'
     found = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path))
-    told = [str(each.message) for each in found.diagnostics if each.code in ("SDF150", "SDF160")]
+    told = [str(diagnostic.message) for diagnostic in found.diagnostics if diagnostic.code in ("SDF150", "SDF160")]
     assert [each.split(":")[0] for each in told] == [
         "<mine> in <world> is not read",
         "<yours> in <world> is not read",

@@ -39,19 +39,19 @@ def rules(rule: ElementRule, seen: dict[int, ElementRule]) -> dict[int, ElementR
     return seen
 
 
-MADE = [each for each in rules(SDF, {}).values() if is_dataclass(each.make)]
+MADE = [rule for rule in rules(SDF, {}).values() if is_dataclass(rule.make)]
 
 
 @pytest.mark.parametrize("rule", MADE, ids=[f"{each.tag}{number}" for number, each in enumerate(MADE)])
 def test_an_empty_element_is_read_as_its_class_is_by_default(rule: ElementRule):
     """The defaults of the table, which are SDF's, and those of the classes are the same ones."""
-    element = Element(rule.tag, {each.name: "n" for each in rule.attributes if each.required})
+    element = Element(rule.tag, {attribute.name: "n" for attribute in rule.attributes if attribute.required})
     found = reader_of(rule, NEWEST).read(element, element, SdfReport())
-    own = {each.name: each.default for each in fields(rule.make) if each.default is not MISSING}
+    own = {field.name: field.default for field in fields(rule.make) if field.default is not MISSING}
     if isinstance(rule.default, rule.make):
         own = {name: getattr(rule.default, name) for name in own}
     own.pop("element", None)
-    written = {each.target for each in rule.attributes if each.required}
+    written = {attribute.target for attribute in rule.attributes if attribute.required}
     assert {name: getattr(found, name) for name in own if name not in written} == {
         name: value for name, value in own.items() if name not in written
     }
@@ -289,7 +289,10 @@ def test_an_actor():
     assert actor.animations[0].interpolate_x
     assert (actor.script.loop, actor.script.delay_start) == (False, 2)
     path = actor.script.trajectories[0]
-    assert [(each.time, each.pose.pose.xyz) for each in path.waypoints] == [(0, (0, 0, 1)), (4.5, (1, 0, 1))]
+    assert [(waypoint.time, waypoint.pose.pose.xyz) for waypoint in path.waypoints] == [
+        (0, (0, 0, 1)),
+        (4.5, (1, 0, 1)),
+    ]
 
 
 def test_plugins_keep_their_parameters():
@@ -332,9 +335,9 @@ def test_the_gravity_of_old_worlds_is_that_of_their_physics():
 def test_comments_keep_their_hyphens():
     text = '<sdf version="1.6"><!-- a --b- c --><world name="w"/><!----x----></sdf>'
     document, warnings = parse_as_gazebo(text, "w.sdf")
-    comments = [each.data for each in document.root.children if isinstance(each, Comment)]
+    comments = [child.data for child in document.root.children if isinstance(child, Comment)]
     assert comments == [" a --b- c ", "--x--"]
-    assert [each.code for each in warnings] == ["XML206"]
+    assert [warning.code for warning in warnings] == ["XML206"]
     assert document.source is not None
     assert document.source.text == text
 
@@ -342,8 +345,8 @@ def test_comments_keep_their_hyphens():
 def test_what_follows_the_root_is_not_read_and_told_of():
     text = '<sdf version="1.6"><world name="w"/></sdf>\n<!-- <plugin>\n<!-- wheels --> <left/>\n</plugin> -->\n'
     document, warnings = parse_as_gazebo(text, "w.sdf")
-    assert [each.tag for each in document.root.elements()] == ["world"]
-    assert [(each.code, each.span.line) for each in warnings] == [("XML206", 3), ("XML207", 3)]
+    assert [element.tag for element in document.root.elements()] == ["world"]
+    assert [(warning.code, warning.span.line) for warning in warnings] == [("XML206", 3), ("XML207", 3)]
 
 
 def test_an_empty_file_is_told_how_a_world_begins():
@@ -379,12 +382,12 @@ def test_elements_in_elements_without_end_are_refused():
     document, _ = parse_as_gazebo(text, "w.sdf")
     reading = read(document)
     assert reading.sdf is None
-    assert [each.code for each in reading.diagnostics] == ["SDF133"]
+    assert [diagnostic.code for diagnostic in reading.diagnostics] == ["SDF133"]
 
 
 def test_tags_may_stand_anywhere():
     """Each element of the table in each other one: nothing is raised, whatever stands where."""
-    tags = sorted({each.tag for each in rules(SDF, {}).values()})
+    tags = sorted({rule.tag for rule in rules(SDF, {}).values()})
     for rule in rules(SDF, {}).values():
         element = Element(rule.tag, {"name": "n"})
         element.children += [Element(tag, {"name": "n", "type": "x", "value": "y"}) for tag in tags]
@@ -395,7 +398,7 @@ def test_an_ampersand_that_begins_no_entity_is_one_and_bytes_that_are_no_utf_8_a
     plugin = '<plugin name="ü" filename="x"><y>1 &amp; 2 & 3</y></plugin>'
     text = f'<sdf version="1.6"><world name="a & b">{plugin}</world></sdf>'
     document, warnings = parse_as_gazebo(text.encode("latin-1"), "test.world")
-    assert [each.code for each in warnings] == ["XML104", "XML206"]
+    assert [warning.code for warning in warnings] == ["XML104", "XML206"]
     sdf = read(document).sdf
     assert sdf is not None
     found = sdf.worlds[0]
@@ -421,7 +424,7 @@ def test_files_of_gazebo_classic_have_gazebo_as_their_root_or_models_in_names_of
     reading = read(document)
     assert reading.sdf is not None
     assert reading.diagnostics == ()
-    assert [each.name for each in reading.sdf.models[0].links] == ["base", "laser::link"]
+    assert [link.name for link in reading.sdf.models[0].links] == ["base", "laser::link"]
 
 
 OLD = """<gazebo version="1.0">

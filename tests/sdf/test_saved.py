@@ -14,7 +14,7 @@ MODEL = '<model name="m"><pose>9 9 9 0 0 0</pose><link name="a"/><link name="b">
 
 
 def places(inside: str) -> dict[str, tuple[float, ...]]:
-    return {each.name: each.pose[:3] for each in placed_links(as_saved(world(inside)))}
+    return {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(as_saved(world(inside)))}
 
 
 def test_a_world_without_a_state_is_as_it_is():

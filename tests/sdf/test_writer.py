@@ -129,7 +129,7 @@ def test_a_world_of_models_that_are_written_already_is_the_text_of_the_whole(ins
     sdf = read(document).sdf
     assert sdf is not None
     [whole] = sdf.worlds
-    text = save_world(replace(whole, models=()), [save_model_of_world(each) for each in whole.models])
+    text = save_world(replace(whole, models=()), [save_model_of_world(model) for model in whole.models])
     assert text == save(whole)
 
 
@@ -153,7 +153,7 @@ def _files():
     if not MANIFEST.is_file():
         return []
     items = json.loads(MANIFEST.read_text(encoding="utf-8"))["items"]
-    return sorted({each["entry"] for each in items if each["entry"].endswith((".world", ".sdf"))})
+    return sorted({item["entry"] for item in items if item["entry"].endswith((".world", ".sdf"))})
 
 
 def said(sdf):

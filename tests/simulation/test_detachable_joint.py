@@ -57,7 +57,7 @@ async def test_what_is_attached_hangs_until_it_is_let_go_and_can_be_taken_up_aga
         assert resting[2] == pytest.approx(0.1, abs=1e-3)
         await tell(server, graph, ATTACH, 1.0)
         assert server.simulation.link_pose("load::link") == pytest.approx(resting, abs=1e-3)
-        assert [each.data for each in states] == ["attached", "detached", "attached"]
+        assert [state.data for state in states] == ["attached", "detached", "attached"]
         assert not log
 
 
@@ -87,7 +87,7 @@ async def test_what_is_not_to_be_held_at_the_start_falls_and_topics_have_the_nam
         assert server.simulation.link_pose("load::link")[2] == pytest.approx(height, abs=0.05)
         await tell(server, graph, "/drop", 0.2)
         assert server.simulation.link_pose("load::link")[2] < height - 0.1
-        assert [each.data for each in states] == ["attached", "detached"]
+        assert [state.data for state in states] == ["attached", "detached"]
         assert not log
 
 

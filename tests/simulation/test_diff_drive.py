@@ -130,7 +130,7 @@ async def test_transforms_of_wheels_are_published_on_request():
         transforms = Recording(graph, server.node, "/tf")
         server.advance(SECOND // 10)
         await graph.settle()
-        last = {each.transforms[0].child_frame_id: each.transforms[0] for each in transforms}
+        last = {transform.transforms[0].child_frame_id: transform.transforms[0] for transform in transforms}
         assert sorted(last) == ["base_footprint", "left_wheel", "right_wheel"]
         assert last["left_wheel"].header.frame_id == "base_link"
         place = last["left_wheel"].transform.translation

@@ -32,7 +32,7 @@ def begun(*parts: str, version: str = "1.9") -> Simulation:
 
 
 def told(simulation: Simulation) -> list[str]:
-    return [each.code for each in simulation.scene.diagnostics]
+    return [diagnostic.code for diagnostic in simulation.scene.diagnostics]
 
 
 @pytest.mark.parametrize(
@@ -143,5 +143,5 @@ def test_whatever_a_model_says_there_is_a_simulation_or_a_clear_error(broken: st
     try:
         assert "crate" in begun(CRATE, broken).scene.models
     except LinkwrightError as error:
-        codes = {each.code for each in error.diagnostics}
+        codes = {diagnostic.code for diagnostic in error.diagnostics}
     assert codes <= {"SIM120", "SIM121"}

@@ -128,7 +128,7 @@ async def test_physics_gravity_light_and_plugins_follow(tmp_path):
         await steps(it, 500)
         assert simulation.time == 1_000_000_000
         assert simulation.model_pose("one")[2] == 9.0
-        assert [each.name for each in simulation.world.lights] == ["sun"]
+        assert [light.name for light in simulation.world.lights] == ["sun"]
         assert simulation.world.scene.ambient[:3] == (1, 0, 0)
         await eventually(lambda: any("libnobody_knows" in each.msg for each in log))
         await load(it, tmp_path, box("one", "0 0 9 0 0 0"))

@@ -125,7 +125,7 @@ async def test_odometry_of_gz_is_where_the_model_is(dimensions):
         log,
     ):
         topics = ("/model/mbot/odometry", "/model/mbot/odometry_with_covariance", "/model/mbot/pose")
-        odometry, uncertain, transforms = (Recording(graph, server.node, each) for each in topics)
+        odometry, uncertain, transforms = (Recording(graph, server.node, topic) for topic in topics)
         await drive(server, graph, 0.5)
         told = odometry.last
         assert len(odometry) == len(uncertain) == len(transforms) == 50

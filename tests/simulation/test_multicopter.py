@@ -90,8 +90,8 @@ async def test_it_stands_until_it_is_told_rises_hovers_and_flies_ahead() -> None
         driver.publish(up(0.0))
         await advance(server, graph, 3.0)
         assert velocity(server) == pytest.approx([0.0, 0.0, 0.0], abs=0.01)
-        motors = [each for each in server.plugins("x3") if hasattr(each, "speed")]
-        assert sum(FORCE * each.speed**2 for each in motors) == pytest.approx(MASS * 9.8, rel=1e-3)
+        motors = [plugin for plugin in server.plugins("x3") if hasattr(plugin, "speed")]
+        assert sum(FORCE * motor.speed**2 for motor in motors) == pytest.approx(MASS * 9.8, rel=1e-3)
         driver.publish(forward(1.0))
         await advance(server, graph, 4.0)
         assert velocity(server)[0] == pytest.approx(1.0, abs=0.1)
@@ -109,7 +109,9 @@ async def test_its_rotors_take_their_speeds_by_number_from_a_topic_where_nothing
         assert velocity(server)[2] == pytest.approx(0.21 * 9.8, rel=0.15)
         driver.publish(kind(velocity=[float("nan"), 0.0]))  # no speed, nothing, and two that are not told of
         await advance(server, graph, 0.5)
-        motors = {each.parameters.actuator_number: each for each in server.plugins("x3") if hasattr(each, "speed")}
+        motors = {
+            plugin.parameters.actuator_number: plugin for plugin in server.plugins("x3") if hasattr(plugin, "speed")
+        }
         assert [motors[number].speed > 1.0 for number in range(4)] == [True, False, True, True]
         assert warnings(log) == []
 

@@ -111,7 +111,7 @@ def test_parameters_come_by_their_types_and_old_names():
 def test_a_parameter_that_is_unknown_or_unreadable_is_told_of():
     parameters, findings = parameters_from(_Table, _element("<joint>a</joint>\n<rat>1</rat>\n<count>many</count>"))
     assert parameters == _Table(joint=("a",))
-    assert [(each.code, str(each.span)) for each in findings] == [
+    assert [(finding.code, str(finding.span)) for finding in findings] == [
         ("SIM131", "robot.sdf:3:1"),
         ("SIM130", "robot.sdf:2:1"),
     ]

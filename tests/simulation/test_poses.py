@@ -51,10 +51,10 @@ async def test_what_no_joint_moves_has_a_topic_of_its_own():
         server.advance(SECOND)
         await graph.settle()
         assert (len(moving), len(resting)) == (50, 1)
-        assert [each.child_frame_id for each in moving.last.transforms] == [
+        assert [transform.child_frame_id for transform in moving.last.transforms] == [
             f"mbot/{side}" for side in ("left_wheel", "right_wheel", "front_caster", "back_caster")
         ]
-        told = {each.child_frame_id: each for each in resting.last.transforms}
+        told = {transform.child_frame_id: transform for transform in resting.last.transforms}
         assert set(told) == {"mbot", "mbot/base_link"} | {
             f"mbot/{link}/collision"
             for link in ("base_link", "left_wheel", "right_wheel", "front_caster", "back_caster")
@@ -78,7 +78,10 @@ async def test_models_in_models_move_with_their_links():
         server.advance(SECOND // 100)
         await graph.settle()
         assert len(recording) == 10
-        told = {each.child_frame_id: (each.header.frame_id, _translation(each)) for each in recording.last.transforms}
+        told = {
+            transform.child_frame_id: (transform.header.frame_id, _translation(transform))
+            for transform in recording.last.transforms
+        }
         assert told == {
             "outer/link": ("outer", pytest.approx((0.0, 0.0, 0.0), abs=1e-9)),
             "outer/inner": ("outer", pytest.approx((0.0, 0.0, 0.5), abs=1e-9)),

@@ -125,13 +125,13 @@ def test_models_that_begin_in_each_other_are_told_the_deepest_first():
         free("beside", "ball", "5.9 0 0.5 0 0 0"),
         free("fine", "box", "9 0 0.495 0 0 0"),
     )
-    told = [str(each.message) for each in overlaps(simulation)]
+    told = [str(overlap.message) for overlap in overlaps(simulation)]
     assert told == [
         "'lower' begins 0.40 m inside 'ground'",
         "'low' begins 0.30 m inside 'ground'",
         "'beside' begins 0.10 m inside 'lower'",
     ]
-    assert [str(each.message) for each in overlaps(simulation, {"beside"})] == told[2:]
+    assert [str(overlap.message) for overlap in overlaps(simulation, {"beside"})] == told[2:]
 
 
 def test_many_overlaps_are_counted():

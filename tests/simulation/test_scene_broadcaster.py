@@ -20,11 +20,13 @@ LINKS = ["base_link", "left_wheel", "right_wheel", "front_caster", "back_caster"
 
 
 def names(message):
-    return [each.child_frame_id for each in message.transforms]
+    return [transform.child_frame_id for transform in message.transforms]
 
 
 def translation(message, name):
-    moved = next(each for each in message.transforms if each.child_frame_id == name).transform.translation
+    moved = next(
+        transform for transform in message.transforms if transform.child_frame_id == name
+    ).transform.translation
     return moved.x, moved.y, moved.z
 
 
@@ -37,7 +39,7 @@ async def test_what_moves_is_told_models_first_and_links_in_their_models():
         assert names(recording.last) == ["mbot", *LINKS]
         assert translation(recording.last, "mbot") == pytest.approx((0.0, 0.0, 0.11), abs=2e-3)
         assert translation(recording.last, "left_wheel") == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
-        assert {each.header.frame_id for each in recording.last.transforms} == {""}
+        assert {transform.header.frame_id for transform in recording.last.transforms} == {""}
         assert recording.last.transforms[0].header.stamp.nanosec > 0.9 * SECOND
         assert not log
 
@@ -101,7 +103,7 @@ async def test_a_world_without_plugins_has_those_of_gz_and_another_only_its_own(
 async def test_only_the_server_of_gz_gives_a_world_the_systems_of_gz(kind, has):
     graph = Graph()
     running = kind(graph, NodeOptions(parameters={"pause": True}))
-    assert any(each.endswith("/dynamic_pose/info") for each in graph.topics()) == has
+    assert any(topic.endswith("/dynamic_pose/info") for topic in graph.topics()) == has
     running.close()
     await graph.close()
 

@@ -261,7 +261,7 @@ async def test_a_world_with_a_robot_is_written_once_at_the_start(tmp_path, monke
     async with simulator(tmp_path, robot_description=URDF, robot_name="first") as it:
         worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
         await eventually(lambda: bool(worlds))
-        assert [each.data for each in worlds] == written
+        assert [world.data for world in worlds] == written
         assert 'name="first"' in written[0]
 
 
@@ -323,7 +323,7 @@ async def test_what_is_wrong_with_a_model_is_among_the_findings_while_that_is_in
     async with simulator(tmp_path, robot_description=seen, robot_name="first", pause=False) as it:
         server = it.simulator.server
         told: list[list[str]] = []
-        server.on_findings.append(lambda: told.append([each.code for each in server.findings]))
+        server.on_findings.append(lambda: told.append([finding.code for finding in server.findings]))
         [finding] = server.findings
         assert (finding.code, finding.span.line) == ("SIM143", 1)
         it.simulator.services.renew(seen.replace('mass value="1"', 'mass value="2"'), "first")
@@ -331,7 +331,7 @@ async def test_what_is_wrong_with_a_model_is_among_the_findings_while_that_is_in
         it.simulator.services.renew(URDF, "first")
         await eventually(lambda: told[2:] == [[]])
         await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=seen)
-        assert [each.code for each in server.findings] == ["SIM143"]
+        assert [finding.code for finding in server.findings] == ["SIM143"]
         await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="second")
         assert server.findings == []
 

@@ -25,7 +25,7 @@ def cloud():
 
 def test_a_cloud_of_three_coordinates(cloud):
     assert (cloud.header.frame_id, cloud.width, cloud.height, cloud.point_step, cloud.row_step) == ("map", 4, 1, 12, 48)
-    assert [(each.name, each.offset) for each in cloud.fields] == [("x", 0), ("y", 4), ("z", 8)]
+    assert [(field.name, field.offset) for field in cloud.fields] == [("x", 0), ("y", 4), ("z", 8)]
     assert len(cloud.data) == 48
     assert point_cloud2.read_points(cloud)["z"].tolist() == [3, 6, 9, 12]
 

@@ -475,7 +475,9 @@ class TestParameters:
 
     def test_a_callback_refuses(self, node):
         def check(parameters):
-            return SetParametersResult(successful=all(each.value < 10 for each in parameters), reason="too fast")
+            return SetParametersResult(
+                successful=all(parameter.value < 10 for parameter in parameters), reason="too fast"
+            )
 
         node.declare_parameter("speed", 1)
         node.add_on_set_parameters_callback(check)

@@ -154,7 +154,7 @@ def test_metadata_are_written_and_read(tmp_path):
     for each in metadata.topics_with_message_count:
         (known,) = (topic for topic in reader.get_all_topics_and_types() if topic.name == each.topic_metadata.name)
         assert each.topic_metadata == dataclasses.replace(known, id=0)
-    assert [(each.path, each.message_count) for each in metadata.files] == [("bag_0.mcap", 8)]
+    assert [(file.path, file.message_count) for file in metadata.files] == [("bag_0.mcap", 8)]
     assert reader.get_metadata().files == metadata.files
     assert metadata_io.deserialize_metadata(metadata_io.serialize_metadata(metadata)).files == metadata.files
     metadata.custom_data = {"site": "north"}
@@ -171,7 +171,10 @@ def test_metadata_are_written_and_read(tmp_path):
 
 def test_definitions_of_types_are_told(tmp_path):
     write(tmp_path / "bag")
-    definitions = {each.topic_type: each for each in opened(tmp_path / "bag").get_all_message_definitions()}
+    definitions = {
+        get_all_message_definition.topic_type: get_all_message_definition
+        for get_all_message_definition in opened(tmp_path / "bag").get_all_message_definitions()
+    }
     local = rosbag2_py.LocalMessageDefinitionSource()
     assert definitions["std_msgs/msg/Int32"] == local.get_full_text("std_msgs/msg/Int32")
     assert "int32 data" in definitions["std_msgs/msg/Int32"].encoded_message_definition

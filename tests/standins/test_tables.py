@@ -66,12 +66,12 @@ class TestModules:
 
         import launch
 
-        found = {each.name: each.ispkg for each in pkgutil.iter_modules(launch.__path__)}
+        found = {iter_module.name: iter_module.ispkg for iter_module in pkgutil.iter_modules(launch.__path__)}
         assert found["actions"] is True
         assert found["launch_service"] is False
-        walked = [each.name for each in pkgutil.walk_packages(launch.__path__, "launch.")]
+        walked = [walk_package.name for walk_package in pkgutil.walk_packages(launch.__path__, "launch.")]
         assert {"launch.actions.timer_action", "launch.events.process.process_exited"} <= set(walked)
-        assert {"launch", "rclpy"} <= {each.name for each in pkgutil.iter_modules([modules.FOLDER])}
+        assert {"launch", "rclpy"} <= {iter_module.name for iter_module in pkgutil.iter_modules([modules.FOLDER])}
 
     def test_names_are_looked_up_once_and_can_be_replaced(self):
         import rclpy.qos

@@ -80,7 +80,7 @@ def used(path: Path) -> Iterator[str]:
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         yield from (name for name in imported(node) if name.partition(".")[0] in {*MODULES, "msvcrt", "winreg"})
         if isinstance(node, ast.ImportFrom) and node.module in OF_ONE_SYSTEM and not node.level:
-            yield from (each.name for each in node.names if each.name in OF_ONE_SYSTEM[node.module])
+            yield from (name.name for name in node.names if name.name in OF_ONE_SYSTEM[node.module])
         elif isinstance(node, ast.Attribute):
             owner = ast.unparse(node.value)
             if node.attr in OF_ONE_SYSTEM.get(owner, ()) or (node.attr in WATCHING and "loop" in owner):
@@ -97,5 +97,5 @@ def used(path: Path) -> Iterator[str]:
 
 def imported(node: ast.AST) -> set[str]:
     if isinstance(node, ast.Import):
-        return {each.name for each in node.names}
+        return {name.name for name in node.names}
     return {node.module} if isinstance(node, ast.ImportFrom) and node.module and not node.level else set()

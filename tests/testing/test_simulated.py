@@ -181,7 +181,7 @@ def test_what_cannot_be_had_is_one_error(tmp_path, monkeypatch, world, robot, co
     (tmp_path / "world.sdf").write_text(SLOPE)
     with pytest.raises(LinkwrightError) as raised:
         SteppedSimulation(world, robot)
-    assert [each.code for each in raised.value.diagnostics] == [code]
+    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == [code]
 
 
 def test_an_error_in_a_callback_comes_out_of_the_step():
@@ -232,5 +232,5 @@ def test_robot_state_publisher_is_there_on_request():
         test.drive(0.5)
         test.advance(0.5)
         assert "<robot" in description.last.data
-        moved = {each.child_frame_id for message in transforms for each in message.transforms}
+        moved = {transform.child_frame_id for message in transforms for transform in message.transforms}
         assert {"left_wheel_link", "right_wheel_link", "base_footprint"} <= moved

@@ -109,7 +109,7 @@ def test_of_robots_in_namespaces_the_first_with_a_description_is_shown(tmp_path:
     with BagReader(tmp_path / "bag") as bag:
         config = recording_config(bag)
     assert config.options.text("Fixed Frame") == "odom"
-    assert {each.name: each.checked for each in config.displays} == {
+    assert {display.name: display.checked for display in config.displays} == {
         "Grid": True,
         "RobotModel": True,
         "TF": False,
@@ -117,7 +117,7 @@ def test_of_robots_in_namespaces_the_first_with_a_description_is_shown(tmp_path:
         "robot1/scan": True,
         "robot2/scan": False,
     }
-    (robot,) = [each for each in config.displays if each.name == "RobotModel"]
+    (robot,) = [display for display in config.displays if display.name == "RobotModel"]
     assert robot.section.text("Description Topic", "Value") == "/robot1/robot_description"
 
 

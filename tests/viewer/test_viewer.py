@@ -436,7 +436,7 @@ async def test_the_node_is_given_what_a_launch_file_gives_it():
         arguments=["--ros-args", "-r", "robot_description:=other"],
     )
     async with world(options=options) as made:
-        (name,) = [each for each in made.graph.node_names() if each.endswith("/eyes")]
+        (name,) = [node_name for node_name in made.graph.node_names() if node_name.endswith("/eyes")]
         assert name == "/robot/eyes"
         assert made.viewer.manager.fixed_frame == "tip"
         assert made.viewer.manager.time.now_ns() == 0  # no /clock yet

@@ -90,7 +90,7 @@ class ManagedPeer(LifecycleNode):
     def possible(self, node: str) -> list[str]:
         request = GetAvailableTransitions.Request()
         answer = self._called(GetAvailableTransitions, f"/{node}/get_available_transitions", request)
-        return sorted(each.transition.label for each in answer.available_transitions)
+        return sorted(available_transition.transition.label for available_transition in answer.available_transitions)
 
     def ends_of(self, topic: str) -> list[int]:
         """How many publishers and subscriptions it knows."""

@@ -115,13 +115,13 @@ class RosPeer:
 
     def received(self) -> list[str]:
         samples = [each for each in self.subscription.take(100) if hasattr(each, "cdr")]
-        return [each.cdr[8:].split(b"\0")[0].decode() for each in samples]
+        return [sample.cdr[8:].split(b"\0")[0].decode() for sample in samples]
 
     def answer(self) -> int:
         """Answer the requests that have come; how many those were."""
         requests = [each for each in self.requests.take(100) if hasattr(each, "cdr")]
-        for each in requests:
-            head, wanted = each.cdr[4:20], each.cdr[20]
+        for request in requests:
+            head, wanted = request.cdr[4:20], request.cdr[20]
             self.replies.write(
                 self.replies.data_type(b"\0\1\0\0" + head + bytes([not wanted, 0, 0, 0]) + text("by ROS"))
             )
@@ -134,8 +134,8 @@ class RosPeer:
     def replies_to_calls(self) -> list[list[Any]]:
         samples = [each for each in self.answers.take(100) if hasattr(each, "cdr")]
         return [
-            [*struct.unpack_from("<Qq", each.cdr, 4), bool(each.cdr[20]), each.cdr[28:].split(b"\0")[0].decode()]
-            for each in samples
+            [*struct.unpack_from("<Qq", sample.cdr, 4), bool(sample.cdr[20]), sample.cdr[28:].split(b"\0")[0].decode()]
+            for sample in samples
         ]
 
     def nodes(self) -> list[Any]:
@@ -175,7 +175,7 @@ class RosPeer:
 
     def _announce(self) -> None:
         def gids(*entities: Any) -> bytes:
-            packed = b"".join(each.guid.bytes.ljust(self.gid_size, b"\0") for each in entities)
+            packed = b"".join(entity.guid.bytes.ljust(self.gid_size, b"\0") for entity in entities)
             return struct.pack("<I", len(entities)) + packed
 
         body = self.participant.guid.bytes.ljust(self.gid_size, b"\0") + struct.pack("<I", 1)

@@ -116,7 +116,7 @@ def test_a_request_that_waited_and_cannot_be_written_fails_and_the_next_is_answe
     a.node.handle.copies_messages = False  # as of nodes that come with Linkwright
     client = a.node.create_client(SetBool, "flip")
     requests = (unfit(SetBool.Request(), "neither true nor false"), SetBool.Request(data=False))
-    futures = [client.call_async(each) for each in requests]
+    futures = [client.call_async(request) for request in requests]
     b.node.create_service(SetBool, "flip", flip)
 
     def both_spin():

@@ -27,7 +27,7 @@ def run(text: str, seconds: float = SECONDS) -> subprocess.CompletedProcess[str]
 
 
 def descriptors() -> set[str]:
-    return {str(each.readlink()) for each in Path("/proc/self/fd").iterdir() if each.is_symlink()}
+    return {str(path.readlink()) for path in Path("/proc/self/fd").iterdir() if path.is_symlink()}
 
 
 def kernel_threads() -> int:
@@ -37,14 +37,17 @@ def kernel_threads() -> int:
 @on_linux
 def test_nothing_is_left_after_closing(processes):
     processes("warm").close()
-    threads, sockets = threading.active_count(), {each for each in descriptors() if each.startswith("socket")}
+    threads, sockets = (
+        threading.active_count(),
+        {descriptor for descriptor in descriptors() if descriptor.startswith("socket")},
+    )
     tasks = kernel_threads()
     us = processes("ours")
     us.node.create_publisher(String, "chatter", 10)
     assert kernel_threads() > tasks
     us.close()
     assert threading.active_count() == threads
-    assert {each for each in descriptors() if each.startswith("socket")} == sockets
+    assert {descriptor for descriptor in descriptors() if descriptor.startswith("socket")} == sockets
     wait_until(lambda: kernel_threads() <= tasks)  # a thread that was joined is listed a moment longer
 
 
@@ -78,7 +81,7 @@ def test_a_domain_that_is_joined_after_joining_was_given_up_is_left_again(proces
     assert not engines
     may_join.set()
     joining._starter.join(SECONDS)
-    assert [each._participant.closed for each in engines] == [True]
+    assert [engine._participant.closed for engine in engines] == [True]
     assert open_domains._opened == {}
     assert not joining.wait_until_ready(SECONDS)
 

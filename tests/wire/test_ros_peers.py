@@ -26,7 +26,10 @@ def test_a_real_node_and_its_endpoints_are_seen(processes, programs, distributio
     us = processes("ours")
     us.spin_until(lambda: NodeIdentity("real_node", "/") in us.transport.remote_nodes())
     us.spin_until(lambda: len(us.transport.remote_endpoints()) >= 4)
-    seen = {(each.kind, each.name): each for each in us.transport.remote_endpoints()}
+    seen = {
+        (remote_endpoint.kind, remote_endpoint.name): remote_endpoint
+        for remote_endpoint in us.transport.remote_endpoints()
+    }
     assert seen[EndpointKind.PUBLISHER, "/from_ros"].type_name == "std_msgs/msg/String"
     assert seen[EndpointKind.SUBSCRIPTION, "/to_ros"].node == NodeIdentity("real_node", "/")
     assert seen[EndpointKind.SERVICE, "/ros_flip"].type_name == "std_srvs/srv/SetBool"

@@ -93,7 +93,7 @@ def test_localhost_with_peers_is_as_rmw_cyclonedds_has_it():
 
 def test_the_users_configuration_goes_last():
     settings = read_settings({"CYCLONEDDS_URI": "file:///a.xml"})
-    assert all(each.endswith(",file:///a.xml") for each in settings.configurations)
+    assert all(configuration.endswith(",file:///a.xml") for configuration in settings.configurations)
     system = read_settings({"CYCLONEDDS_URI": "file:///a.xml", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"})
     assert system.configurations == ("file:///a.xml",)
 

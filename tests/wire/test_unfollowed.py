@@ -22,7 +22,7 @@ with_network = pytest.mark.skipif(not available(), reason="there is neither DDS 
 
 
 def codes(variables):
-    return [each.code for each in unfollowed_settings(variables)]
+    return [unfollowed_setting.code for unfollowed_setting in unfollowed_settings(variables)]
 
 
 @pytest.mark.parametrize(
@@ -64,13 +64,13 @@ def test_nobody_joins_where_security_is_enforced():
             join(graph, environment=ENFORCED)
     finally:
         graph.close_now()
-    assert [each.code for each in caught.value.diagnostics] == ["DDS121"]
+    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["DDS121"]
 
 
 def test_each_setting_is_told_once_in_a_process(monkeypatch):
     monkeypatch.setattr(unfollowed, "_told", set())
-    assert [each.code for each in untold_settings(SERVER)] == ["DDS123"]
-    assert [each.code for each in untold_settings({**SERVER, **SECURE})] == ["DDS122"]
+    assert [untold_setting.code for untold_setting in untold_settings(SERVER)] == ["DDS123"]
+    assert [untold_setting.code for untold_setting in untold_settings({**SERVER, **SECURE})] == ["DDS122"]
 
 
 @with_network

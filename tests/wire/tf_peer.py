@@ -49,8 +49,11 @@ class TfPeer(Node):
         return transform
 
     def _hear(self, topic: str, said: Any) -> None:
-        for each in said.transforms:
-            self._heard[topic][each.child_frame_id] = [each.header.frame_id, each.transform.translation.x]
+        for transform in said.transforms:
+            self._heard[topic][transform.child_frame_id] = [
+                transform.header.frame_id,
+                transform.transform.translation.x,
+            ]
 
 
 if __name__ == "__main__":

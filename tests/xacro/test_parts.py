@@ -61,7 +61,7 @@ def test_mistakes_in_several_places_are_all_told(tmp_path):
 
 def test_a_text_that_fails(tmp_path):
     found = parts(tmp_path, '<gazebo><a>${nowhere}</a></gazebo><link name="a"/>')
-    assert [each.tag for each in found.document.root.elements()] == ["link"]
+    assert [element.tag for element in found.document.root.elements()] == ["link"]
 
 
 def test_a_call_inside_of_an_element_that_fails(tmp_path):
@@ -133,7 +133,7 @@ class TestConsequences:
 
     def test_warnings_that_may_be_consequences_are_not_told(self, tmp_path):
         warning = '<xacro:property name="none" remove="true"/>'
-        assert [each.code for each in parts(tmp_path, warning).diagnostics] == ["XAC310"]
+        assert [diagnostic.code for diagnostic in parts(tmp_path, warning).diagnostics] == ["XAC310"]
         assert parts(tmp_path, f'<xacro:include filename="none.xacro"/>{warning}').diagnostics == ()
 
 

@@ -40,7 +40,7 @@ def test_verdict(name: str, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     warned_of = False
     try:
         expansion = expand("main.xacro", case.arguments, packages=PACKAGES)
-        warned_of = any("ros/xacro" in each.message for each in expansion.diagnostics)
+        warned_of = any("ros/xacro" in diagnostic.message for diagnostic in expansion.diagnostics)
         refused = False
     except LinkwrightError:
         refused = True

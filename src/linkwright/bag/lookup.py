@@ -87,7 +87,7 @@ class McapLookup:
 
     def _of(self, channel: int) -> _ChannelChunks:
         if channel not in self._chunks:
-            with_it = [each for each in self._storage.chunks if channel in each.message_index_offsets]
+            with_it = [chunk for chunk in self._storage.chunks if channel in chunk.message_index_offsets]
             self._chunks[channel] = _ChannelChunks(with_it)
         return self._chunks[channel]
 
@@ -125,11 +125,11 @@ class _ChannelChunks:
     """The chunks that have messages of a channel, in the order of their first messages."""
 
     def __init__(self, chunks: Collection[ChunkInfo]) -> None:
-        self.chunks = sorted(chunks, key=lambda each: each.message_start_time)
-        self._starts = [each.message_start_time for each in self.chunks]
+        self.chunks = sorted(chunks, key=lambda chunk: chunk.message_start_time)
+        self._starts = [chunk.message_start_time for chunk in self.chunks]
         self._latest_ends: list[int] = []
-        for each in self.chunks:
-            self._latest_ends.append(max(each.message_end_time, self._latest_ends[-1] if self._latest_ends else 0))
+        for chunk in self.chunks:
+            self._latest_ends.append(max(chunk.message_end_time, self._latest_ends[-1] if self._latest_ends else 0))
 
     def backwards(self, at_ns: int) -> Iterator[tuple[ChunkInfo, int]]:
         """The chunks that begin up to a time, backwards; each with the latest end of it and those before it."""

@@ -124,7 +124,7 @@ class Moments:
 
     def _between(self, topic: str, start_ns: int, end_ns: int) -> list[Recorded]:
         if not self._lookups:
-            connections = [each for each in self._reader.connections if each.topic == topic]
+            connections = [connection for connection in self._reader.connections if connection.topic == topic]
             read = self._reader.messages(connections, max(0, start_ns), end_ns + 1) if connections else iter(())
             return [(topic, stamp, data) for _, stamp, data in read]
         return [
@@ -139,7 +139,7 @@ class Moments:
         end, length = at_ns + 1, _FIRST_WINDOW_NS
         while missing and end > self._reader.start_time:
             begin = max(end - length, self._reader.start_time)
-            connections = [each for each in self._reader.connections if each.topic in missing]
+            connections = [connection for connection in self._reader.connections if connection.topic in missing]
             if not connections:
                 return
             found = _last_of_each(self._reader.messages(connections, begin, end))
@@ -156,4 +156,4 @@ def _last_of_each(messages: Iterable[tuple[Connection, int, bytes]]) -> list[Rec
 
 
 def _channels(storage: Any, topic: str) -> list[int]:
-    return [each.id for each in storage.connections if each.topic == topic]
+    return [connection.id for connection in storage.connections if connection.topic == topic]

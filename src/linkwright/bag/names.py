@@ -41,13 +41,13 @@ def is_recording(path: Path) -> bool:
 
 def in_order(files: Sequence[Path]) -> list[Path]:
     """The files of a recording by their numbers."""
-    found = [(int(match[2]) if (match := _NUMBERED.fullmatch(each.name)) else 0, each) for each in files]
+    found = [(int(match[2]) if (match := _NUMBERED.fullmatch(file.name)) else 0, file) for file in files]
     return [each for _, each in sorted(found)]
 
 
 def are_of_one_recording(files: Sequence[Path]) -> bool:
     """Whether several files are the parts of one recording, by their names: numbered one after the other."""
-    found = [_NUMBERED.fullmatch(each.name) for each in files]
-    numbers = sorted(int(each[2]) for each in found if each is not None)
-    alike = {(each[1], each[3], each[4]) for each in found if each is not None}
+    found = [_NUMBERED.fullmatch(file.name) for file in files]
+    numbers = sorted(int(match[2]) for match in found if match is not None)
+    alike = {(match[1], match[3], match[4]) for match in found if match is not None}
     return len(alike) == 1 and len(numbers) == len(files) == numbers[-1] - numbers[0] + 1

@@ -121,9 +121,9 @@ def _joined(parts: Sequence[_Metadata]) -> _Metadata:
     """What the metadata say of files together."""
     files = [each for part in parts for each in part["files"]]
     spans = [
-        (each["starting_time"]["nanoseconds_since_epoch"], each["duration"]["nanoseconds"])
-        for each in files
-        if each["message_count"]
+        (file["starting_time"]["nanoseconds_since_epoch"], file["duration"]["nanoseconds"])
+        for file in files
+        if file["message_count"]
     ]
     topics: dict[tuple[str, str], _Metadata] = {}
     for each in (topic for part in parts for topic in part["topics_with_message_count"]):
@@ -133,11 +133,11 @@ def _joined(parts: Sequence[_Metadata]) -> _Metadata:
     start = min((start for start, _ in spans), default=parts[0]["starting_time"]["nanoseconds_since_epoch"])
     return {
         **parts[-1],
-        "relative_file_paths": [each["path"] for each in files],
+        "relative_file_paths": [file["path"] for file in files],
         "files": files,
         "starting_time": {"nanoseconds_since_epoch": start},
         "duration": {"nanoseconds": max((begin + length for begin, length in spans), default=start) - start},
-        "message_count": sum(each["message_count"] for each in files),
+        "message_count": sum(file["message_count"] for file in files),
         "topics_with_message_count": list(topics.values()),
     }
 

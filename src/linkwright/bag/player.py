@@ -261,7 +261,7 @@ class Player:
             every_service=not options.pattern,
         )
         named = [topics[name] for name in options.topics or topics]
-        chosen = [each for each in named if selection.takes(each.name, each.type_name)]
+        chosen = [topic for topic in named if selection.takes(topic.name, topic.type_name)]
         return make_publishers(self._node, chosen, options.qos_overrides)
 
     def _start_clock(self) -> Publisher[Any] | None:

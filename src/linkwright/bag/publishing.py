@@ -72,7 +72,7 @@ class PublishedRecording:
     """
 
     def __init__(self, node: Node, bag: BagReader, namespace: str = "") -> None:
-        topics = [each for each in bag.topics if each.name != CLOCK_TOPIC]
+        topics = [topic for topic in bag.topics if topic.name != CLOCK_TOPIC]
         self._publishers = make_publishers(node, topics, dict.fromkeys(_LATCHED, _LATCHED_QOS))
         doubled = {namespace + name: name for name in (TRANSFORMS, STATIC_TRANSFORMS)} if namespace else {}
         self._doubles = {

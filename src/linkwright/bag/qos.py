@@ -85,7 +85,7 @@ def to_text(profiles: Sequence[QoSProfile]) -> str:
     """The text that ``metadata.yaml`` has for profiles, up to its version 8."""
     from rosbags.rosbag2.metadata import dump_qos_v8
 
-    return dump_qos_v8([to_bag(each) for each in profiles])
+    return dump_qos_v8([to_bag(profile) for profile in profiles])
 
 
 def from_text(text: Any) -> list[QoSProfile]:

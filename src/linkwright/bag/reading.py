@@ -94,7 +94,9 @@ class BagReader:
         self._moments = Moments(self._reader)
         self._make_types_known()
         self._others = {
-            each.topic: form or "?" for each in self._reader.connections if (form := _format_of(each)) != _OURS
+            connection.topic: form or "?"
+            for connection in self._reader.connections
+            if (form := _format_of(connection)) != _OURS
         }
         self.topics = [
             BagTopic(
@@ -102,7 +104,7 @@ class BagReader:
                 info.msgtype or "",
                 info.msgcount,
                 _format_of(info.connections[0]),
-                tuple(from_bag(qos) for each in info.connections for qos in _profiles(each)),
+                tuple(from_bag(qos) for connection in info.connections for qos in _profiles(connection)),
             )
             for name, info in self._reader.topics.items()
             if name not in self._others
@@ -122,9 +124,9 @@ class BagReader:
         from linkwright.bag.several import SeveralReader
 
         # Who was killed at the beginning of a file leaves nothing in it.
-        whole = [each for each in targets if each.stat().st_size] or targets
+        whole = [target for target in targets if target.stat().st_size] or targets
         self._is_cut_off = len(whole) < len(targets)
-        return SeveralReader([self._opened_one(each, each, each.name) for each in whole])
+        return SeveralReader([self._opened_one(path, path, path.name) for path in whole])
 
     def _opened_one(self, target: Path, path: Path, called: str) -> Reader:
         from rosbags.rosbag2 import Reader
@@ -159,10 +161,10 @@ class BagReader:
         from rosbags.interfaces import MessageDefinitionFormat
 
         origin = self._called
-        for each in self._reader.connections:
-            form, text = each.msgdef
+        for connection in self._reader.connections:
+            form, text = connection.msgdef
             if form is not MessageDefinitionFormat.NONE:
-                add_definitions(each.msgtype, text, origin, idl=form is MessageDefinitionFormat.IDL)
+                add_definitions(connection.msgtype, text, origin, idl=form is MessageDefinitionFormat.IDL)
 
     @property
     def findings(self) -> list[Diagnostic]:
@@ -172,7 +174,7 @@ class BagReader:
         it holds no messages (BAG113).
         """
         found = []
-        if not self._is_cut_off and not any(each.count for each in self.topics):
+        if not self._is_cut_off and not any(topic.count for topic in self.topics):
             message = phrase("recording '{path}' holds no messages", path=self._called)
             hint = phrase("`linkwright topic list` and `linkwright topic hz TOPIC` tell what is published")
             found.append(Diagnostic("BAG113", message, severity=Severity.WARNING, hint=hint))
@@ -217,7 +219,11 @@ class BagReader:
     @property
     def definitions(self) -> list[tuple[str, str, str, str]]:
         """What it has of the types of its topics: name, ``ros2msg`` or ``ros2idl``, definition, hash."""
-        found = {each.msgtype: each for each in self._reader.connections if each.topic not in self._others}
+        found = {
+            connection.msgtype: connection
+            for connection in self._reader.connections
+            if connection.topic not in self._others
+        }
         encodings = {"NONE": "unknown", "MSG": "ros2msg", "IDL": "ros2idl"}
         return [(name, encodings[each.msgdef[0].name], each.msgdef[1], each.digest) for name, each in found.items()]
 
@@ -234,7 +240,7 @@ class BagReader:
         Raises:
             LinkwrightError: BAG102, the rest cannot be read; BAG103, a topic is not in the recording.
         """
-        known = {each.name for each in self.topics}
+        known = {topic.name for topic in self.topics}
         for name in topics:
             if name not in known:
                 hint = did_you_mean(name, known)
@@ -246,9 +252,9 @@ class BagReader:
                     )
                 )
         connections = [
-            each
-            for each in self._reader.connections
-            if each.topic not in self._others and (not topics or each.topic in topics)
+            connection
+            for connection in self._reader.connections
+            if connection.topic not in self._others and (not topics or connection.topic in topics)
         ]
         return self._read(self._reader.messages(connections, start_ns, stop_ns))
 
@@ -306,7 +312,7 @@ def _ignore_profiles_of_files(storage: Any) -> None:
 
     Recordings from before rosbag2 kept profiles in files, and some that were converted, would be read without messages.
     """
-    told = {(each.topic, each.msgtype): each for each in storage.connections}
+    told = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
     for file in storage.storages:
         for number, each in enumerate(file.connections):
             known = told.get((each.topic, each.msgtype), each)
@@ -328,7 +334,7 @@ def _storage_targets(path: Path, called: str) -> list[Path]:
     if not files:
         message = phrase("'{path}' is not a recording: it has neither a metadata.yaml nor files of one", path=called)
         raise LinkwrightError(Diagnostic("BAG102", message))
-    found = ", ".join(each.name for each in files)
+    found = ", ".join(file.name for file in files)
     message = phrase(
         "the files in '{path}' are not of one recording, by their names: {found}", path=called, found=found
     )
@@ -342,17 +348,17 @@ def _storage_targets(path: Path, called: str) -> list[Path]:
 def _lacks_ends(folder: Path) -> bool:
     """Whether a recording of several files, which the library reads by its metadata, has one without its end."""
     files = sorted(folder.glob("*.mcap"))
-    return len(files) > 1 and are_of_one_recording(files) and any(is_unfinished(each) for each in files)
+    return len(files) > 1 and are_of_one_recording(files) and any(is_unfinished(file) for file in files)
 
 
 def _storage_of(target: Path) -> str:
     if target.is_file():
         return storage_of(target) or target.suffix.lstrip(".")
-    return next((name for each in _files_in(target) if (name := storage_of(each)) is not None), "")
+    return next((name for path in _files_in(target) if (name := storage_of(path)) is not None), "")
 
 
 def _files_in(folder: Path) -> list[Path]:
-    return sorted(each for each in folder.iterdir() if storage_of(each) is not None)
+    return sorted(path for path in folder.iterdir() if storage_of(path) is not None)
 
 
 def _format_of(connection: Any) -> str:

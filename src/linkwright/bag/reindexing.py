@@ -25,7 +25,7 @@ def reindex(folder: Path) -> None:
     """
     from linkwright.bag.parts import write_metadata
 
-    files = [each for each in folder.iterdir() if storage_of(each) is not None] if folder.is_dir() else []
+    files = [path for path in folder.iterdir() if storage_of(path) is not None] if folder.is_dir() else []
     if len(files) != 1 and not are_of_one_recording(files):
         message = phrase("there are no files of a recording in '{path}'", path=display_path(folder))
         hint = phrase("their names end with a number and .mcap or .db3: drive_0.mcap, drive_1.mcap")

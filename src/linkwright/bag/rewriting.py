@@ -37,7 +37,7 @@ def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Pat
     outputs = [_Output(entry, str(options_file)) for entry in _entries(options_file)]
     with ExitStack() as stack:
         bags = [stack.enter_context(BagReader(source)) for source in sources]
-        writers = [stack.enter_context(each.opened(bags)) for each in outputs]
+        writers = [stack.enter_context(output.opened(bags)) for output in outputs]
         streams = [bag.messages() for bag in bags]
         for topic, stamp_ns, data in heapq.merge(*streams, key=lambda message: message[1]):
             for output, writer in zip(outputs, writers, strict=True):

@@ -24,7 +24,7 @@ class SeveralReader(Reader):
 
     def __init__(self, readers: Sequence[Reader]) -> None:  # what the library's own does is for a path
         self.path = readers[0].path
-        self.storage = _Storages(sorted(readers, key=lambda each: each.start_time))
+        self.storage = _Storages(sorted(readers, key=lambda reader: reader.start_time))
         self.is_open = True
 
 
@@ -38,7 +38,7 @@ class _Storages:
     """
 
     def __init__(self, readers: Sequence[Reader]) -> None:
-        self.storages: list[Any] = [each.storage for each in readers]
+        self.storages: list[Any] = [reader.storage for reader in readers]
         self._readers = readers
         found: dict[tuple[str, str], Connection] = {}
         for each in (connection for reader in readers for connection in reader.connections):
@@ -46,10 +46,10 @@ class _Storages:
             count = each.msgcount if known is None else known.msgcount + each.msgcount
             found[_key(each)] = (known or each)._replace(id=known.id if known else len(found) + 1, msgcount=count)
         self.connections = list(found.values())
-        count = sum(each.message_count for each in readers)
-        start = min(each.start_time for each in readers)
-        end = max(each.end_time for each in readers)
-        packed = [each.storage.metadata for each in readers if each.compression_mode]
+        count = sum(reader.message_count for reader in readers)
+        start = min(reader.start_time for reader in readers)
+        end = max(reader.end_time for reader in readers)
+        packed = [reader.storage.metadata for reader in readers if reader.compression_mode]
         self.metadata = ReaderMetadata(
             duration=end - start if count else 0,
             start_time=start,
@@ -71,8 +71,10 @@ class _Storages:
         self, connections: Collection[Connection], start: int | None = None, stop: int | None = None
     ) -> Generator[_Message, None, None]:
         """The messages of all files by their times; a file is opened when its time has come."""
-        wanted = {_key(each): each for each in connections}
-        waiting = [each for each in self._readers if each.message_count and (start is None or each.end_time > start)]
+        wanted = {_key(connection): connection for connection in connections}
+        waiting = [
+            reader for reader in self._readers if reader.message_count and (start is None or reader.end_time > start)
+        ]
         waiting.reverse()
         streams: list[tuple[int, int, _Message, Iterator[_Message]]] = []
         number = 0
@@ -92,7 +94,7 @@ class _Storages:
     def _stream(
         reader: Reader, wanted: dict[tuple[str, str], Connection], start: int | None, stop: int | None
     ) -> Iterator[_Message]:
-        own = [each for each in reader.connections if _key(each) in wanted]
+        own = [connection for connection in reader.connections if _key(connection) in wanted]
         for connection, stamp_ns, data in reader.messages(own, start, stop) if own else ():
             yield wanted[_key(connection)], stamp_ns, data
 

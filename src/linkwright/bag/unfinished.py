@@ -264,11 +264,11 @@ def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
 def _tail(scan: _Scan, made: bytes) -> bytes:
     """The missing indexes, the end of the data, and the summary."""
     before = made + _record(_DATA_END, bytes(4))
-    chunks = [each for each in scan.chunks if each.indexes]
+    chunks = [chunk for chunk in scan.chunks if chunk.indexes]
     totals: dict[int, int] = defaultdict(int)
-    for channel, count in chain.from_iterable(each.counts.items() for each in chunks):
+    for channel, count in chain.from_iterable(chunk.counts.items() for chunk in chunks):
         totals[channel] += count
-    counts = b"".join(_PAIR.pack(*each) for each in totals.items())
+    counts = b"".join(_PAIR.pack(*item) for item in totals.items())
     statistics = _COUNTS.pack(
         sum(totals.values()),
         len(scan.schemas),
@@ -276,14 +276,14 @@ def _tail(scan: _Scan, made: bytes) -> bytes:
         0,
         0,
         len(chunks),
-        min((each.start_ns for each in chunks), default=0),
-        max((each.end_ns for each in chunks), default=0),
+        min((chunk.start_ns for chunk in chunks), default=0),
+        max((chunk.end_ns for chunk in chunks), default=0),
     )
     summary = b"".join(
         (
             *scan.schemas.values(),
             *scan.channels.values(),
-            *(_record(_CHUNK_INDEX, _chunk_index(each)) for each in chunks),
+            *(_record(_CHUNK_INDEX, _chunk_index(chunk)) for chunk in chunks),
             _record(_STATISTICS, statistics + _WORD.pack(len(counts)) + counts),
         )
     )
@@ -292,7 +292,7 @@ def _tail(scan: _Scan, made: bytes) -> bytes:
 
 
 def _chunk_index(chunk: _Chunk) -> bytes:
-    offsets = b"".join(_PAIR.pack(*each) for each in chunk.indexes.items())
+    offsets = b"".join(_PAIR.pack(*item) for item in chunk.indexes.items())
     return b"".join(
         (
             struct.pack("<QQQQ", chunk.start_ns, chunk.end_ns, chunk.offset, chunk.length),

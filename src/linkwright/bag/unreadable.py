@@ -85,7 +85,7 @@ def _missing_files(folder: Path) -> list[str]:
     try:
         metadata = yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))
         paths = metadata["rosbag2_bagfile_information"]["relative_file_paths"]
-        names = [PurePath(each).name for each in paths]
+        names = [PurePath(path).name for path in paths]
     except (OSError, ValueError, yaml.YAMLError, KeyError, TypeError):
         return []
     return [name for name in names if not (folder / name).exists()]

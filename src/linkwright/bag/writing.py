@@ -111,7 +111,7 @@ class BagWriter:
         """Bytes of its files, as far as they are written."""
         if self._is_file:
             return self.path.stat().st_size
-        return sum(each.stat().st_size for each in self.path.iterdir())
+        return sum(path.stat().st_size for path in self.path.iterdir())
 
     def add_topic(self, name: str, type_name: str, offered_qos: Collection[QoSProfile] = ()) -> None:
         """Add a topic, whose messages may follow.

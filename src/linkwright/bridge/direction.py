@@ -221,7 +221,7 @@ class Direction:
     def _is_expected(self, publisher: EndpointInfo) -> bool:
         """Whether somebody at the target can hear a publisher."""
         demanding = self._target.seen.demanded.get(publisher.name, ())
-        return any(can_hear(each, publisher, keyed=self._target.needs_hashes) for each in demanding)
+        return any(can_hear(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in demanding)
 
     def _can_carry(self, info: EndpointInfo) -> bool:
         """Whether a topic or service of this type can be made at the target; once for each, a warning if not."""

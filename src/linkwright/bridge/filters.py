@@ -33,9 +33,9 @@ class NameFilter:
     def passes(self, name: str) -> bool:
         """Whether a topic or service of an absolute name is carried; the parts of an action go by the action's name."""
         name = name.partition(_ACTION)[0]
-        if any(each.match(name) for each in self._denied):
+        if any(pattern.match(name) for pattern in self._denied):
             return False
-        return not self._allowed or any(each.match(name) for each in self._allowed)
+        return not self._allowed or any(pattern.match(name) for pattern in self._allowed)
 
 
 def _compiled(pattern: str) -> re.Pattern[str]:

@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.bridge.networks import read_network
     from linkwright.graph.log.console import print_to_console
 
-    first, second = (read_network(each) for each in arguments.networks)
+    first, second = (read_network(network) for network in arguments.networks)
     if first == second:
         raise LinkwrightError(
             Diagnostic(

@@ -99,7 +99,9 @@ def run(arguments: argparse.Namespace) -> int:
         _summarise(found, mended)
     if arguments.statistics:
         _print_statistics(found)
-    failed = has_errors(found) or (arguments.strict and any(each.severity is Severity.WARNING for each in found))
+    failed = has_errors(found) or (
+        arguments.strict and any(diagnostic.severity is Severity.WARNING for diagnostic in found)
+    )
     return 1 if failed else 0
 
 
@@ -303,8 +305,8 @@ def _summarise(found: Sequence[Diagnostic], mended: Sequence[Mended]) -> None:
             files=counted("{count} file", "{count} files", files),
         )
         say(localized(line))
-    errors = sum(each.severity is Severity.ERROR for each in found)
-    warnings = sum(each.severity is Severity.WARNING for each in found)
+    errors = sum(diagnostic.severity is Severity.ERROR for diagnostic in found)
+    warnings = sum(diagnostic.severity is Severity.WARNING for diagnostic in found)
     line = phrase(
         "{errors}, {warnings}",
         errors=counted("{count} error", "{count} errors", errors),
@@ -316,7 +318,9 @@ def _summarise(found: Sequence[Diagnostic], mended: Sequence[Mended]) -> None:
 def _print_statistics(found: Iterable[Diagnostic]) -> None:
     from linkwright.lint.explain import find_page
 
-    for code, count in sorted(Counter(each.code for each in found).items(), key=lambda each: (-each[1], each[0])):
+    for code, count in sorted(
+        Counter(diagnostic.code for diagnostic in found).items(), key=lambda item: (-item[1], item[0])
+    ):
         page = find_page(code)
         print(f"{count:6}  {code:<9} {page.name or localized(page.title) if page else ''}".rstrip(), file=sys.stderr)
 

@@ -135,11 +135,11 @@ async def _list_components(arguments: argparse.Namespace, ask: Ask) -> int:
 async def _list_interfaces(arguments: argparse.Namespace, ask: Ask) -> int:
     found = await ask("list_hardware_interfaces")
     print("command interfaces")
-    for each in sorted(found.command_interfaces, key=lambda interface: interface.name):
-        print(f"\t{each.name}{_data_type(each, arguments)} {_availability(each)} {_claim(each)}")
+    for command in sorted(found.command_interfaces, key=lambda interface: interface.name):
+        print(f"\t{command.name}{_data_type(command, arguments)} {_availability(command)} {_claim(command)}")
     print("state interfaces")
-    for each in sorted(found.state_interfaces, key=lambda interface: interface.name):
-        print(f"\t{each.name}{_data_type(each, arguments)}")
+    for state in sorted(found.state_interfaces, key=lambda interface: interface.name):
+        print(f"\t{state.name}{_data_type(state, arguments)}")
     return 0
 
 
@@ -177,18 +177,18 @@ def _save(text: str) -> None:
 
 def _diagram(controllers: Sequence[Any]) -> str:
     """Controllers and the hardware as boxes, interfaces between them as arrows."""
-    names = {each.name for each in controllers}
+    names = {controller.name for controller in controllers}
     lines = ["digraph g {", "rankdir=LR;", "node [shape=box, style=rounded];"]
     lines += [f'"{name}";' for name in sorted(names)]
-    for each in controllers:
-        for interface in each.required_command_interfaces:
+    for controller in controllers:
+        for interface in controller.required_command_interfaces:
             owner, _, kind = interface.partition("/")
             target, label = (owner, kind) if owner in names else ("hw command_interfaces", interface)
-            lines.append(f'"{each.name}" -> "{target}" [label="{label}"];')
-        for interface in each.required_state_interfaces:
+            lines.append(f'"{controller.name}" -> "{target}" [label="{label}"];')
+        for interface in controller.required_state_interfaces:
             owner, _, kind = interface.partition("/")
             source, label = (owner, kind) if owner in names else ("hw state_interfaces", interface)
-            lines.append(f'"{source}" -> "{each.name}" [label="{label}"];')
+            lines.append(f'"{source}" -> "{controller.name}" [label="{label}"];')
     return "\n".join([*lines, "}", ""])
 
 

@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
             )
         seen = await observe(session.graph, session.node, arguments.seconds, fixed_frames=frames)
         found = [*settings, *examine(seen), *examine_parameter_files(seen, arguments.params_file)]
-        failed = any(each.severity is not Severity.INFO for each in found)
+        failed = any(diagnostic.severity is not Severity.INFO for diagnostic in found)
         if arguments.report or (arguments.report_failed and failed):
             print(report(seen))
         if arguments.format == "text":
@@ -102,8 +102,8 @@ def _fixed_frames(arguments: argparse.Namespace) -> list[FixedFrame]:
 
 
 def _summary(seen: Observation, findings: int) -> str:
-    frames = {name for each in seen.transforms for name in (each.parent, each.child)}
-    topics = {each.name for each in seen.endpoints if each.kind.value in ("publisher", "subscription")}
+    frames = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
+    topics = {endpoint.name for endpoint in seen.endpoints if endpoint.kind.value in ("publisher", "subscription")}
     counts = joined(
         [
             counted("{count} node", "{count} nodes", len(seen.nodes)),

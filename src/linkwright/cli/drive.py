@@ -94,7 +94,9 @@ def run(arguments: argparse.Namespace) -> int:
         return 1 if written.refused else 0
     load_mujoco()
     load_world(arguments.world)  # a world that cannot be had is said at once, and not in the middle of a log
-    print_diagnostics([each for each in found.diagnostics if each.severity is not Severity.INFO], sys.stderr)
+    print_diagnostics(
+        [diagnostic for diagnostic in found.diagnostics if diagnostic.severity is not Severity.INFO], sys.stderr
+    )
     say(localized(_summary(robot, found)))
     world = replace(
         SimulatedWorld.of(arguments.world, description, found, inferred),
@@ -116,7 +118,7 @@ def _summary(robot: Robot, found: Inference) -> Phrase:
     if drive is not None and drive.left:
         names = [joined([wheel.joint for wheel in side]) for side in (drive.left, drive.right)]
         parts.append(phrase("{kind} drive, {left} and {right}", kind=drive.kind, left=names[0], right=names[1]))
-    codes = [each.code for each in found.diagnostics]
+    codes = [diagnostic.code for diagnostic in found.diagnostics]
     collisions, masses = codes.count("DRIVE101"), codes.count("DRIVE102") + codes.count("DRIVE103")
     if collisions:
         parts.append(counted("collisions of {count} link", "collisions of {count} links", collisions))

@@ -89,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
     ]
     written: Written | None = None
     if arguments.write:
-        found = {each.link: each.properties for each in estimates if each.properties is not None}
+        found = {estimate.link: estimate.properties for estimate in estimates if estimate.properties is not None}
         written = write_inertials(robot, found)
     if arguments.format == "json":
         sys.stdout.write(as_json(robot, estimates, written))

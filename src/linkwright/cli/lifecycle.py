@@ -114,7 +114,7 @@ def run_set(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
-        available = [each.transition for each in await transitions(session, node)]
+        available = [transition.transition for transition in await transitions(session, node)]
         wanted = next((each for each in available if arguments.transition in (each.label, str(each.id))), None)
         if wanted is None:
             listed = "\n".join(f"- {each.label} [{each.id}]" for each in available)
@@ -179,11 +179,11 @@ async def change(session: Session, node: str, transition: Any) -> bool:
 def transition_lines(descriptions: Sequence[Any]) -> list[str]:
     """The lines of ``lifecycle list``."""
     lines = []
-    for each in descriptions:
+    for description in descriptions:
         lines += [
-            f"- {each.transition.label} [{each.transition.id}]",
-            f"\tStart: {each.start_state.label}",
-            f"\tGoal: {each.goal_state.label}",
+            f"- {description.transition.label} [{description.transition.id}]",
+            f"\tStart: {description.start_state.label}",
+            f"\tGoal: {description.goal_state.label}",
         ]
     return lines
 

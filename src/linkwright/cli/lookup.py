@@ -46,7 +46,7 @@ def unknown(code: str, message: Phrase, name: str, known: Iterable[str], nothing
         nothing: the hint when none is near.
     """
     candidates = list(known)
-    by_end = [each for each in candidates if each.endswith("/" + name.strip("/").rpartition("/")[2])]
+    by_end = [candidate for candidate in candidates if candidate.endswith("/" + name.strip("/").rpartition("/")[2])]
     hint = did_you_mean(absolute_or_given(name), candidates)
     if hint is None and by_end:
         hint = phrase("did you mean {names}?", names=quoted(by_end[0]))

@@ -33,25 +33,25 @@ def run_list(arguments: argparse.Namespace) -> int:
     if arguments.json:
         rows = [
             {
-                "name": each.name,
-                "kind": each.kind,
-                "megabytes": each.megabytes,
-                "licence": each.licence,
-                "address": each.address,
-                "purpose": each.purpose,
-                "path": str(models_folder() / each.place) if is_installed(each) else None,
+                "name": entry.name,
+                "kind": entry.kind,
+                "megabytes": entry.megabytes,
+                "licence": entry.licence,
+                "address": entry.address,
+                "purpose": entry.purpose,
+                "path": str(models_folder() / entry.place) if is_installed(entry) else None,
             }
-            for each in model_table().values()
+            for entry in model_table().values()
         ]
         print(json.dumps(rows, indent=2, ensure_ascii=False))
         return FINE
     width = max(map(len, model_table()))
-    for each in model_table().values():
-        state = phrase("fetched") if is_installed(each) else phrase("not fetched")
-        size = f"{each.megabytes} MB"
+    for entry in model_table().values():
+        state = phrase("fetched") if is_installed(entry) else phrase("not fetched")
+        size = f"{entry.megabytes} MB"
         print(
-            f"{each.name:{width}}  {each.kind:6}  {size:>6}  {each.licence}  {localized(state)}: "
-            f"{localized(term(each.purpose))}"
+            f"{entry.name:{width}}  {entry.kind:6}  {size:>6}  {entry.licence}  {localized(state)}: "
+            f"{localized(term(entry.purpose))}"
         )
     return FINE
 
@@ -139,7 +139,7 @@ def run_check(arguments: argparse.Namespace) -> int:
 
     entries = [model_entry(name) for name in arguments.names]
     wrong: list[Diagnostic] = []
-    for entry in entries or [each for each in model_table().values() if is_installed(each)]:
+    for entry in entries or [entry for entry in model_table().values() if is_installed(entry)]:
         found = _wrong_with(entry, find_model(entry))
         wrong += found
         if not found:

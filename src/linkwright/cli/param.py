@@ -116,7 +116,7 @@ async def _listed(parameters: RemoteParameters, arguments: argparse.Namespace, w
     if not arguments.param_type:
         return [f"  {name}" for name in names]
     descriptors = await parameters.descriptors(names)
-    return [f"  {each.name} (type: {TYPE_NAMES.get(each.type, 'unknown')})" for each in descriptors]
+    return [f"  {descriptor.name} (type: {TYPE_NAMES.get(descriptor.type, 'unknown')})" for descriptor in descriptors]
 
 
 def configure_get(parser: argparse.ArgumentParser) -> None:

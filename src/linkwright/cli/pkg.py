@@ -226,9 +226,9 @@ def _xml(arguments: argparse.Namespace) -> int:
     if arguments.tag is None:
         sys.stdout.write(path.read_text(encoding="utf-8"))
         return 0
-    found = [each for each in document.root.elements() if each.tag == arguments.tag]
+    found = [element for element in document.root.elements() if element.tag == arguments.tag]
     if not found:
-        names = sorted({each.tag for each in document.root.elements()})
+        names = sorted({element.tag for element in document.root.elements()})
         raise LinkwrightError(
             Diagnostic(
                 "CLI108",

@@ -161,8 +161,12 @@ def _check_type(session: Session, name: str, asked: str) -> None:
     """A service that is there with another type will never be ready; say so instead of waiting."""
     from linkwright.graph.endpoints.info import EndpointKind
 
-    servers = [each for each in session.graph.endpoints() if each.kind is EndpointKind.SERVICE and each.name == name]
-    types = sorted({each.type_name for each in servers})
+    servers = [
+        endpoint
+        for endpoint in session.graph.endpoints()
+        if endpoint.kind is EndpointKind.SERVICE and endpoint.name == name
+    ]
+    types = sorted({server.type_name for server in servers})
     if types and asked not in types:
         message = phrase(
             "service '{name}' is of type {types}, not {asked}", name=name, types=", ".join(types), asked=asked

@@ -117,7 +117,7 @@ def _run_bag(arguments: argparse.Namespace, options: HostOptions) -> int:
     needless = [*others, *([f"--against {arguments.against}"] if arguments.against else [])]
     if needless:
         return _misused(f"'{arguments.file}' is a recording, which is shown by itself: leave {', '.join(needless)} out")
-    folder = next((each for each in files if len(files) > 1 and each.is_dir()), None)
+    folder = next((file for file in files if len(files) > 1 and file.is_dir()), None)
     if folder is not None:
         return _misused(f"several files are shown as one recording, and '{folder}' is a folder: name its files")
     return run_bag_view(files, options, foxglove=arguments.foxglove)

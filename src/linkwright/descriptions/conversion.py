@@ -94,8 +94,8 @@ def _as_it_is(world: World) -> World:
     from linkwright.sdf.worlds import gravity_of
 
     world = replace(as_saved(world), states=())
-    if world.gravity is None and any(each.gravity for each in world.physics):
-        physics = tuple(replace(each, gravity=None) for each in world.physics)
+    if world.gravity is None and any(physic.gravity for physic in world.physics):
+        physics = tuple(replace(physic, gravity=None) for physic in world.physics)
         world = replace(world, gravity=gravity_of(world), physics=physics)
     return world
 

@@ -95,8 +95,10 @@ def examine(
         if not partly:
             raise
         if not xacro and not arguments and name.endswith(_URDF):
-            told = {each.code for each in forbidden}
-            unexpanded = tuple(_as_warning(each) for each in error.diagnostics if each.code not in told)
+            told = {diagnostic.code for diagnostic in forbidden}
+            unexpanded = tuple(
+                _as_warning(diagnostic) for diagnostic in error.diagnostics if diagnostic.code not in told
+            )
             plain = _as_it_stands(name, document, (*unexpanded, *forbidden), overlay, is_told=bool(unexpanded))
             if plain.robot is not None and not has_errors(plain.diagnostics) and not _has_open_names(plain.robot):
                 return plain
@@ -120,7 +122,7 @@ def _as_it_stands(
     Then what the file lacks may be in what xacro would add to it, such as the colours of an included file.
     """
     reading = read(document)
-    said = tuple(each for each in reading.diagnostics if not is_told or _holds_unexpanded(each))
+    said = tuple(diagnostic for diagnostic in reading.diagnostics if not is_told or _holds_unexpanded(diagnostic))
     return Description(name, document, Reading(reading.robot, (*remarks, *said)), overlay=overlay)
 
 

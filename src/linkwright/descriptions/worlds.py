@@ -116,11 +116,11 @@ def robot_of_text(text: str, name: str) -> Reading:
 def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Findings, of each kind of element that is not read and of each model that is not there only the first."""
     told: set[str] = set()
-    for each in found:
-        words = f"{each.code} {each.severity} {each.message}"
-        if each.code not in _OF_A_KIND or words not in told:
+    for diagnostic in found:
+        words = f"{diagnostic.code} {diagnostic.severity} {diagnostic.message}"
+        if diagnostic.code not in _OF_A_KIND or words not in told:
             told.add(words)
-            yield each
+            yield diagnostic
 
 
 def _document(
@@ -154,4 +154,4 @@ def _as_written(path: Path, written: str | bytes) -> tuple[Document, tuple[Diagn
 def _is_xacro(document: Document) -> bool:
     """Whether a file is written for xacro, whatever its name: launch files expand it before Gazebo gets it."""
     root = document.root
-    return "xmlns:xacro" in root.attributes and any(each.tag.startswith("xacro:") for each in root.walk())
+    return "xmlns:xacro" in root.attributes and any(element.tag.startswith("xacro:") for element in root.walk())

@@ -19,9 +19,13 @@ def alike_together(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     Alike are those of one code and severity whose messages differ in nothing but names and numbers.
     """
     groups: dict[object, list[Diagnostic]] = {}
-    for each in diagnostics:
-        groups.setdefault((each.code, each.severity, as_phrase(each.message).template), []).append(each)
-    return [each for group in groups.values() for each in (group if len(group) <= _FEW else [_together(group)])]
+    for diagnostic in diagnostics:
+        groups.setdefault((diagnostic.code, diagnostic.severity, as_phrase(diagnostic.message).template), []).append(
+            diagnostic
+        )
+    return [
+        diagnostic for group in groups.values() for diagnostic in (group if len(group) <= _FEW else [_together(group)])
+    ]
 
 
 def _together(group: list[Diagnostic]) -> Diagnostic:

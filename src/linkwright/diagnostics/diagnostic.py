@@ -110,7 +110,7 @@ class LinkwrightError(Exception):
 
 def in_one_line(diagnostics: Iterable[Diagnostic]) -> Phrase:
     """The messages of several diagnostics in a row."""
-    return joined((each.message for each in diagnostics), "; ")
+    return joined((diagnostic.message for diagnostic in diagnostics), "; ")
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:

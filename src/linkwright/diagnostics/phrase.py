@@ -181,7 +181,7 @@ class _Joined(Phrase):
         return type(self), (self.items, self.separator, self.last)
 
     def said_in(self, wording: Wording) -> str:
-        items = [each.said_in(wording) if isinstance(each, Phrase) else each for each in self.items]
+        items = [item.said_in(wording) if isinstance(item, Phrase) else item for item in self.items]
         return _in_a_row(items, wording.pgettext(TERMS, self.separator), wording.pgettext(TERMS, self.last))
 
 

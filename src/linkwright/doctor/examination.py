@@ -22,4 +22,4 @@ def examine(seen: Observation) -> list[Diagnostic]:
     found += examine_topics(seen)
     found += examine_clocks(seen)
     found += examine_lifecycle(seen)
-    return sorted(found, key=lambda each: _ORDER.index(each.severity))
+    return sorted(found, key=lambda diagnostic: _ORDER.index(diagnostic.severity))

@@ -37,18 +37,22 @@ def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[D
 
 def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
     by_child: dict[str, list[TransformSeen]] = {}
-    for each in seen.transforms:
-        by_child.setdefault(each.child, []).append(each)
+    for transform in seen.transforms:
+        by_child.setdefault(transform.child, []).append(transform)
     shared: dict[tuple[str, ...], list[str]] = {}
     for child, transforms in sorted(by_child.items()):
-        parents = sorted({each.parent for each in transforms})
-        senders = tuple(sorted({sender for each in transforms for sender in each.senders}))
+        parents = sorted({transform.parent for transform in transforms})
+        senders = tuple(sorted({sender for transform in transforms for sender in transform.senders}))
         if len(parents) > 1:
             notes = tuple(
                 Note(
-                    phrase("{senders} says '{parent}' is its parent", senders=listed(each.senders), parent=each.parent)
+                    phrase(
+                        "{senders} says '{parent}' is its parent",
+                        senders=listed(transform.senders),
+                        parent=transform.parent,
+                    )
                 )
-                for each in sorted(transforms, key=lambda each: each.parent)
+                for transform in sorted(transforms, key=lambda transform: transform.parent)
             )
             yield Diagnostic(
                 "DOC303",
@@ -78,15 +82,15 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _numbers(seen: Observation) -> Iterator[Diagnostic]:
-    for each in seen.transforms:
-        if not each.valid:
+    for transform in seen.transforms:
+        if not transform.valid:
             yield Diagnostic(
                 "DOC306",
                 phrase(
                     "the transform of frame '{child}' has numbers that are none, or a rotation of length zero",
-                    child=each.child,
+                    child=transform.child,
                 ),
-                notes=(Note(phrase("it is published by {senders}", senders=listed(each.senders))),),
+                notes=(Note(phrase("it is published by {senders}", senders=listed(transform.senders))),),
                 hint=phrase(
                     "look at the joint positions and origins that go into it; a rotation that turns nothing is w: 1"
                 ),
@@ -95,7 +99,7 @@ def _numbers(seen: Observation) -> Iterator[Diagnostic]:
 
 def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
     """The frames of a cycle of parents that a frame is in; empty if it is in none."""
-    parent = {each.child: each.parent for each in transforms}
+    parent = {transform.child: transform.parent for transform in transforms}
     done: set[str] = set()
     for start in parent:
         way: list[str] = []
@@ -111,7 +115,7 @@ def _circle(transforms: Sequence[TransformSeen]) -> list[str]:
 
 def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
     """Findings on missing frames of a robot's links; frames with the same reason together."""
-    there = {each.child for each in seen.transforms}
+    there = {transform.child for transform in seen.transforms}
     without = [joint for joint in robot.joints if robot.frame(joint.child) not in there]
     if not without:
         return
@@ -146,7 +150,7 @@ def _missing(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
 
 
 def _has_state(seen: Observation, robot: RobotSeen, joint: Joint) -> bool:
-    return robot.leader(joint) in {each.name for each in seen.joints}
+    return robot.leader(joint) in {joint.name for joint in seen.joints}
 
 
 def _never_sent(robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
@@ -168,7 +172,7 @@ def _without_state(seen: Observation, robot: RobotSeen, joints: Sequence[Joint])
     senders = nodes_of(
         endpoint for endpoint in seen.of_kind(EndpointKind.PUBLISHER) if endpoint.type_name == _JOINT_STATE
     )
-    published = [each.name for each in seen.joints]
+    published = [joint.name for joint in seen.joints]
     if not senders:
         yield Diagnostic(
             "DOC401",
@@ -215,7 +219,7 @@ def _without_state(seen: Observation, robot: RobotSeen, joints: Sequence[Joint])
 def _not_followed(seen: Observation, robot: RobotSeen, joints: Sequence[Joint]) -> Diagnostic:
     frames = [robot.frame(joint.child) for joint in joints]
     wanted = {robot.leader(joint) for joint in joints}
-    topics = sorted({topic for each in seen.joints if each.name in wanted for topic in each.topics})
+    topics = sorted({topic for joint in seen.joints if joint.name in wanted for topic in joint.topics})
     heard = nodes_of(
         endpoint
         for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)
@@ -248,8 +252,8 @@ def _frames(names: Sequence[str]) -> Phrase:
 
 
 def _trees(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    children = {each.child for each in seen.transforms}
-    roots = sorted({each.parent for each in seen.transforms} - children)
+    children = {transform.child for transform in seen.transforms}
+    roots = sorted({transform.parent for transform in seen.transforms} - children)
     if len(roots) < 2:
         return
     # A robot's own missing transforms were told above; they need no second finding.
@@ -277,8 +281,8 @@ def _trees(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnosti
 
 def _size(root: str, transforms: Sequence[TransformSeen]) -> int:
     below: dict[str, set[str]] = {}
-    for each in transforms:
-        below.setdefault(each.parent, set()).add(each.child)
+    for transform in transforms:
+        below.setdefault(transform.parent, set()).add(transform.child)
     found, pending = set(), [root]
     while pending:
         for child in below.get(pending.pop(), ()):
@@ -289,11 +293,13 @@ def _size(root: str, transforms: Sequence[TransformSeen]) -> int:
 
 
 def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
-    known = {name for each in seen.transforms for name in (each.parent, each.child)}
+    known = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
     known |= {robot.frame(robot.root) for robot in robots}
     if seen.publishers_of(_WORLD_POSES):
         known.add(_WORLD)  # the viewer places tf's frames in it
-    roots = sorted({each.parent for each in seen.transforms} - {each.child for each in seen.transforms})
+    roots = sorted(
+        {transform.parent for transform in seen.transforms} - {transform.child for transform in seen.transforms}
+    )
     for frame in seen.fixed_frames:
         if frame.name in known:
             continue
@@ -319,23 +325,23 @@ def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Itera
     """Findings on messages in frames without a transform; those of robots are named as such."""
     if not seen.transforms:
         return
-    known = {name for each in seen.transforms for name in (each.parent, each.child)}
+    known = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
     robot_frames = {robot.frame(joint.child) for robot in robots for joint in robot.joints}
     robot_frames |= {robot.frame(robot.root) for robot in robots}
     if seen.publishers_of(_WORLD_POSES):
         known.add(_WORLD)
-    for each in seen.frames:
-        if each.topic not in _OF_THE_WORLD and each.frame not in known | robot_frames:
+    for frame in seen.frames:
+        if frame.topic not in _OF_THE_WORLD and frame.frame not in known | robot_frames:
             yield Diagnostic(
                 "DOC310",
                 phrase(
                     "'{topic}' of {sender} is in frame '{frame}', which does not exist",
-                    topic=each.topic,
-                    sender=listed([each.sender]),
-                    frame=each.frame,
+                    topic=frame.topic,
+                    sender=listed([frame.sender]),
+                    frame=frame.frame,
                 ),
                 notes=(Note(phrase("frames there are: {known}", known=listed(sorted(known)))),),
-                hint=did_you_mean(each.frame, known)
+                hint=did_you_mean(frame.frame, known)
                 or phrase(
                     "publish its transform, as static_transform_publisher does, or have the node name another frame"
                 ),

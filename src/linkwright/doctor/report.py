@@ -137,15 +137,15 @@ def _compatibility(seen: Observation) -> list[tuple[str, str]]:
 def _topics(seen: Observation) -> list[tuple[str, str]]:
     publishers, subscriptions = seen.of_kind(EndpointKind.PUBLISHER), seen.of_kind(EndpointKind.SUBSCRIPTION)
     items = []
-    for topic in sorted({each.name for each in _shown([*publishers, *subscriptions])}):
+    for topic in sorted({endpoint.name for endpoint in _shown([*publishers, *subscriptions])}):
         items += [
             ("topic", topic),
-            ("publisher count", str(sum(each.name == topic for each in publishers))),
-            ("subscriber count", str(sum(each.name == topic for each in subscriptions))),
+            ("publisher count", str(sum(publisher.name == topic for publisher in publishers))),
+            ("subscriber count", str(sum(subscription.name == topic for subscription in subscriptions))),
         ]
     return items or [("topic", "none")]
 
 
 def _shown(endpoints: Iterable[EndpointInfo]) -> list[EndpointInfo]:
-    found = (each for each in endpoints if each.name not in _EVERYWHERE)
-    return sorted(found, key=lambda each: (each.name, node_of(each)))
+    found = (endpoint for endpoint in endpoints if endpoint.name not in _EVERYWHERE)
+    return sorted(found, key=lambda endpoint: (endpoint.name, node_of(endpoint)))

@@ -62,11 +62,13 @@ def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
     """Read the robots from their descriptions, with findings on those that cannot be read."""
     robots: dict[tuple[str, str], RobotSeen] = {}
     found = []
-    for each in seen.descriptions:
-        reading = DescriptionLibrary().read(each.text)
+    for description in seen.descriptions:
+        reading = DescriptionLibrary().read(description.text)
         if reading.robot is not None:
             prefix = _prefix(reading.robot, seen)
-            robots[each.topic, each.text] = RobotSeen(each.topic, each.sender, reading.robot, prefix)
+            robots[description.topic, description.text] = RobotSeen(
+                description.topic, description.sender, reading.robot, prefix
+            )
             continue
         first = reading.diagnostics[0].message if reading.diagnostics else phrase("it is empty")
         found.append(
@@ -74,8 +76,8 @@ def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
                 "DOC501",
                 phrase(
                     "the description that '{sender}' publishes on '{topic}' is no URDF: {first}",
-                    sender=each.sender,
-                    topic=each.topic,
+                    sender=description.sender,
+                    topic=description.topic,
                     first=foreign(first),
                 ),
                 hint=phrase("it must be the text of the description, as `xacro FILE` prints it, not a file's name"),
@@ -86,7 +88,7 @@ def robots_in(seen: Observation) -> tuple[list[RobotSeen], list[Diagnostic]]:
 
 def _prefix(robot: Robot, seen: Observation) -> str:
     """The prefix of most links' names among the observed frames; empty for none."""
-    frames = {name for each in seen.transforms for name in (each.parent, each.child)}
+    frames = {name for transform in seen.transforms for name in (transform.parent, transform.child)}
     if any(link in frames for link in robot.links):
         return ""
     prefixes = {frame.removesuffix(robot.root) for frame in frames if frame.endswith(robot.root)}
@@ -103,8 +105,8 @@ def examine_robots(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[D
 
 def _several_descriptions(seen: Observation) -> Iterator[Diagnostic]:
     by_topic: dict[str, dict[str, str]] = {}
-    for each in seen.descriptions:
-        by_topic.setdefault(each.topic, {})[each.sender] = each.text
+    for description in seen.descriptions:
+        by_topic.setdefault(description.topic, {})[description.sender] = description.text
     for topic, texts in sorted(by_topic.items()):
         if len(texts) < 2:
             continue
@@ -151,7 +153,7 @@ def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _unknown_joints(seen: Observation, robot: RobotSeen) -> Iterator[Diagnostic]:
-    stated = {each.name for each in seen.joints}
+    stated = {joint.name for joint in seen.joints}
     unstated = [joint.name for joint in robot.joints if joint.type in MOVING and joint.name not in stated]
     for joint in seen.joints:
         if joint.name in robot.joint_names:

@@ -82,19 +82,19 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
 
 def _without_takers_of_all(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
     """The endpoints of a topic by type, without nodes that subscribe to all that is published; none if all do."""
-    every = [each for endpoints in types.values() for each in endpoints]
-    published = {each.type_name for each in every if each.kind is EndpointKind.PUBLISHER}
+    every = [endpoint for endpoints in types.values() for endpoint in endpoints]
+    published = {endpoint.type_name for endpoint in every if endpoint.kind is EndpointKind.PUBLISHER}
     heard: dict[str, set[str]] = {}
-    for each in every:
-        if each.kind is EndpointKind.SUBSCRIPTION:
-            heard.setdefault(node_of(each), set()).add(each.type_name)
+    for endpoint in every:
+        if endpoint.kind is EndpointKind.SUBSCRIPTION:
+            heard.setdefault(node_of(endpoint), set()).add(endpoint.type_name)
     takers = {node for node, names in heard.items() if len(names) > 1 and names >= published}
     if takers and takers == set(heard):
         return {}
     kept: dict[str, list[EndpointInfo]] = {}
-    for each in every:
-        if each.kind is EndpointKind.PUBLISHER or node_of(each) not in takers:
-            kept.setdefault(each.type_name, []).append(each)
+    for endpoint in every:
+        if endpoint.kind is EndpointKind.PUBLISHER or node_of(endpoint) not in takers:
+            kept.setdefault(endpoint.type_name, []).append(endpoint)
     return kept
 
 
@@ -272,13 +272,13 @@ def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
 
 def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
     """Findings on nodes that contradicted each other on one topic."""
-    for each in seen.disputed:
+    for drivers_seen in seen.disputed:
         yield Diagnostic(
             "DOC208",
             phrase(
                 "two drivers on one topic: {drivers} publish velocities on '{topic}'",
-                drivers=listed(each.drivers),
-                topic=each.topic,
+                drivers=listed(drivers_seen.drivers),
+                topic=drivers_seen.topic,
             ),
             severity=Severity.WARNING,
             notes=(Note(phrase("the robot obeys each message in turn, so it jerks between them")),),
@@ -289,8 +289,8 @@ def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
 def _alike(name: str, candidates: list[str]) -> str | None:
     """The candidate that is probably meant: with the same last part in another namespace, or of similar spelling."""
     last = name.rpartition("/")[2]
-    same_end = [each for each in candidates if each.rpartition("/")[2] == last]
-    near = nearest(name, [each for each in candidates if abs(len(each) - len(name)) <= _MOST_DIFFERENT])
+    same_end = [candidate for candidate in candidates if candidate.rpartition("/")[2] == last]
+    near = nearest(name, [candidate for candidate in candidates if abs(len(candidate) - len(name)) <= _MOST_DIFFERENT])
     return next(iter((*same_end, *near)), None)
 
 

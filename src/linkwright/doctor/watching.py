@@ -144,12 +144,16 @@ class _Watcher:
 
     def nodes(self) -> list[str]:
         """Full names of the nodes but for the watcher's own and other tools' hidden ones."""
-        names = (join(each.namespace, each.name) for each in self._graph.identities())
+        names = (join(identity.namespace, identity.name) for identity in self._graph.identities())
         return sorted(name for name in names if not _is_tool(name) and name != self._own)
 
     def endpoints(self) -> list[EndpointInfo]:
         """The endpoints of those nodes."""
-        return [each for each in self._graph.endpoints() if not _is_tool(node_of(each)) and node_of(each) != self._own]
+        return [
+            endpoint
+            for endpoint in self._graph.endpoints()
+            if not _is_tool(node_of(endpoint)) and node_of(endpoint) != self._own
+        ]
 
     async def until_named(self) -> None:
         """Wait until the node of every endpoint is known: of a new one it is discovered a moment later.
@@ -158,7 +162,7 @@ class _Watcher:
         """
         end = time.monotonic() + _NAMED_WITHIN
         while time.monotonic() < end:
-            if all(each.node is not None for each in self._graph.endpoints()):
+            if all(endpoint.node is not None for endpoint in self._graph.endpoints()):
                 break
             await asyncio.sleep(_LOOK_AGAIN)
 
@@ -208,7 +212,7 @@ class _Watcher:
 
     def _listen(self, endpoint: EndpointInfo, callback: Any, *, raw: bool = False) -> None:
         """Subscribe with a profile that matches every publisher; latched ones are asked for their last messages."""
-        offers = [each.qos for each in self._publishers(endpoint.name)]
+        offers = [publisher.qos for publisher in self._publishers(endpoint.name)]
         latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
         reliable = all(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
         if latched:
@@ -226,25 +230,29 @@ class _Watcher:
 
     def _sender(self, topic: str, info: MessageInfo) -> str:
         publishers = self._publishers(topic)
-        for each in publishers:
-            if each.gid == info.publisher_gid:
-                return node_of(each)
+        for publisher in publishers:
+            if publisher.gid == info.publisher_gid:
+                return node_of(publisher)
         return node_of(publishers[0]) if len(publishers) == 1 else UNKNOWN_NODE
 
     def _publishers(self, topic: str) -> list[EndpointInfo]:
-        return [each for each in self._graph.endpoints() if each.name == topic and each.kind is EndpointKind.PUBLISHER]
+        return [
+            endpoint
+            for endpoint in self._graph.endpoints()
+            if endpoint.name == topic and endpoint.kind is EndpointKind.PUBLISHER
+        ]
 
     # --- what is heard -----------------------------------------------------------------------------------------------
 
     def _on_transforms(self, topic: str, is_static: bool, message: Any, info: MessageInfo) -> None:
         sender = self._sender(topic, info)
-        for each in message.transforms:
-            key = (each.header.frame_id.lstrip("/"), each.child_frame_id.lstrip("/"))
+        for transform in message.transforms:
+            key = (transform.header.frame_id.lstrip("/"), transform.child_frame_id.lstrip("/"))
             senders, _, valid = self._transforms.get(key, ({}, is_static, True))
             senders.setdefault(topic, set()).add(sender)
-            self._transforms[key] = (senders, is_static, valid and _is_transform(each.transform))
+            self._transforms[key] = (senders, is_static, valid and _is_transform(transform.transform))
             if not is_static:
-                self._note_stamp(topic, sender, each.header.stamp.sec, each.header.stamp.nanosec)
+                self._note_stamp(topic, sender, transform.header.stamp.sec, transform.header.stamp.nanosec)
 
     def _on_joints(self, topic: str, message: Any, info: MessageInfo) -> None:
         sender = self._sender(topic, info)
@@ -314,7 +322,7 @@ class _Watcher:
         One that does not may hand stamps on that others made, so the nearer clock counts.
         """
         found = []
-        makers = {node_of(each) for each in self._publishers("/clock")}
+        makers = {node_of(publisher) for publisher in self._publishers("/clock")}
         for (topic, sender), (stamp_ns, now_ns) in sorted(self._stamps.items()):
             if sim_time.get(sender) or sender in makers:
                 if self.clock is None:
@@ -328,7 +336,7 @@ class _Watcher:
 
     def frames_seen(self) -> tuple[FrameSeen, ...]:
         """The frames of messages, by topic and sender; empty ones are left out."""
-        named = sorted(each for each in self._frames.items() if each[1])
+        named = sorted(item for item in self._frames.items() if item[1])
         return tuple(FrameSeen(topic, sender, frame) for (topic, sender), frame in named)
 
     # --- what is asked -----------------------------------------------------------------------------------------------
@@ -346,8 +354,8 @@ class _Watcher:
 
     async def fixed_frames(self) -> list[FixedFrame]:
         """The fixed frame of each viewer that has it as a parameter, as Linkwright's has."""
-        subscriptions = [each for each in self.endpoints() if each.kind is EndpointKind.SUBSCRIPTION]
-        viewers = {node_of(each) for each in subscriptions if each.type_name == _TF}
+        subscriptions = [endpoint for endpoint in self.endpoints() if endpoint.kind is EndpointKind.SUBSCRIPTION]
+        viewers = {node_of(subscription) for subscription in subscriptions if subscription.type_name == _TF}
         package = "rcl_interfaces/srv"
         listed = await self._ask_all(f"{package}/ListParameters", "list_parameters", viewers, prefixes=[_FIXED_FRAME])
         # A node that has no such parameter would complain when asked for it.
@@ -360,7 +368,9 @@ class _Watcher:
         from linkwright.messages import get_service
 
         served = {
-            each.name for each in self.endpoints() if each.kind is EndpointKind.SERVICE and each.type_name == kind
+            endpoint.name
+            for endpoint in self.endpoints()
+            if endpoint.kind is EndpointKind.SERVICE and endpoint.type_name == kind
         }
         nodes = [node for node in dict.fromkeys(self.nodes()) if f"{node}/{service}" in served]
         if among is not None:

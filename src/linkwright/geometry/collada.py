@@ -32,13 +32,13 @@ class Arrays:
 
     def faces(self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits) -> Faces:
         """The triangles of an element."""
-        rows = [numbers(each, np.int64).reshape(-1, width) for each in texts]
+        rows = [numbers(text, np.int64).reshape(-1, width) for text in texts]
         if tag == "triangles":
             counts: NDArray[np.int64] = np.full(len(rows[0]) // 3, 3, np.int64)
         elif tag == "polylist":
             counts = numbers(counted, np.int64)
         else:
-            counts = np.array([len(each) for each in rows])
+            counts = np.array([len(row) for row in rows])
         indices = np.concatenate(rows)
         if counts.sum() != len(indices) or (len(counts) and counts.min() < 3):
             raise Unusual

@@ -50,7 +50,7 @@ class Lists:
         self, tag: str, texts: list[str], counted: str, width: int, column: int, limits: Limits
     ) -> list[_Triangle]:
         """The triangles of an element."""
-        rows = [_integers(each) for each in texts]
+        rows = [_integers(text) for text in texts]
         indices = [each for row in rows for each in row]
         counts = [len(row) // width for row in rows]
         if tag == "triangles":

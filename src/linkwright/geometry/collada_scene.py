@@ -122,8 +122,8 @@ class _File(Generic[MeshT, MatrixT]):
 
     def _by_id(self, library: str, tag: str) -> dict[str, _Node]:
         found: dict[str, _Node] = {}
-        for each in self._all(self._root, library):
-            for node in self._all(each, tag):
+        for element in self._all(self._root, library):
+            for node in self._all(element, tag):
                 name = node.get("id", "")
                 if not name or name in found:
                     raise Unusual
@@ -175,9 +175,11 @@ class _File(Generic[MeshT, MatrixT]):
 
     def _of_geometry(self, mesh: _Node) -> tuple[MeshT, bool]:
         """A mesh, and whether it has triangles."""
-        sources = {f"#{each.get('id', '')}": self._source(each) for each in self._all(mesh, "source")}
+        sources = {f"#{element.get('id', '')}": self._source(element) for element in self._all(mesh, "source")}
         vertices = self._only(mesh, "vertices")
-        inputs = {each.get("semantic"): sources[each.get("source", "")] for each in self._all(vertices, "input")}
+        inputs = {
+            element.get("semantic"): sources[element.get("source", "")] for element in self._all(vertices, "input")
+        }
         corners = inputs["POSITION"]
         if corners.width != 3:
             raise Unusual
@@ -185,7 +187,7 @@ class _File(Generic[MeshT, MatrixT]):
         rows = {name: corners.rows, **{source: each.rows for source, each in sources.items()}}
         parts = [part for part in mesh if self._tag(part) not in _NO_FACES]
         faces = [self._faces(part, self._tag(part), rows, name) for part in parts]
-        return self._numbers.mesh(corners.text, faces), any(len(each) for each in faces)
+        return self._numbers.mesh(corners.text, faces), any(len(face) for face in faces)
 
     def _source(self, source: _Node) -> _Source:
         numbers_of = self._only(source, "float_array")
@@ -201,11 +203,11 @@ class _File(Generic[MeshT, MatrixT]):
     def _faces(self, part: _Node, tag: str, rows: dict[str, int], corners: str) -> Any:
         """The triangles of ``<triangles>``, ``<polylist>`` or ``<polygons>``."""
         inputs = [
-            (each.get("semantic"), each.get("source", ""), int(each.get("offset", "")))
-            for each in self._all(part, "input")
+            (element.get("semantic"), element.get("source", ""), int(element.get("offset", "")))
+            for element in self._all(part, "input")
         ]
         width = max(offset for _, _, offset in inputs) + 1
-        texts = [each.text or "" for each in self._all(part, "p")]
+        texts = [element.text or "" for element in self._all(part, "p")]
         is_polygons = tag == "polygons" and texts and not self._all(part, "ph")
         if not is_polygons and (tag not in ("triangles", "polylist") or len(texts) != 1):
             raise Unusual

@@ -187,7 +187,7 @@ def _well_formed(data: bytes) -> bytes | None:
     if not forgiven:
         return None
     for element in document.root.walk():
-        element.children = [each for each in element.children if not isinstance(each, Comment)]
+        element.children = [child for child in element.children if not isinstance(child, Comment)]
     return write_element(document.root).encode()
 
 

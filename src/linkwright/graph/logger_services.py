@@ -42,7 +42,7 @@ class LoggerServices:
         from linkwright.graph.parameters.parameter import interface
 
         result_class = interface("SetLoggerLevelsResult")
-        results = [self._set_one(each.name, each.level) for each in request.levels]
+        results = [self._set_one(level.name, level.level) for level in request.levels]
         response.results = [result_class(successful=not reason, reason=reason) for reason in results]
         return response
 
@@ -51,5 +51,5 @@ class LoggerServices:
         try:
             self._levels.set(name, LogLevel(level))
         except ValueError:
-            return f"{level} is no log level; they are {', '.join(str(int(each)) for each in LogLevel)}"
+            return f"{level} is no log level; they are {', '.join(str(int(log_level)) for log_level in LogLevel)}"
         return ""

@@ -469,4 +469,4 @@ def _by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapping[str
 
 def _profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
     """Those of the endpoints of a topic, in this process and outside; nobody is asked before the first is wanted."""
-    yield from (each.qos_profile for each in ask(topic, True))
+    yield from (endpoint.qos_profile for endpoint in ask(topic, True))

@@ -37,11 +37,11 @@ def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Dia
         return None
     given = dict(call.arguments)
     sets: list[dict[str, str]] = []
-    for each in argument_sets(call.path, finder)[:_MOST_TRIED]:
-        values = {**given, **each.values}
-        if each.values and values not in sets and _expands(call, values, finder):
+    for argument_set in argument_sets(call.path, finder)[:_MOST_TRIED]:
+        values = {**given, **argument_set.values}
+        if argument_set.values and values not in sets and _expands(call, values, finder):
             sets.append(values)
-    asked = [name for each in findings if (name := asked_argument(each))]
+    asked = [name for finding in findings if (name := asked_argument(finding))]
     names = list(dict.fromkeys([*asked, *(name for values in sets for name in values), *(given if asked else ())]))
     if not names:
         return None

@@ -36,7 +36,7 @@ def run_bag_view(files: Sequence[Path], options: HostOptions, *, foxglove: int |
     Raises:
         LinkwrightError: it cannot be read; see `linkwright.bag.BagReader`.
     """
-    path, *others = (each.absolute() for each in files)
+    path, *others = (file.absolute() for file in files)
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     options = replace(options, title=path.name, history=0)
     log = LaunchLog()

@@ -124,11 +124,11 @@ class NodeHost:
             return
         async with self._starting:
             while self._planned and not self._closing:
-                plan = next((each for each in self._planned if each.is_viewer), self._planned[0])
+                plan = next((hosted_plan for hosted_plan in self._planned if hosted_plan.is_viewer), self._planned[0])
                 self._planned.remove(plan)
                 self._destinations[plan.process_name] = plan.destinations[2]
                 if plan.is_viewer:
-                    with_world = any(each.opens_gazebo_window for each in self._planned)
+                    with_world = any(hosted_plan.opens_gazebo_window for hosted_plan in self._planned)
                     await self._start_viewer(plan, with_world=with_world)
                 else:
                     if plan.opens_gazebo_window and not self._viewers.shows_world:

@@ -21,8 +21,8 @@ _TOPIC = re.compile(r"<topic>\s*([\w/]+)\s*</topic>")
 
 def scan_topics(text: str) -> list[str]:
     """The topics of the laser scanners that a description names, in its order."""
-    found = (_SCAN_TOPIC.search(each[0]) for each in _LIDAR.finditer(text))
-    return _distinct(each[1] or each[2] for each in found if each)
+    found = (_SCAN_TOPIC.search(match[0]) for match in _LIDAR.finditer(text))
+    return _distinct(match[1] or match[2] for match in found if match)
 
 
 def image_topics(text: str) -> list[str]:
@@ -30,7 +30,7 @@ def image_topics(text: str) -> list[str]:
 
     Those of gz that name no topic have the usual ones, ``/image`` and ``/depth_image``, as in ``linkwright sim``.
     """
-    return _distinct(_image_topic(each[0], each[1], each[2]) for each in _CAMERA.finditer(text))
+    return _distinct(_image_topic(match[0], match[1], match[2]) for match in _CAMERA.finditer(text))
 
 
 def _image_topic(sensor: str, kind: str, name: str) -> str:

@@ -62,7 +62,7 @@ class SimulatedDescriptions(Descriptions):
 
         self.begin(call)
         converted = as_sdf(call.path, self.finder, arguments=dict(call.arguments), folder=Path.cwd())
-        wrong = [each for each in converted.diagnostics if each.severity is Severity.ERROR]
+        wrong = [diagnostic for diagnostic in converted.diagnostics if diagnostic.severity is Severity.ERROR]
         if wrong or converted.sdf is None or not converted.sdf.models:
             raise LinkwrightError(*wrong or converted.diagnostics)
         return converted

@@ -95,7 +95,7 @@ class Descriptions:
         """Take a world that was read already; what is wrong with it is known, and nobody is told again."""
         call = WorldCall(world.path.absolute())
         self._read_ns[call] = world.read_ns
-        self._known |= {_essence(each) for each in world.diagnostics}
+        self._known |= {_essence(diagnostic) for diagnostic in world.diagnostics}
         self._take_world(call, world)
         return call
 
@@ -181,13 +181,13 @@ class Descriptions:
 
         self.begin(call)
         loaded = load_world(str(call.path))
-        wrong = [each for each in self._new(loaded.diagnostics) if each.severity is Severity.ERROR]
+        wrong = [diagnostic for diagnostic in self._new(loaded.diagnostics) if diagnostic.severity is Severity.ERROR]
         if wrong:
             raise DescriptionError(call, wrong)
         return loaded
 
     def _new(self, findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        return tuple(each for each in findings if _essence(each) not in self._known)
+        return tuple(finding for finding in findings if _essence(finding) not in self._known)
 
 
 def _mesh_files(robot: Robot, finder: PackageFinder, folder: Path) -> tuple[Path, ...]:

@@ -54,9 +54,9 @@ def as_text(
         detailed: links whose computed ``<inertial>`` follows the table, with where it comes from.
     """
     verdicts = _verdicts(robot, estimates)
-    ordered = sorted(estimates, key=lambda each: verdicts[each.link].place)
-    parts = ["\n".join(_table([_row(each, verdicts[each.link]) for each in ordered])) + "\n"]
-    parts += ["\n".join(_detail(each)) + "\n" for each in estimates if each.link in detailed]
+    ordered = sorted(estimates, key=lambda estimate: verdicts[estimate.link].place)
+    parts = ["\n".join(_table([_row(estimate, verdicts[estimate.link]) for estimate in ordered])) + "\n"]
+    parts += ["\n".join(_detail(estimate)) + "\n" for estimate in estimates if estimate.link in detailed]
     if written is not None:
         files = quoted_names(map(display_path, written.files)) if written.files else phrase("no file")
         line = phrase("wrote {count} <inertial> to {files}", count=len(written.links), files=files)
@@ -78,7 +78,7 @@ def _row(found: Estimate, verdict: Verdict) -> tuple[str, ...]:
     mass = "-" if present is None else f"{present.mass:.4g}"
     if found.properties is not None and found.basis != "present":
         mass = localized(phrase("{present} ({mass:.4g} computed)", present=mass, mass=found.properties.mass))
-    moments = "-" if present is None else " ".join(f"{each:.3g}" for each in present.principal().moments)
+    moments = "-" if present is None else " ".join(f"{moment:.3g}" for moment in present.principal().moments)
     density = "-" if verdict.density is None else grouped(verdict.density)
     name = _NAMES.get(verdict.standing)
     words = verdict.words if name is None else phrase("{standing}: {words}", standing=name, words=verdict.words)

@@ -98,12 +98,12 @@ def judge(link: Link, found: Estimate, bodies: Bodies) -> Verdict:
     if alone and computed is not None and comparison is not None:
         if present.mass > 0:
             density = present.mass / computed.mass * found.density
-            reasons += _of_density(density, has_mesh=any(isinstance(each.geometry, Mesh) for each in shapes))
+            reasons += _of_density(density, has_mesh=any(isinstance(shape.geometry, Mesh) for shape in shapes))
         reasons += _of_comparison(comparison, computed)
     if reasons:
-        worst = min(reasons, key=lambda each: _ORDER.index(each.standing)).standing
-        said = [each for each in reasons if each.standing is worst]
-        words, badness = joined([each.words for each in said], "; "), max(each.badness for each in said)
+        worst = min(reasons, key=lambda reason: _ORDER.index(reason.standing)).standing
+        said = [reason for reason in reasons if reason.standing is worst]
+        words, badness = joined([reason.words for reason in said], "; "), max(reason.badness for reason in said)
         return Verdict(worst, words, badness, present, density, comparison)
     if computed is None:
         return Verdict(Standing.UNJUDGED, phrase("there is no shape to compare with"), 0.0, present)
@@ -117,7 +117,7 @@ def _without(link: Link, bodies: Bodies) -> Verdict:
     """The verdict on a link without ``<inertial>``."""
     body = bodies.of(link.name)
     members = [] if body is None else bodies.members(body)
-    heavy = next((each.name for each in members if each.inertial is not None and each.inertial.mass > 0), None)
+    heavy = next((member.name for member in members if member.inertial is not None and member.inertial.mass > 0), None)
     if heavy is not None:
         return Verdict(Standing.UNJUDGED, phrase("it is fixed to '{link}', which has a mass", link=heavy))
     if link.visuals or link.collisions or (body is not None and body.joint is not None and members[0] is link):

@@ -24,7 +24,7 @@ def completed(document: Document, inference: Inference) -> Document:
     added: dict[int, list[Element]] = {}
     for finding in inference.findings:
         if finding.owner is not None:
-            added.setdefault(id(finding.owner), []).extend(_placed(each, finding.owner) for each in finding.added)
+            added.setdefault(id(finding.owner), []).extend(_placed(element, finding.owner) for element in finding.added)
     root = _grown(document.root, added)
     root.children = [_grown(child, added) if isinstance(child, Element) else child for child in root.children]
     assert not added, "the inference is about another reading of the description"
@@ -40,7 +40,7 @@ def _grown(element: Element, added: dict[int, list[Element]]) -> Element:
         return element
     grown = copy(element)
     grown.plan = None
-    replaced = {each.tag for each in new if each.tag in SINGLE}
+    replaced = {element.tag for element in new if element.tag in SINGLE}
     kept = [child for child in element.children if not (isinstance(child, Element) and child.tag in replaced)]
     grown.children = [*kept, *new]
     return grown

@@ -50,20 +50,20 @@ def judge(
     """
     wheels = tuple(chosen) or under.wheels
     if not chosen and under.crooked and wanted is None:
-        names = quoted_names([each.joint for each in under.crooked])
+        names = quoted_names([wheel.joint for wheel in under.crooked])
         return Verdict(None, phrase("the wheels on {names} do not roll forward along x", names=names))
-    fixed, single = _pairs([each for each in wheels if each.steering is None or chosen])
-    steered, single_steered = _pairs([] if chosen else [each for each in wheels if each.steering is not None])
+    fixed, single = _pairs([wheel for wheel in wheels if wheel.steering is None or chosen])
+    steered, single_steered = _pairs([] if chosen else [wheel for wheel in wheels if wheel.steering is not None])
     if wanted == "ackermann" and chosen:
-        steered, single_steered = _pairs([each for each in under.wheels if each.steering is not None])
+        steered, single_steered = _pairs([wheel for wheel in under.wheels if wheel.steering is not None])
         fixed = [pair for pair in fixed if pair not in steered]
     if single_steered:
-        names = quoted_names([each.joint for each in single_steered])
+        names = quoted_names([wheel.joint for wheel in single_steered])
         return Verdict(None, phrase("the wheels on {names} are steered, and not in a pair", names=names))
     casters: list[str] = []
     if single:
-        casters = [each.link for each in single if _supports_only(each, fixed)]
-        others = [each.joint for each in single if each.link not in casters]
+        casters = [wheel.link for wheel in single if _supports_only(wheel, fixed)]
+        others = [wheel.joint for wheel in single if wheel.link not in casters]
         if others and (chosen or wanted is None):
             return Verdict(None, phrase("no wheel stands opposite {names}", names=quoted_names(others)))
     verdict = _of_pairs(survey, fixed, steered, wanted)
@@ -151,8 +151,8 @@ def _reason(drive: Drive) -> Phrase:
 
 def _pairs(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
     """Left and right wheels that stand opposite each other, the foremost pair first; and the wheels left over."""
-    left = sorted((each for each in wheels if each.center[1] > 0.0), key=lambda each: -each.center[0])
-    right = [each for each in wheels if each.center[1] <= 0.0]
+    left = sorted((wheel for wheel in wheels if wheel.center[1] > 0.0), key=lambda each: -each.center[0])
+    right = [wheel for wheel in wheels if wheel.center[1] <= 0.0]
     pairs: list[Pair] = []
     alone: list[Wheel] = []
     for wheel in left:
@@ -181,5 +181,5 @@ def _fit(left: Wheel, right: Wheel) -> bool:
 
 def _supports_only(wheel: Wheel, pairs: list[Pair]) -> bool:
     """Whether a wheel without one opposite is small beside the pairs, or a ball, and so a caster."""
-    largest = max((each.radius for pair in pairs for each in pair), default=0.0)
+    largest = max((wheel.radius for pair in pairs for wheel in pair), default=0.0)
     return bool(pairs) and (wheel.width is None or wheel.radius < _MUCH_SMALLER * largest)

@@ -93,7 +93,7 @@ def _works(plugin: Element) -> bool:
     """Whether a plugin is simulated, and has the files that it is given."""
     known = extensions(_SIMULATED)
     names = library_name(plugin.attributes.get("filename", "")), original_library(plugin.attributes.get("name", ""))
-    files = [Path(each.text().strip()) for each in plugin.elements("parameters")]
+    files = [Path(element.text().strip()) for element in plugin.elements("parameters")]
     return any(name in known for name in names) and all(file.exists() for file in files if file.is_absolute())
 
 
@@ -113,7 +113,9 @@ def controlled_joints(robot: Robot) -> frozenset[str]:
     for extension in robot.extensions:
         for plugin in extension.elements("plugin") if extension.tag == "gazebo" else ():
             if _JOINTS.search(plugin.attributes.get("filename", "")):
-                names = {each.text().strip() for each in plugin.elements() if each.tag in ("joint_name", "joint")}
+                names = {
+                    element.text().strip() for element in plugin.elements() if element.tag in ("joint_name", "joint")
+                }
                 found |= names or set(robot.joints)
     return frozenset(found)
 
@@ -186,8 +188,8 @@ def _diff_drive(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, 
         *pairs,
         *(("left_joint", wheel.joint) for wheel in drive.left),
         *(("right_joint", wheel.joint) for wheel in drive.right),
-        *(("wheel_separation", number(each)) for each in separations),
-        *(("wheel_diameter", number(each)) for each in diameters),
+        *(("wheel_separation", number(separation)) for separation in separations),
+        *(("wheel_diameter", number(diameter)) for diameter in diameters),
         ("max_wheel_torque", f"{torque:.3g}"),
         ("max_wheel_acceleration", number(_ACCELERATION)),
         ("odometry_source", "0"),
@@ -227,7 +229,9 @@ def _torque(robot: Robot, drive: Drive, mass: float) -> float:
     wheels = (*drive.left, *drive.right)
     slipping = _GRAVITY * mass * drive.radius / len(wheels)
     dynamics = [robot.joints[wheel.joint].dynamics for wheel in wheels]
-    resisting = [each.friction + each.damping * _SPEED / drive.radius for each in dynamics if each is not None]
+    resisting = [
+        dynamic.friction + dynamic.damping * _SPEED / drive.radius for dynamic in dynamics if dynamic is not None
+    ]
     return (_SCRUBBING if drive.kind == "skid" else 1.0) * slipping + max(resisting, default=0.0)
 
 

@@ -66,12 +66,12 @@ class _Inferring:
         drive = verdict.drive
         self._drive = drive
         self._driven = (
-            {} if drive is None else {each.link: each for each in (*drive.left, *drive.right, *drive.steered)}
+            {} if drive is None else {wheel.link: wheel for wheel in (*drive.left, *drive.right, *drive.steered)}
         )
         casters = (*under.casters, *verdict.extra_casters)
         self._casters = tuple(name for name in dict.fromkeys(casters) if name not in self._driven)
-        standing = {each.link: each for each in (*under.wheels, *under.crooked)} | self._driven
-        self._wheels = standing | {each.link: each for each in survey.rolling if each.link in self._casters}
+        standing = {wheel.link: wheel for wheel in (*under.wheels, *under.crooked)} | self._driven
+        self._wheels = standing | {wheel.link: wheel for wheel in survey.rolling if wheel.link in self._casters}
         stands_still = drive is not None and drive.kind == "joints"
         self._fixed_base = self._robot.root == _WORLD or (stands_still and _one_chain(survey))
 
@@ -96,14 +96,16 @@ class _Inferring:
         links = self._robot.links
         masses = {name: link.inertial.mass for name, link in links.items() if link.inertial is not None}
         names = {id(link.element): name for name, link in links.items()}
-        masses |= {names[id(each.owner)]: each.inertial.mass for each in findings if each.inertial is not None}
+        masses |= {
+            names[id(finding.owner)]: finding.inertial.mass for finding in findings if finding.inertial is not None
+        }
         return {name: mass for name, mass in masses.items() if mass > 0.0}
 
     def _held(self) -> tuple[str, ...]:
         """The joints that something has to hold, as nothing else moves them."""
         if self._own is not None and self._idle is None:
             return ()
-        rolling = {each.joint for each in self._wheels.values()} | self._under.swivelling
+        rolling = {wheel.joint for wheel in self._wheels.values()} | self._under.swivelling
         rolling |= gazebo.controlled_joints(self._robot)
         for wheel in self._wheels.values():
             rolling |= {joint.name for joint in self._survey.chain(self._robot.joints[wheel.joint].parent)}

@@ -127,19 +127,19 @@ class Survey:
             return Undercarriage((), (), (), frozenset(), None, "", (), dict(self._unread))
         low_link = min(self.heights, key=lambda name: self.heights[name])
         bottom = self.heights[low_link]
-        standing = [each for each in rolling if bottom_of(each) - bottom <= max(_TOUCHING, 0.25 * each.radius)]
-        hanging = tuple((each, bottom_of(each) - bottom) for each in rolling if each not in standing)
-        free = [each for each in standing if self._is_caster(each)]
-        rest = [each for each in standing if each not in free]
-        if any(each.width is not None for each in rest):
-            free += [each for each in rest if each.width is None]  # balls beside wheels
-        rest = [each for each in rest if each not in free]
-        crooked = tuple(each for each in rest if each.steering is None and abs(each.axis[1]) < _UPRIGHT)
-        wheels = tuple(each for each in rest if each not in crooked)
+        standing = [wheel for wheel in rolling if bottom_of(wheel) - bottom <= max(_TOUCHING, 0.25 * wheel.radius)]
+        hanging = tuple((wheel, bottom_of(wheel) - bottom) for wheel in rolling if wheel not in standing)
+        free = [wheel for wheel in standing if self._is_caster(wheel)]
+        rest = [wheel for wheel in standing if wheel not in free]
+        if any(wheel.width is not None for wheel in rest):
+            free += [wheel for wheel in rest if wheel.width is None]  # balls beside wheels
+        rest = [wheel for wheel in rest if wheel not in free]
+        crooked = tuple(wheel for wheel in rest if wheel.steering is None and abs(wheel.axis[1]) < _UPRIGHT)
+        wheels = tuple(wheel for wheel in rest if wheel not in crooked)
         ground = min(map(bottom_of, wheels)) if wheels else bottom
         sliding = self._sliding(ground) if wheels else ()
-        swivelling = {name for each in free for name in (each.joint, each.steering) if name is not None}
-        casters = tuple(dict.fromkeys((*(each.link for each in free), *sliding)))
+        swivelling = {name for wheel in free for name in (wheel.joint, wheel.steering) if name is not None}
+        casters = tuple(dict.fromkeys((*(wheel.link for wheel in free), *sliding)))
         return Undercarriage(
             wheels, crooked, casters, frozenset(swivelling), ground, low_link, hanging, dict(self._unread)
         )
@@ -169,7 +169,7 @@ class Survey:
             if link.element.source is not None:
                 yield link.element.source.name.rpartition("/")[2]
             if isinstance(link.element.origin, Frame):
-                yield from (each.macro for each in frames(link.element.origin) if each.macro is not None)
+                yield from (frame.macro for frame in frames(link.element.origin) if frame.macro is not None)
 
     def _steering(self, joint: Joint) -> str | None:
         """The nearest joint with a vertical axis above a wheel's, among those that turn."""

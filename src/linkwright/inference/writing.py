@@ -108,7 +108,7 @@ class _Writer:
     def _in_joint(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
         written = written_element(owner, "joint")
         source = _source(written)
-        (axis,) = (each for finding in findings for each in finding.added)
+        (axis,) = (element for finding in findings for element in finding.added)
         old = written.first("axis")
         if old is None:
             return source, list(_inserted(written, [axis]))
@@ -119,7 +119,7 @@ class _Writer:
 
     def _in_root(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
         written = written_element(owner, owner.tag)
-        new = [each for finding in findings for each in finding.added]
+        new = [element for finding in findings for element in finding.added]
         for name in sorted(_named(new)):
             part: Joint | Link | None = self._robot.joints.get(name) or self._robot.links.get(name)
             if part is not None and (part.element is None or not is_literal(part.element, "name")):

@@ -61,7 +61,11 @@ def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = Tr
     for _ in range(_MOST_PASSES):
         found = check(mended.texts.get(str(path)) if not write else None)
         done = {file for file in mended.texts if not write and file != str(path)}
-        fixes = [(each.code, each.fix) for each in _mendable(found, unsafe) if _may_change(each.fix, home, done)]
+        fixes = [
+            (mendable.code, mendable.fix)
+            for mendable in _mendable(found, unsafe)
+            if _may_change(mendable.fix, home, done)
+        ]
         changed = _apply(fixes, mended, {} if write else mended.texts)
         if not changed:
             break

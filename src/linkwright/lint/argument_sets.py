@@ -63,8 +63,8 @@ class _Run:
     @property
     def said(self) -> frozenset[tuple[Key, str]]:
         """The errors with their messages."""
-        places = ((_place(each), str(each.message)) for each in self.checked.diagnostics)
-        return frozenset(each for each in places if each[0] in self.errors)
+        places = ((_place(diagnostic), str(diagnostic.message)) for diagnostic in self.checked.diagnostics)
+        return frozenset(place for place in places if place[0] in self.errors)
 
     def is_fine(self, common: frozenset[Key]) -> bool:
         """Whether it has no errors but those that all runs have, none of which what is open may have made."""
@@ -102,23 +102,27 @@ class SetCheck:
         if (self.is_named and not default.errors) or not _takes_arguments(default.checked):
             return default.checked
         sets = find_sets()
-        if self.is_named and not any(each.values or each.open for each in sets):
+        if self.is_named and not any(argument_set.values or argument_set.open for argument_set in sets):
             return default.checked
-        known = [self._run(each) for each in sets if each.is_complete and each.values]
-        uses_defaults = any(each.is_complete and not each.values for each in sets)
+        known = [self._run(argument_set) for argument_set in sets if argument_set.is_complete and argument_set.values]
+        uses_defaults = any(argument_set.is_complete and not argument_set.values for argument_set in sets)
         is_unknown = bool(default.errors) and not (known or uses_defaults or self.is_named)
         common = frozenset.intersection(*(run.errors for run in (default, *known)))
         others: list[_Run] = []
         if not known or not all(run.is_fine(common) for run in known):
             more = compared_values(_sources(default.checked))[:_MOST_TRIED] if is_unknown else ()
-            others = [self._run(each) for each in (*sets, *more) if not each.is_complete and each.values]
+            others = [
+                self._run(argument_set)
+                for argument_set in (*sets, *more)
+                if not argument_set.is_complete and argument_set.values
+            ]
             common = frozenset.intersection(common, *(run.errors for run in others))
         tried = [*known, *others]
         kept = [run for run in known if not _is_excused(run, tried, common)]
         if default.is_fine(common) or uses_defaults:
             kept.insert(0, default)
         kept = kept or [run for run in others if run.is_fine(common)]
-        if not kept and any(each.open for each in sets):
+        if not kept and any(argument_set.open for argument_set in sets):
             return self._remarked(default, [default, *tried], common, sets)
         if is_unknown and kept in ([], [default]):
             return self._without_values(default, sets)
@@ -132,7 +136,7 @@ class SetCheck:
             return None
         self._xacro = True
         default = self._run(_NO_VALUES)
-        if default.errors and all(self._run(each).errors for each in sets if each.values):
+        if default.errors and all(self._run(argument_set).errors for argument_set in sets if argument_set.values):
             self._xacro = None
             return None
         return default
@@ -140,12 +144,12 @@ class SetCheck:
     def _run(self, given: ArgumentSet) -> _Run:
         checked = self.examine(given.values, self._xacro)
         if given.values:  # a caller may give what other descriptions take
-            found = tuple(each for each in checked.diagnostics if each.code != UNUSED)
+            found = tuple(diagnostic for diagnostic in checked.diagnostics if diagnostic.code != UNUSED)
             checked = replace(checked, diagnostics=found)
         errors = frozenset(
-            _place(each)
-            for each in checked.diagnostics
-            if each.severity is Severity.ERROR and find_rule(each.code) is None
+            _place(diagnostic)
+            for diagnostic in checked.diagnostics
+            if diagnostic.severity is Severity.ERROR and find_rule(diagnostic.code) is None
         )
         run = _Run(given, checked, errors)
         if not (errors and given.open):
@@ -206,7 +210,7 @@ class SetCheck:
             ).diagnostics
         except LinkwrightError as error:
             found = error.diagnostics
-        return all(each.severity is not Severity.ERROR or _place(each) in common for each in found)
+        return all(diagnostic.severity is not Severity.ERROR or _place(diagnostic) in common for diagnostic in found)
 
     def _remarked(
         self, default: _Run, runs: Sequence[_Run], common: frozenset[Key], sets: Sequence[ArgumentSet]
@@ -220,7 +224,7 @@ class SetCheck:
 
     def _without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
         """The check where no caller gives a value that is known: what nobody declares or fills in, somebody gives."""
-        asked = [name for each in default.checked.diagnostics if (name := asked_argument(each))]
+        asked = [name for diagnostic in default.checked.diagnostics if (name := asked_argument(diagnostic))]
         if asked:
             hanging = self._changed(default, dict.fromkeys(asked, _ANY_VALUE))
             return self._only(
@@ -246,7 +250,11 @@ class SetCheck:
     def _only(
         self, default: _Run, is_told: Callable[[Diagnostic], bool], names: Sequence[str], notes: tuple[Note, ...]
     ) -> Checked:
-        found = [each for each in default.checked.diagnostics if _place(each) not in default.errors or is_told(each)]
+        found = [
+            diagnostic
+            for diagnostic in default.checked.diagnostics
+            if _place(diagnostic) not in default.errors or is_told(diagnostic)
+        ]
         hint = phrase(
             'give values in linkwright.toml: [arguments] "{file}" = {{ {name} = "..." }}',
             file=self.path.name,
@@ -273,7 +281,7 @@ def _takes_arguments(checked: Checked) -> bool:
     if checked.subject is None:
         return checked.path.suffix == ".xacro"
     sources = checked.subject.sources.values()
-    return any("arg" in each.source.text for each in sources if each.source is not None)
+    return any("arg" in source.source.text for source in sources if source.source is not None)
 
 
 def _place(diagnostic: Diagnostic) -> Key:
@@ -283,10 +291,10 @@ def _place(diagnostic: Diagnostic) -> Key:
 def _numbered(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnostic]]:
     """Diagnostics by code, place and their number there: numbers and names in messages differ between sets."""
     count: dict[Key, int] = {}
-    for each in diagnostics:
-        place = _place(each)
+    for diagnostic in diagnostics:
+        place = _place(diagnostic)
         count[place] = count.get(place, 0) + 1
-        yield (*place[:2], (place[2], count[place])), each
+        yield (*place[:2], (place[2], count[place])), diagnostic
 
 
 def _is_excused(run: _Run, tried: Sequence[_Run], common: frozenset[Key]) -> bool:
@@ -334,12 +342,12 @@ def asked_argument(diagnostic: Diagnostic) -> str | None:
 
 def _opened(sets: Sequence[ArgumentSet]) -> list[str]:
     """The arguments that callers give values which are only known when they run."""
-    return list(dict.fromkeys(name for each in sets for name in each.open if name))
+    return list(dict.fromkeys(name for argument_set in sets for name in argument_set.open if name))
 
 
 def _when(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
     """Where a caller gives values that are only known when it runs."""
-    calls = [each.span for each in sets if each.open]
+    calls = [argument_set.span for argument_set in sets if argument_set.open]
     return (Note(phrase("their values are only known when this runs"), calls[0]),) if calls else ()
 
 

@@ -50,7 +50,7 @@ def _comments(element: Element | None, *, beside: bool) -> list[str]:
     text, (start, end) = element.source.text, found
     line = text.rfind("\n", 0, start) + 1
     last = text.find("\n", end) if beside else start
-    comments = [each[1] for each in _COMMENT.finditer(text, line, len(text) if last < 0 else last)]
+    comments = [match[1] for match in _COMMENT.finditer(text, line, len(text) if last < 0 else last)]
     above = _ABOVE.search(text, max(0, text.rfind("<!--", 0, start)), line + len(text[line:start]))
     if above is not None and not text[line:start].strip():
         comments.append(above[1])

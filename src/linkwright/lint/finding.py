@@ -46,7 +46,7 @@ def with_others(first: Diagnostic, others: Sequence[Diagnostic]) -> Diagnostic:
     """A finding that stands for others of one cause, with these in its notes."""
     if not others:
         return first
-    notes = tuple(Note(each.message, each.span) for each in others[:_MOST_NOTES])
+    notes = tuple(Note(other.message, other.span) for other in others[:_MOST_NOTES])
     if len(others) > _MOST_NOTES:
         notes += (Note(phrase("and {count} more", count=len(others) - _MOST_NOTES)),)
     message = phrase("{message} (and {count} more)", message=first.message, count=len(others))

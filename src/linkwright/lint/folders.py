@@ -81,16 +81,16 @@ def reported(
     is_aside = _is_put_aside(examined.file, paths) or _is_generated(examined.file, targets.files)
     is_part = _is_unused_part(examined, others)
     found = _without_those_of_source(examined, others, _of_a_folder(examined.diagnostics, is_aside=is_aside))
-    return (each for each in found if not (is_part and each.code in _OF_WHOLE_ROBOTS))
+    return (diagnostic for diagnostic in found if not (is_part and diagnostic.code in _OF_WHOLE_ROBOTS))
 
 
 def reported_of_package(found: Iterable[Diagnostic], paths: Sequence[Path]) -> Iterator[Diagnostic]:
     """Yield the findings about a package; those about files that were put aside only where they are errors."""
     roots = [path.absolute() for path in paths]
-    for each in found:
-        is_error = each.severity is Severity.ERROR
-        if each.span is None or is_error or not _is_put_aside(Path(each.span.file), roots):
-            yield each
+    for diagnostic in found:
+        is_error = diagnostic.severity is Severity.ERROR
+        if diagnostic.span is None or is_error or not _is_put_aside(Path(diagnostic.span.file), roots):
+            yield diagnostic
 
 
 def _parts(checked: Checked) -> Parts | None:
@@ -110,15 +110,15 @@ def _of_a_folder(found: Iterable[Diagnostic], *, is_aside: bool) -> Iterator[Dia
 
     Of tests and what is put aside, these are errors alone, and not that a package is not on this machine.
     """
-    for each in found:
-        if each.code == _GIVEN_BY_USERS:
-            yield each.but(severity=Severity.INFO)
+    for diagnostic in found:
+        if diagnostic.code == _GIVEN_BY_USERS:
+            yield diagnostic.but(severity=Severity.INFO)
             continue
-        if is_aside and each.code == MISSING_PACKAGE:
+        if is_aside and diagnostic.code == MISSING_PACKAGE:
             continue
-        is_info = each.severity is Severity.INFO
-        if each.severity is Severity.ERROR or not (is_aside or (is_info and each.code in _OF_NAMED_FILES)):
-            yield each
+        is_info = diagnostic.severity is Severity.INFO
+        if diagnostic.severity is Severity.ERROR or not (is_aside or (is_info and diagnostic.code in _OF_NAMED_FILES)):
+            yield diagnostic
 
 
 def _without_those_of_source(
@@ -127,18 +127,22 @@ def _without_those_of_source(
     """Drop from a URDF file the findings of a xacro file with the same robot: it is probably made of that file."""
     if examined.file.suffix != ".urdf" or examined.parts is None:
         return found
-    sources = [each for each in others if each.parts == examined.parts and each.file.suffix == ".xacro"]
-    known = {(each.code, each.message) for source in sources for each in source.diagnostics}
-    return (each for each in found if (each.code, each.message) not in known)
+    sources = [other for other in others if other.parts == examined.parts and other.file.suffix == ".xacro"]
+    known = {(diagnostic.code, diagnostic.message) for source in sources for diagnostic in source.diagnostics}
+    return (diagnostic for diagnostic in found if (diagnostic.code, diagnostic.message) not in known)
 
 
 def _is_unused_part(examined: Examined, others: Sequence[Examined]) -> bool:
     """Whether a xacro file has joints on links of another robot of its package, which may include it again."""
-    missing = {as_phrase(each.message).arguments.get("name") for each in examined.diagnostics if each.code == _NO_LINK}
+    missing = {
+        as_phrase(diagnostic.message).arguments.get("name")
+        for diagnostic in examined.diagnostics
+        if diagnostic.code == _NO_LINK
+    }
     if not missing or examined.file.suffix != ".xacro":
         return False
     folder = _package_of(examined.file)
-    return any(each.parts is not None and each.parts[0] == folder and missing <= each.parts[1] for each in others)
+    return any(other.parts is not None and other.parts[0] == folder and missing <= other.parts[1] for other in others)
 
 
 def _is_put_aside(file: Path, paths: Sequence[Path]) -> bool:
@@ -153,5 +157,5 @@ def _is_generated(file: Path, files: Sequence[Path]) -> bool:
         return False
     with suppress(OSError), file.open("rb") as text:
         made = _GENERATED.search(text.read(_HEAD))
-        return made is not None and Path(made[1].decode(errors="replace").strip()).name in {each.name for each in files}
+        return made is not None and Path(made[1].decode(errors="replace").strip()).name in {file.name for file in files}
     return False

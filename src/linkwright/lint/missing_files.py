@@ -22,13 +22,13 @@ def judged_files(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     file that includes them.
     """
     elsewhere: dict[str, list[Diagnostic]] = {}
-    for each in diagnostics:
-        if each.code != _MISSING or each.span is None or each.severity is not Severity.ERROR:
-            yield each
-        elif (found := None if (built := _of_built(each)) else _of_package_folder(each)) is not None:
-            elsewhere.setdefault(each.span.file, []).append(found)
+    for diagnostic in diagnostics:
+        if diagnostic.code != _MISSING or diagnostic.span is None or diagnostic.severity is not Severity.ERROR:
+            yield diagnostic
+        elif (found := None if (built := _of_built(diagnostic)) else _of_package_folder(diagnostic)) is not None:
+            elsewhere.setdefault(diagnostic.span.file, []).append(found)
         else:
-            yield built or each
+            yield built or diagnostic
     yield from (with_others(first, others) for first, *others in elsewhere.values())
 
 

@@ -16,24 +16,24 @@ _MISSING = "PKG101"
 def judged(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """The diagnostics; a missing package is a warning where who names it, or a package beside that, declares it."""
     packages: dict[Path, PackageContext | None] = {}
-    for each in diagnostics:
-        if each.code != _MISSING or each.span is None:
-            yield each
+    for diagnostic in diagnostics:
+        if diagnostic.code != _MISSING or diagnostic.span is None:
+            yield diagnostic
             continue
-        folder = Path(each.span.file).parent
+        folder = Path(diagnostic.span.file).parent
         if folder not in packages:
             packages[folder] = find_package(folder)
         package = packages[folder]
-        name = str(as_phrase(each.message).arguments.get("name", ""))
+        name = str(as_phrase(diagnostic.message).arguments.get("name", ""))
         if package is None or not is_declared(package, name):
-            yield each
+            yield diagnostic
             continue
         hint = phrase("install '{name}', or check it together with this package; what needs it is left out", name=name)
-        yield each.but(severity=Severity.WARNING, hint=hint)
+        yield diagnostic.but(severity=Severity.WARNING, hint=hint)
 
 
 def is_declared(package: PackageContext, name: str) -> bool:
     """Whether a package, or one beside it, declares another; who builds one of them builds them all."""
     beside = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))
-    manifests = (each.manifest for each in (package, *beside))
+    manifests = (package_context.manifest for package_context in (package, *beside))
     return any(manifest is not None and manifest.declares(name) for manifest in manifests)

@@ -138,7 +138,7 @@ def _is_empty(path: Path, error: LinkwrightError) -> bool:
 def _included_names(text: str) -> Iterator[str]:
     """The names of the files that a description includes with the defaults of its arguments and of `$(optenv ...)`."""
     arguments = [dict(_ATTRIBUTE.findall(tag)) for tag in _ARGUMENT.findall(text)]
-    defaults = {each["name"]: each.get("default", "") for each in arguments if "name" in each}
+    defaults = {argument["name"]: argument.get("default", "") for argument in arguments if "name" in argument}
     for written in _INCLUDED.findall(text):
         chosen = _GIVEN.sub(lambda given: defaults.get(given[1], ""), written)
         yield Path(_OPTIONAL.sub(r"\1", chosen).strip()).name

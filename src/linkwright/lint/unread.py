@@ -67,7 +67,7 @@ def _attributes() -> frozenset[str]:
     waiting: list[ElementRule] = [schema.ROBOT]
     while waiting:
         rule = waiting.pop()
-        found.update(each.name for each in rule.attributes)
+        found.update(attribute.name for attribute in rule.attributes)
         waiting.extend(rule.children)
     return frozenset(found)
 
@@ -102,7 +102,7 @@ def meant_element(rule: ElementRule, child: Element) -> str | None:
     """The element that is meant by one that is not known here, or None."""
     if child.tag in HOMES:
         return None
-    known = [each.tag for each in rule.children]
+    known = [child.tag for child in rule.children]
     other = _OTHER_ELEMENTS.get(child.tag.casefold())
     if other in known:
         return other

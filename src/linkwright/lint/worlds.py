@@ -55,7 +55,7 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
     """
     told: set[tuple[object, str]] = set()
     models = [*sdf.models, *(model for world in sdf.worlds for model in world.models)]
-    found = (each for model in models for each in _model(model, static=False))
+    found = (diagnostic for model in models for diagnostic in _model(model, static=False))
     actors = [*sdf.actors, *(actor for world in sdf.worlds for actor in world.actors)]
     for finding in (*_steps(sdf), *found, *_axes(models), *_missing_meshes([*models, *map(figure_of, actors)], finder)):
         key = (finding.span, str(finding.message))
@@ -71,13 +71,16 @@ def one_for_each_world(found: Iterable[Diagnostic]) -> list[Diagnostic]:
     """
     kept: list[Diagnostic] = []
     groups: dict[tuple[str, Severity], list[Diagnostic]] = {}
-    for each in found:
-        group = groups.setdefault((each.code, each.severity), [])
-        if each.code not in _LEFT_OUT or not group:
-            kept.append(each)
-        group.append(each)
+    for diagnostic in found:
+        group = groups.setdefault((diagnostic.code, diagnostic.severity), [])
+        if diagnostic.code not in _LEFT_OUT or not group:
+            kept.append(diagnostic)
+        group.append(diagnostic)
     return [
-        with_others(each, groups[each.code, each.severity][1:]) if each.code in _LEFT_OUT else each for each in kept
+        with_others(diagnostic, groups[diagnostic.code, diagnostic.severity][1:])
+        if diagnostic.code in _LEFT_OUT
+        else diagnostic
+        for diagnostic in kept
     ]
 
 
@@ -86,9 +89,9 @@ def for_classic(found: Iterable[Diagnostic], path: Path) -> Iterator[Diagnostic]
     package = find_package(path.absolute().parent)
     manifest = None if package is None else package.manifest
     is_classic = manifest is not None and any(map(manifest.declares, _PACKAGES_OF_CLASSIC))
-    for each in found:
-        is_taken = is_classic and each.code == _RESERVED and each.severity is Severity.WARNING
-        yield each.but(severity=Severity.INFO) if is_taken else each
+    for diagnostic in found:
+        is_taken = is_classic and diagnostic.code == _RESERVED and diagnostic.severity is Severity.WARNING
+        yield diagnostic.but(severity=Severity.INFO) if is_taken else diagnostic
 
 
 def _steps(sdf: Sdf) -> Iterator[Diagnostic]:
@@ -105,7 +108,7 @@ def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
     for link in model.links:
         if not static and link.inertial is not None and not link.inertial.auto:
             yield from _inertial(link, link.inertial)
-    sizes = [each for shape in shapes_of(replace(model, models=())) for each in _size(shape)]
+    sizes = [diagnostic for shape in shapes_of(replace(model, models=())) for diagnostic in _size(shape)]
     if sizes:
         yield with_others(sizes[0], sizes[1:])
     for inner in model.models:
@@ -119,7 +122,7 @@ def _axes(models: Iterable[Model]) -> Iterator[Diagnostic]:
     while pending:
         model = pending.pop(0)
         pending += model.models
-        for joint, axis, tag in ((each, *own) for each in model.joints for own in _axes_of(each)):
+        for joint, axis, tag in _axes_of(model):
             if axis is None or joint.element is None or any(axis.xyz):
                 continue
             place = joint.element.first(tag)
@@ -135,8 +138,10 @@ def _axes(models: Iterable[Model]) -> Iterator[Diagnostic]:
         yield with_others(first, others)
 
 
-def _axes_of(joint: Joint) -> tuple[tuple[Axis | None, str], ...]:
-    return (joint.axis, "axis"), (joint.axis2, "axis2")
+def _axes_of(model: Model) -> Iterator[tuple[Joint, Axis | None, str]]:
+    for joint in model.joints:
+        yield joint, joint.axis, "axis"
+        yield joint, joint.axis2, "axis2"
 
 
 def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator[Diagnostic]:
@@ -158,7 +163,7 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
                 reason=found.reason,
             )
             named = (each for each in element.walk() if each.tag in _ADDRESSES)
-            place = next((each for each in named if each.text().strip() == geometry.uri), element)
+            place = next((element for element in named if element.text().strip() == geometry.uri), element)
             yield _warning("SDF162", message, place, found.hint).but(severity=found.severity)
 
 

@@ -120,7 +120,7 @@ def _plain_list(values: Any, shown: Abridgement) -> list[Any]:
     if isinstance(values, array) or is_array(values):
         numbers: list[Any] = (values.ravel() if is_array(values) else values)[:length].tolist()
         return [*numbers, CUT] if cut else numbers
-    plain = [_plain(each, shown) for each in list(values)[:length]]
+    plain = [_plain(value, shown) for value in list(values)[:length]]
     return [*plain, CUT] if cut else plain
 
 

@@ -62,9 +62,9 @@ class TransformBatch:
         """The same transforms as one batch, stamped with the newest of their stamps."""
         transforms = list(transforms)
         return cls(
-            parents=tuple(each.header.frame_id for each in transforms),
-            children=tuple(each.child_frame_id for each in transforms),
-            stamp_ns=max((each.header.stamp.nanoseconds for each in transforms), default=0),
+            parents=tuple(transform.header.frame_id for transform in transforms),
+            children=tuple(transform.child_frame_id for transform in transforms),
+            stamp_ns=max((transform.header.stamp.nanoseconds for transform in transforms), default=0),
             poses=_poses(transforms),
         )
 
@@ -129,7 +129,7 @@ class TFMessage(Message):
     @transforms.setter
     def transforms(self, transforms: Iterable[TransformStamped]) -> None:
         values = transforms if isinstance(transforms, list) else list(transforms)
-        if not all(isinstance(each, TransformStamped) for each in values):
+        if not all(isinstance(value, TransformStamped) for value in values):
             raise AssertionError(
                 "The 'transforms' field must be a set or sequence and each value of type 'TransformStamped'"
             )
@@ -176,9 +176,9 @@ class TFMessage(Message):
         values: list[Any] = self._list
         if len(values) < _FEW:
             return _ordinary_writer()(self)
-        parents = tuple([each._header._frame_id for each in values])
-        children = tuple([each._child_frame_id for each in values])
-        stamps = [(each._header._stamp._sec, each._header._stamp._nanosec) for each in values]
+        parents = tuple([value._header._frame_id for value in values])
+        children = tuple([value._child_frame_id for value in values])
+        stamps = [(value._header._stamp._sec, value._header._stamp._nanosec) for value in values]
         return layout_for(parents, children).with_stamps(stamps, _poses(values))
 
     @classmethod
@@ -190,7 +190,7 @@ class TFMessage(Message):
             message = _ordinary_reader()(data)
             values = message.transforms
             layout = layout_for(
-                tuple([each.header.frame_id for each in values]), tuple([each.child_frame_id for each in values])
+                tuple([value.header.frame_id for value in values]), tuple([value.child_frame_id for value in values])
             )
             layout.remember()
             return message
@@ -209,7 +209,7 @@ add_class(TFMessage)
 def _poses(transforms: list[Any]) -> NDArray[np.float64]:
     rows = [
         (t._x, t._y, t._z, q._x, q._y, q._z, q._w)
-        for t, q in ((each._transform._translation, each._transform._rotation) for each in transforms)
+        for t, q in ((transform._transform._translation, transform._transform._rotation) for transform in transforms)
     ]
     return np.array(rows, dtype=np.float64).reshape(-1, 7)
 

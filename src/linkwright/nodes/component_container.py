@@ -84,7 +84,9 @@ class ComponentContainer(SingleNode):
         options = NodeOptions(
             name=request.node_name or None,
             namespace=request.node_namespace or "/",
-            parameters={each.name: Parameter.from_parameter_msg(each).value for each in request.parameters},
+            parameters={
+                parameter.name: Parameter.from_parameter_msg(parameter).value for parameter in request.parameters
+            },
             remappings=[_pair(rule) for rule in request.remap_rules],
             library=self._library,
             for_others=self._for_others,
@@ -95,7 +97,7 @@ class ComponentContainer(SingleNode):
             problem = error.diagnostics[0].message
             logger.error(f"Component constructor threw an exception: {problem}")  # noqa: TRY400 - a user's mistake
             response.success = False
-            response.error_message = "; ".join(_told(each) for each in error.diagnostics)
+            response.error_message = "; ".join(_told(diagnostic) for diagnostic in error.diagnostics)
             return response
         logger.info(f"Instantiate class: rclcpp_components::NodeFactoryTemplate<{request.plugin_name}>")
         response.success = True

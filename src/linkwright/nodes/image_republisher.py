@@ -65,9 +65,9 @@ class ImageRepublisher(SingleNode):
             result = self._transport("out_transport", "")
             tell_unknown(self._node)
         self._publishers: dict[str, Publisher[Any]] = {}
-        for each in [result] if result else _TRANSPORTS:
-            topic = topic_of(self._node, "out", each)
-            self._publishers[each] = self._node.create_publisher(_type_of(each), topic, DEFAULT_QOS)
+        for transport in [result] if result else _TRANSPORTS:
+            topic = topic_of(self._node, "out", transport)
+            self._publishers[transport] = self._node.create_publisher(_type_of(transport), topic, DEFAULT_QOS)
         self._lazy = LazySubscriptions(graph, self._node, list(self._publishers.values()), self._subscribe)
 
     def close(self) -> None:

@@ -153,8 +153,8 @@ class MadgwickNode(_ImuFilter):
     def _make(self) -> MadgwickFilter:
         declare = self._node.declare_parameter
         name: str = declare("world_frame", "enu").value
-        if name not in [each.value for each in World]:
-            raise bad_value("world_frame", name, self._node.get_name(), [each.value for each in World])
+        if name not in [world.value for world in World]:
+            raise bad_value("world_frame", name, self._node.get_name(), [world.value for world in World])
         self._world = World(name)
         self._stateless: bool = declare("stateless", False).value
         self._remove_gravity: bool = declare("remove_gravity_vector", False).value

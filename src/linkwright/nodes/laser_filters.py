@@ -73,9 +73,9 @@ class ScanToScanFilterChain(SingleNode):
         header = message.header
         if self._target and self._poses.pose(self._target, header.frame_id, header.stamp.nanoseconds) is None:
             return
-        for each in self._chain:
+        for scan_filter in self._chain:
             assert scan is not None, "the loop ends where a scan is dropped"
-            scan = each.apply(scan, self._poses.pose)
+            scan = scan_filter.apply(scan, self._poses.pose)
             if scan is None:
                 return
         if scan is not None:
@@ -117,7 +117,7 @@ def read_chain(node: Node) -> list[ScanFilter]:
     """
     numbers = {int(match[1]) for name in node.undeclared_overrides() if (match := _FILTER.match(name))}
     count = next(number for number in range(1, len(numbers) + 2) if number not in numbers) - 1
-    for number in sorted(each for each in numbers if each > count):
+    for number in sorted(number for number in numbers if number > count):
         node.get_logger().warning(f"'filter{number}' is not used: the chain ends before 'filter{count + 1}'")
     chain = []
     for number in range(1, count + 1):
@@ -142,7 +142,7 @@ def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
     table = entry.load()
     hints = get_type_hints(table)
     given = tree.get("params") or {}
-    parameters = {each.name: each for each in fields(table) if each.init}
+    parameters = {field.name: field for field in fields(table) if field.init}
     values = {
         name: _converted(f"{prefix}params.{name}", value, hints[name])
         for name, value in given.items()

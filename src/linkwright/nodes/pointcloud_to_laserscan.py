@@ -156,7 +156,7 @@ class LaserScanToPointCloud(_Converter):
 
 def points_of(cloud: Any) -> NDArray[np.float64] | None:
     """The points of a sensor_msgs/msg/PointCloud2, shape (n, 3); None without coordinates."""
-    fields = {each.name: each for each in cloud.fields}
+    fields = {field.name: field for field in cloud.fields}
     count = cloud.width * cloud.height
     data = np.frombuffer(bytes(cloud.data), np.uint8)
     if any(name not in fields or fields[name].datatype not in _FORMATS for name in "xyz"):

@@ -107,7 +107,9 @@ class Simulator(SingleNode):
                 else load_world(file, text, options.environment)
             )
             remarkable = (
-                each for each in loaded.diagnostics if each.severity is Severity.ERROR or each.code in _LEFT_OUT
+                diagnostic
+                for diagnostic in loaded.diagnostics
+                if diagnostic.severity is Severity.ERROR or diagnostic.code in _LEFT_OUT
             )
             self._log(remarkable)
             simulation = Simulation(loaded.world, loaded.finder, step=said["step"] or None)
@@ -151,10 +153,10 @@ class Simulator(SingleNode):
         """Replace the robot by a changed description, in its present state; an invalid one is refused."""
         from linkwright.simulation.plugins.entities import told
 
-        for each in parameters:
-            if each.name == _DESCRIPTION:
+        for parameter in parameters:
+            if parameter.name == _DESCRIPTION:
                 try:
-                    self.services.renew(each.value, robot)
+                    self.services.renew(parameter.value, robot)
                 except LinkwrightError as error:
                     return SetParametersResult(successful=False, reason=told(error.diagnostics[0]))
         return SetParametersResult(successful=True)
@@ -170,13 +172,13 @@ class Simulator(SingleNode):
         """Log the findings on the world, and what of it is not simulated, each once."""
         logger = self._node.get_logger()
         first: dict[str, Diagnostic] = {}
-        for each in findings:
-            first.setdefault(str(each.message), each)
-        for each in first.values():
-            place = f"{each.span}: " if each.span else ""
-            hint = f" ({each.hint})" if each.hint else ""
-            text = f"{place}{each.message}{hint}"
-            if each.severity is Severity.ERROR:
+        for finding in findings:
+            first.setdefault(str(finding.message), finding)
+        for diagnostic in first.values():
+            place = f"{diagnostic.span}: " if diagnostic.span else ""
+            hint = f" ({diagnostic.hint})" if diagnostic.hint else ""
+            text = f"{place}{diagnostic.message}{hint}"
+            if diagnostic.severity is Severity.ERROR:
                 logger.error(text)
             else:
                 logger.warning(text)

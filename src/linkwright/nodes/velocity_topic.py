@@ -19,7 +19,7 @@ def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, .
     """
     if stamped is not None:
         return (TWIST_STAMPED if stamped else TWIST,)
-    published = {each.topic_type for each in node.get_publishers_info_by_topic(topic)}
+    published = {endpoint.topic_type for endpoint in node.get_publishers_info_by_topic(topic)}
     return (TWIST_STAMPED, TWIST) if TWIST_STAMPED in published else (TWIST, TWIST_STAMPED)
 
 
@@ -66,13 +66,15 @@ class VelocityTopic:
             How many subscribers take what is published.
         """
         own = None if self._publisher is None else self._publisher.gid
-        others = [each for each in self._node.graph.endpoints() if each.name == self.name and each.gid != own]
-        self.foreign = min({each.type_name for each in others} - {TWIST, TWIST_STAMPED}, default=None)
+        others = [
+            endpoint for endpoint in self._node.graph.endpoints() if endpoint.name == self.name and endpoint.gid != own
+        ]
+        self.foreign = min({other.type_name for other in others} - {TWIST, TWIST_STAMPED}, default=None)
         if self.foreign is not None:
             self.stop()
             self.close()
             return 0
-        listeners = [each.type_name for each in others if each.kind is EndpointKind.SUBSCRIPTION]
+        listeners = [other.type_name for other in others if other.kind is EndpointKind.SUBSCRIPTION]
         kind = self._wanted(listeners)
         if self._publisher is None or (may_change and self._publisher.type_name != kind):
             self.close()

@@ -58,7 +58,7 @@ class PackageFinder:
             given = self._environment.get(START_VARIABLE, "").split(os.pathsep)
             start = [Path.cwd(), *(Path(folder) for folder in given if folder)]
         starts = [start] if isinstance(start, Path) else start
-        self._starts = tuple(dict.fromkeys(_absolute(each) for each in starts))
+        self._starts = tuple(dict.fromkeys(_absolute(start) for start in starts))
         self._extra = {name: Path(share) for name, share in (extra or {}).items()}
         self._sources_first = sources_first
         self._scans: dict[Path, SourceScan] = {}
@@ -156,8 +156,8 @@ class PackageFinder:
         for prefix in self._prefixes():
             yield ament.share_in_prefix(prefix, name)
         places = (self._in_sources, self._in_installs) if self._sources_first else (self._in_installs, self._in_sources)
-        for each in places:
-            yield from each(name)
+        for place in places:
+            yield from place(name)
         yield self._shipped().get(name)
         yield substituted_share(name)
 
@@ -237,7 +237,7 @@ class PackageFinder:
     def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
         """The hint at a package with a name like this one, and whether this one is that name misspelt."""
         ours = self._shipped()
-        known = [each for each in self.packages() if each not in ours or is_misspelt(name, [each])]
+        known = [package for package in self.packages() if package not in ours or is_misspelt(name, [package])]
         return did_you_mean(name, known), is_misspelt(name, known)
 
     def _searched(self) -> list[Phrase]:
@@ -249,7 +249,7 @@ class PackageFinder:
         places += [
             phrase("colcon install folder {install}", install=display_path(install)) for install in self._installs()
         ]
-        places += [phrase("the packages installed in {prefix}", prefix=display_path(each)) for each in self._holding()]
+        places += [phrase("the packages installed in {prefix}", prefix=display_path(path)) for path in self._holding()]
         for root in self._source_roots():
             scan = self._scan(root)
             if scan.truncated:

@@ -38,7 +38,7 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
         if entry.name.startswith("."):
             continue
         if entry.name in tops and entry.is_dir():
-            links |= {each.relative_to(folder).as_posix(): each for each in entry.rglob("*") if each.is_file()}
+            links |= {path.relative_to(folder).as_posix(): path for path in entry.rglob("*") if path.is_file()}
         else:
             links[entry.name] = entry
     for path, file in moved.items():

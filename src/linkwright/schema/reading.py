@@ -58,10 +58,10 @@ def _flat_reader(rule: ElementRule, version: Version) -> ElementReader:
     make, check = rule.make, rule.check
 
     def explain(element: Element, owner: Element, report: Report) -> Any:
-        found = [_read_value(element, rule, each, version, owner, report) for each in values]
+        found = [_read_value(element, rule, value, version, owner, report) for value in values]
         if any(each is UNREADABLE for each in found):
             return UNREADABLE
-        fields = zip((each.target for each in values), found, strict=True)
+        fields = zip((value.target for value in values), found, strict=True)
         value = tuple(found) if make is None else make(**dict(fields))
         return value if check is None else check(value, element, owner, report)
 

@@ -30,7 +30,7 @@ def alike(one: Any, other: Any) -> bool:
         return False
     if isinstance(one, Visual | Collision) and _folder(one) != _folder(other):
         return False
-    return all(alike(getattr(one, each.name), getattr(other, each.name)) for each in fields(one) if each.compare)
+    return all(alike(getattr(one, field.name), getattr(other, field.name)) for field in fields(one) if field.compare)
 
 
 def _same_elements(one: Element | None, other: Element | None) -> bool:

@@ -50,7 +50,7 @@ def figure_of(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
         links.append(Link(_SKIN, visuals=visuals, element=actor.element))
     elif actor.skin is not None and hips is not None:
         scale = actor.skin.scale
-        x, y, z = (-scale * each for each in hips)
+        x, y, z = (-scale * hip for hip in hips)
         mesh = Mesh(actor.skin.filename, (scale, scale, scale))
         visual = Visual(_SKIN, mesh, RawPose(Pose((x, y, z))), element=actor.element)
         links.append(Link(_SKIN, visuals=(visual,), element=actor.element))

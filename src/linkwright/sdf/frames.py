@@ -62,8 +62,8 @@ class Frames:
         named: dict[str, Framed] = {}
         links = owner.links if isinstance(owner, Model) else ()
         things: tuple[Framed, ...] = (*links, *owner.frames, *owner.joints, *owner.models)
-        for each in things:
-            named.setdefault(each.name, each)
+        for thing in things:
+            named.setdefault(thing.name, thing)
         self.named = named
         self._roots = frozenset({"", MODEL} if isinstance(owner, Model) else {"", WORLD})
         self._inner: dict[str, Frames] = {}

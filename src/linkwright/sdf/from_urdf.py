@@ -130,7 +130,7 @@ class _Converter:
         """Warn of a movable body without mass: SDF gives it 1 kg, where gz leaves it out."""
         if self._lumps:
             return
-        links = [each.parts[0].link for each in bodies if each.joint is None or each.joint.type != "fixed"]
+        links = [body.parts[0].link for body in bodies if body.joint is None or body.joint.type != "fixed"]
         without = [link for link in links if link.inertial is None and self._weightless(link) is None]
         element = next((link.element for link in without if link.element is not None), None)
         if element is not None:
@@ -157,7 +157,7 @@ class _Converter:
             sensors=(*said.sensors, *sensors),
             lights=(*said.lights, *lights),
             gravity=said.gravity and all(other.gravity for other in others),
-            self_collide=next((each.self_collide for each in (said, *others) if each.self_collide is not None), None),
+            self_collide=next((link.self_collide for link in (said, *others) if link.self_collide is not None), None),
             element=link.element,
         )
 

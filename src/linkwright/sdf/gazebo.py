@@ -147,8 +147,8 @@ class Extensions:
         return self._is_true(joint, _MADE_REVOLUTE) and not self.stays_fixed(joint)
 
     def _is_true(self, joint: urdf.Joint, word: str) -> bool:
-        said = (each for gazebo in self._by_name.get(joint.name, ()) for each in gazebo.elements(word))
-        return any(_said(each).casefold() in _TRUE for each in said)
+        said = (element for gazebo in self._by_name.get(joint.name, ()) for element in gazebo.elements(word))
+        return any(_said(element).casefold() in _TRUE for element in said)
 
     def _add_words(self, whole: Element, gazebo: Element, words: _Words, rule: ElementRule) -> None:
         """Add the elements for words to an element; the last of several equal words counts."""
@@ -177,20 +177,20 @@ def _like(element: Element | None, tag: str, name: str) -> Element:
 
 def _blobs(gazebo: Element) -> Iterator[Element]:
     """The children that are SDF already."""
-    return (each for each in gazebo.elements() if each.tag not in _WORDS and each.tag not in _SHAPES)
+    return (element for element in gazebo.elements() if element.tag not in _WORDS and element.tag not in _SHAPES)
 
 
 def _take(shape: Element, said: Element) -> None:
     """Merge the settings of all shapes of a link; a later surface or material replaces an earlier one."""
-    for each in said.elements():
-        if each.tag in ("surface", "material"):
-            shape.children = [other for other in shape.elements() if other.tag != each.tag]
-        shape.children.append(_copied(each))
+    for element in said.elements():
+        if element.tag in ("surface", "material"):
+            shape.children = [other for other in shape.elements() if other.tag != element.tag]
+        shape.children.append(_copied(element))
 
 
 def _copied(element: Element) -> Element:
     copy = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
-    copy.children = [_copied(each) if isinstance(each, Element) else each for each in element.children]
+    copy.children = [_copied(child) if isinstance(child, Element) else child for child in element.children]
     return copy
 
 

@@ -65,7 +65,7 @@ class _Named(Protocol):
 
 
 def _names(*groups: Iterable[_Named]) -> set[str]:
-    return {each.name for group in groups for each in group}
+    return {named.name for group in groups for named in group}
 
 
 class _Resolver:
@@ -93,8 +93,8 @@ class _Resolver:
             else:
                 left.append(include)
         populations = [
-            replace(each, models=tuple(self.model(model, path, ()) for model in each.models[:1]))
-            for each in world.populations
+            replace(population, models=tuple(self.model(model, path, ()) for model in population.models[:1]))
+            for population in world.populations
         ]
         return replace(
             world,
@@ -191,7 +191,7 @@ class _Resolver:
         except LinkwrightError as error:
             found = error.diagnostics
         note = Note(phrase("included here"), include.element.span() if include.element else None)
-        self.diagnostics += [each.but(notes=(*each.notes, note)) for each in found]
+        self.diagnostics += [diagnostic.but(notes=(*diagnostic.notes, note)) for diagnostic in found]
         self._readings[path] = reading
         return reading
 

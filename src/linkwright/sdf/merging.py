@@ -36,10 +36,10 @@ def merged(whole: Model, part: Model) -> Model:
     frames = (Frame(frame, anchor, pose), *(_attached(_moved(each, frame), frame) for each in part.frames))
     return replace(
         whole,
-        links=(*whole.links, *(_moved(each, frame) for each in part.links)),
-        joints=(*whole.joints, *(_connected(each, frame) for each in part.joints)),
+        links=(*whole.links, *(_moved(link, frame) for link in part.links)),
+        joints=(*whole.joints, *(_connected(joint, frame) for joint in part.joints)),
         frames=(*whole.frames, *frames),
-        models=(*whole.models, *(_moved(each, frame) for each in part.models)),
+        models=(*whole.models, *(_moved(model, frame) for model in part.models)),
         plugins=(*whole.plugins, *part.plugins),
         includes=(*whole.includes, *part.includes),  # those that lead nowhere
     )

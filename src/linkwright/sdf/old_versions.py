@@ -41,7 +41,7 @@ def upgraded(element: Element, rule: ElementRule) -> Element:
         rule: the rule of the element in SDF today.
     """
     new = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
-    new.children = [_child(each, rule) if isinstance(each, Element) else each for each in element.children]
+    new.children = [_child(child, rule) if isinstance(child, Element) else child for child in element.children]
     present = {child.tag for child in new.elements()}
     for name, value in element.attributes.items():
         tag = _RENAMED.get((rule.tag, name), name)

@@ -47,7 +47,9 @@ def _check(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
         )
         for part in parts:
             # libsdformat looks these up only when they are needed, and goes on without.
-            yield from (each.but(severity=Severity.WARNING) for each in _pose(part.pose, part.element, frames))
+            yield from (
+                diagnostic.but(severity=Severity.WARNING) for diagnostic in _pose(part.pose, part.element, frames)
+            )
     for joint in owner.joints:
         yield from _joint(joint, frames)
     yield from _circles((*owner.frames, *links, *owner.joints, *owner.models), frames)

@@ -97,8 +97,8 @@ class SdfReport(Findings):
     def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
         """Report a missing required child."""
         candidates = [each for each in element.elements() if each.tag not in rule.child_rules]
-        like = nearest(child.tag, [each.tag for each in candidates], limit=1)
-        misspelt = next((each for each in candidates if each.tag in like), None)
+        like = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
+        misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
         hint = phrase("add <{tag}>...</{tag}>", tag=child.tag)
         if misspelt is not None:
             hint = phrase(
@@ -154,7 +154,7 @@ class SdfReport(Findings):
         hint: Phrase | None = None,
         severity: Severity = Severity.WARNING,
     ) -> None:
-        tags = list(dict.fromkeys(each.tag for each in elements))
+        tags = list(dict.fromkeys(element.tag for element in elements))
         message = phrase("<{tag}> in <{parent}> is not read", tag=tags[0], parent=rule.tag)
         if tags[1:]:
             message = phrase(

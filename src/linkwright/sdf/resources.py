@@ -148,8 +148,8 @@ class ResourceFinder:
         shares = self._packages.packages().values()
         for folder in dict.fromkeys(
             (
-                *(each for place in self._folders for each in (place, place / "worlds")),
-                *(each / "worlds" for each in shares),
+                *(path for place in self._folders for path in (place, place / "worlds")),
+                *(share / "worlds" for share in shares),
             )
         ):
             with suppress(OSError):
@@ -189,11 +189,13 @@ class ResourceFinder:
         yield _SHIPPED
 
     def _plain(self, path: str, beside: Path) -> Path | Missing:
-        places = [Path(path)] if Path(path).is_absolute() else [beside / path, *(each / path for each in self._folders)]
+        places = (
+            [Path(path)] if Path(path).is_absolute() else [beside / path, *(folder / path for folder in self._folders)]
+        )
         return next((place for place in places if place.exists()), None) or _no_file(places[0])
 
     def _below(self, address: str, path: str, beside: Path) -> Path | Missing:
-        around = (each.parent for each in self._folders)
+        around = (folder.parent for folder in self._folders)
         folders = (*self._folders, *around, *(beside.absolute() / "x").parents)
         places = [folder / below / path for folder in folders for below in _BELOW]
         found = next((place for place in places if place.exists()), None)
@@ -214,7 +216,7 @@ class ResourceFinder:
         if beside not in self._near:
             self._near[beside] = _around(beside.absolute())
         near = self._near[beside]
-        for folder in (*self._folders, *near[:2], *(each / "models" for each in near), *near[2:]):
+        for folder in (*self._folders, *near[:2], *(path / "models" for path in near), *near[2:]):
             found = folder / path
             if found.exists() and (folder not in near[2:] or "/" in path or _is_model(found)):
                 return found
@@ -223,7 +225,7 @@ class ResourceFinder:
             if (folder / name).is_dir() and (_is_ours(beside) or not _is_ours(folder)):
                 return _no_file(folder / path)
         reason = phrase("there is no model '{name}' on the search path", name=name)
-        renamed = next((each for each in near[:2] if rest and (each / rest).exists()), None)
+        renamed = next((path for path in near[:2] if rest and (path / rest).exists()), None)
         if renamed is not None:
             here = renamed.absolute().name
             return Missing(reason, phrase("the folder that holds '{path}' is called '{name}'", path=rest, name=here))
@@ -290,7 +292,7 @@ def model_file(folder: Path) -> Path | Missing:
     path = folder / _MODEL_FILE
     if path.is_file():
         return path
-    template = next((each for each in sorted(folder.glob("*.sdf.*")) if each.suffix in _TEMPLATES), None)
+    template = next((path for path in sorted(folder.glob("*.sdf.*")) if path.suffix in _TEMPLATES), None)
     return _no_file(path) if template is None else _made_from(template, path)
 
 
@@ -330,7 +332,7 @@ def hooked_folders(share: Path) -> Iterator[Path]:
 def _version_in(place: Path, rest: list[str]) -> Path | None:
     """The folder of a version in the cache, and the path below it; ``tip`` or nothing stands for the newest."""
     try:
-        versions = sorted((int(each.name), each) for each in place.iterdir() if each.name.isdigit())
+        versions = sorted((int(path.name), path) for path in place.iterdir() if path.name.isdigit())
     except OSError:
         return None
     if not versions:

@@ -208,7 +208,7 @@ def _told(look: Look, word: str, values: list[str]) -> Look:
         return look._replace(image=values[0].strip('"'))
     if word in _COLORS and getattr(look, word) is None:
         with suppress(ValueError):
-            numbers = [float(each) for each in values[:4]]
+            numbers = [float(value) for value in values[:4]]
             # The last of four or five numbers of a specular colour is how narrow it shines.
             alpha = numbers[3] if len(numbers) == 4 and (word != "specular" or len(values) == 5) else 1.0
             if len(numbers) >= 3:

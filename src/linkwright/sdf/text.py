@@ -45,7 +45,9 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
         hint = phrase('a world begins with <sdf version="...">; was the file saved?')
         raise LinkwrightError(found.but(hint=hint)) from None
     told = (*warnings, *more)
-    return document, tuple(each.but(severity=Severity.INFO) if each.code == _NOT_XML else each for each in told)
+    return document, tuple(
+        diagnostic.but(severity=Severity.INFO) if diagnostic.code == _NOT_XML else diagnostic for diagnostic in told
+    )
 
 
 def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:

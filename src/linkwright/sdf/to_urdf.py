@@ -103,7 +103,7 @@ class _Converter:
         root = self._frames.link("")
         self._check_tree(root, above)
         joints = [self._joint(joint, above) for joint in model.joints]
-        links = {each.name: self._link(each, above.get(each.name)) for each in model.links}
+        links = {link.name: self._link(link, above.get(link.name)) for link in model.links}
         looks = [visual.material for link in links.values() for visual in link.visuals if visual.material is not None]
         return urdf.Robot(
             model.name,
@@ -147,7 +147,7 @@ class _Converter:
                 told = {"link": name, "root": root}
                 reason = phrase("link '{link}' is joined to nothing above it, as is '{root}'", **told)
                 hint = phrase("join them with a fixed joint")
-                raise _NoRobotError(reason, next(each.element for each in self._model.links if each.name == name), hint)
+                raise _NoRobotError(reason, next(link.element for link in self._model.links if link.name == name), hint)
 
     def _joint(self, joint: Joint, above: dict[str, Joint]) -> urdf.Joint:
         parent = self._frames.link(joint.parent)

@@ -27,7 +27,7 @@ def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
     return frozenset(
         id(link)
         for model in elements
-        if model.tag == "model" and any(each.text().strip() in _TRUE for each in model.elements("static"))
+        if model.tag == "model" and any(element.text().strip() in _TRUE for element in model.elements("static"))
         for link in model.elements("link")
     )
 
@@ -46,7 +46,7 @@ def changes_nothing(child: Element, parent: Element, static_links: frozenset[int
         return True
     values = _numbers(text)
     if child.tag == "scale":
-        return bool(values) and all(each == _NO_SCALE for each in values)
+        return bool(values) and all(value == _NO_SCALE for value in values)
     return child.tag not in _homes() and (text in _FALSE or (bool(values) and not any(values)))
 
 

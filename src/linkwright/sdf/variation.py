@@ -21,7 +21,7 @@ def with_mass(model: Model, factor: float) -> Model:
 
     def scaled(link: Link) -> Link:
         inertial = link.inertial or Inertial()
-        inertia = Inertia(*(getattr(inertial.inertia, each.name) * factor for each in fields(Inertia)))
+        inertia = Inertia(*(getattr(inertial.inertia, field.name) * factor for field in fields(Inertia)))
         density = None if inertial.density is None else inertial.density * factor
         return replace(link, inertial=replace(inertial, mass=inertial.mass * factor, inertia=inertia, density=density))
 
@@ -59,7 +59,9 @@ def _changed(value: V, kind: type[Any], change: Callable[[Any], Any]) -> V:
     if not is_dataclass(value) or isinstance(value, type):
         return value
     new = {
-        each.name: _changed(getattr(value, each.name), kind, change) for each in fields(value) if each.name != "element"
+        field.name: _changed(getattr(value, field.name), kind, change)
+        for field in fields(value)
+        if field.name != "element"
     }
     new = {name: part for name, part in new.items() if part is not getattr(value, name)}
     return replace(value, **new) if new else value

@@ -28,7 +28,7 @@ class Walk:
 
     def __init__(self, script: Script) -> None:
         self._script = script
-        self._legs = [_Leg(each) for each in script.trajectories if each.waypoints]
+        self._legs = [_Leg(trajectory) for trajectory in script.trajectories if trajectory.waypoints]
         self._length = sum(leg.length for leg in self._legs)
 
     @property
@@ -68,7 +68,7 @@ class _Leg:
     """The segment of one trajectory."""
 
     def __init__(self, trajectory: Trajectory) -> None:
-        found = {each.time: transform_of(each.pose.pose) for each in trajectory.waypoints}
+        found = {waypoint.time: transform_of(waypoint.pose.pose) for waypoint in trajectory.waypoints}
         self._times = sorted(found)
         poses = [found[time] for time in self._times]
         self._times[0] = min(self._times[0], 0.0)  # the first point is where it begins, whatever its time

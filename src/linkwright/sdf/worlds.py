@@ -138,7 +138,9 @@ def populated(world: World) -> World:
 
 def physics_of(world: World) -> Physics:
     """The physics in use: the one marked as default, or the first."""
-    return next((each for each in world.physics if each.default), world.physics[0] if world.physics else Physics())
+    return next(
+        (physic for physic in world.physics if physic.default), world.physics[0] if world.physics else Physics()
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,9 +53,9 @@ def save_world(world: World, models: Sequence[WrittenModel]) -> str:
     if not models:
         return save(world)
     root = _element(Sdf(VERSION, worlds=(replace(world, models=(Model(_GAP),)),)))
-    _declare(root, {prefix for each in models for prefix in each.prefixes})
+    _declare(root, {prefix for model in models for prefix in model.prefixes})
     before, _, after = write(Document(root)).partition(xmltree.write_element(Element("model", {"name": _GAP}), depth=2))
-    return "".join((before, *(each.text for each in models), after))
+    return "".join((before, *(model.text for model in models), after))
 
 
 def save(thing: Sdf | World | Model) -> str:
@@ -101,9 +101,9 @@ def _complete(element: Element, rule: ElementRule, instance: Any) -> None:
         return
     unread = WITHOUT_EFFECT.get(rule.tag, ())
     element.children += (
-        tidied(each)
-        for each in read.elements()
-        if each.tag not in rule.child_rules and (each.tag in unread or ":" in each.tag)
+        tidied(element)
+        for element in read.elements()
+        if element.tag not in rule.child_rules and (element.tag in unread or ":" in element.tag)
     )
 
 

@@ -189,7 +189,7 @@ class Simulation:
         """
         self.refresh()
         links = [held.link.name for held in self.scene.models[name].structure.links]
-        return [each for each in links if self._is_free(each)]
+        return [link for link in links if self._is_free(link)]
 
     def _is_free(self, link: str) -> bool:
         body = self.model.body(link)

@@ -70,14 +70,18 @@ def find_spec(name: str) -> ModuleSpec | None:
     package, *rest = name.split(".")
     if len(rest) > 2 or (rest and rest[0] not in KINDS) or not is_package_name(package):
         return None
-    names = _interfaces(package, rest[0]) if rest else [each for kind in KINDS for each in _interfaces(package, kind)]
+    names = (
+        _interfaces(package, rest[0])
+        if rest
+        else [interface for kind in KINDS for interface in _interfaces(package, kind)]
+    )
     if not names:
         return None
     loader: Loader
     if len(rest) < 2:
         loader = _KindLoader(names) if rest else _PackageLoader()
         return ModuleSpec(name, loader, origin="Linkwright", is_package=True)
-    interface = next((each for each in names if "_" + snake_case(each) == rest[1]), None)
+    interface = next((name for name in names if "_" + snake_case(name) == rest[1]), None)
     if interface is None:
         return None
     return ModuleSpec(name, _InterfaceLoader(f"{package}/{rest[0]}/{interface}"), origin="Linkwright")

@@ -79,7 +79,7 @@ def _leave_out_hiding_sources(variables: dict[str, str]) -> None:
 
 
 def _hides_stand_in(folder: Path) -> bool:
-    names = {package_name(each) for each in (folder, folder.parent) if (each / MANIFEST).is_file()}
+    names = {package_name(path) for path in (folder, folder.parent) if (path / MANIFEST).is_file()}
     return not names.isdisjoint(table.packages()) if names else False
 
 

@@ -164,9 +164,11 @@ class BagMetadata:
         """The text of ``ros2 bag info``."""
         start = self.starting_time.nanoseconds
         topics = [
-            BagTopic(each.name, each.type, counted.message_count, each.serialization_format, ())
+            BagTopic(
+                topic_metadata.name, topic_metadata.type, counted.message_count, topic_metadata.serialization_format, ()
+            )
             for counted in self.topics_with_message_count
-            for each in [counted.topic_metadata]
+            for topic_metadata in [counted.topic_metadata]
         ]
         end = start + self.duration.nanoseconds
         return layout(self.relative_file_paths, self.bag_size, self.storage_identifier, (start, end), topics)
@@ -194,7 +196,7 @@ class MetadataIo:
             found = _metadata(yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))[INFORMATION])
         except (OSError, ValueError, TypeError, KeyError, yaml.YAMLError) as error:
             raise RuntimeError(f"Exception on parsing info file: {error}") from error
-        found.bag_size = sum(each.stat().st_size for each in folder.iterdir() if each.is_file())
+        found.bag_size = sum(path.stat().st_size for path in folder.iterdir() if path.is_file())
         return found
 
     def write_metadata(self, uri: str, metadata: BagMetadata) -> None:
@@ -279,12 +281,12 @@ def _information(metadata: BagMetadata) -> dict[str, Any]:
         }
 
     topics = []
-    for each in metadata.topics_with_message_count:
-        known = asdict(each.topic_metadata)
+    for topic_information in metadata.topics_with_message_count:
+        known = asdict(topic_information.topic_metadata)
         del known["id"]
-        profiles = each.topic_metadata.offered_qos_profiles
+        profiles = topic_information.topic_metadata.offered_qos_profiles
         known["offered_qos_profiles"] = profiles if isinstance(profiles, str) else to_text(profiles)
-        topics.append({"topic_metadata": known, "message_count": each.message_count})
+        topics.append({"topic_metadata": known, "message_count": topic_information.message_count})
     return {
         "version": VERSION,
         "storage_identifier": metadata.storage_identifier,
@@ -293,7 +295,7 @@ def _information(metadata: BagMetadata) -> dict[str, Any]:
         "topics_with_message_count": topics,
         "compression_format": metadata.compression_format,
         "compression_mode": metadata.compression_mode,
-        "files": [{"path": each.path, **span(each)} for each in metadata.files],
+        "files": [{"path": file.path, **span(file)} for file in metadata.files],
         "custom_data": dict(metadata.custom_data) or None,
         "ros_distro": metadata.ros_distro,
     }

@@ -263,7 +263,7 @@ def bag_rewrite(input_options: Sequence[StorageOptions], output_config_file: str
     if not input_options:
         raise RuntimeError("Must provide at least one input and one output bag to rewrite.")
     try:
-        rewrite([each.uri for each in input_options], output_config_file)
+        rewrite([input_option.uri for input_option in input_options], output_config_file)
     except LinkwrightError as error:
         raise RuntimeError(str(error)) from error
 

@@ -113,11 +113,11 @@ class SequentialReader:
 
     def get_all_topics_and_types(self) -> list[TopicMetadata]:
         """The topics of the recording, whatever is filtered."""
-        return [each.topic_metadata for each in self.get_metadata().topics_with_message_count]
+        return [topic_information.topic_metadata for topic_information in self.get_metadata().topics_with_message_count]
 
     def get_all_message_definitions(self) -> list[MessageDefinition]:
         """The definitions of the types of its topics, as far as it has them."""
-        return [MessageDefinition(*each) for each in self._opened().definitions]
+        return [MessageDefinition(*definition) for definition in self._opened().definitions]
 
     def get_metadata(self) -> BagMetadata:
         """What is known of the recording."""

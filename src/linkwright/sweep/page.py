@@ -59,11 +59,12 @@ def summary(table: Table, name: str, command: str, planned: int) -> str:
     if failed:
         lead += f', <span class="bad">{localized(phrase("{count} failed", count=len(failed)))}</span>'
     parts = [f"<h1>{escape(name)}</h1>", f'<p class="lead">{lead}</p>', _failures(table, command)]
-    numbers = [each for each in table.results if _finite(table, each)]
+    numbers = [result for result in table.results if _finite(table, result)]
     if numbers:
         parts += [f"<h2>{_said(phrase('Results'))}</h2>", _statistics(table, numbers)]
         parts.append(
-            f'<div class="cards">{"".join(_card(each, histogram(_of(table, each), each)) for each in numbers)}</div>'
+            '<div class="cards">'
+            f"{''.join(_card(number, histogram(_of(table, number), number)) for number in numbers)}</div>"
         )
     for each in _varied(table):
         cards = "".join(_against(table, each, result) for result in numbers)
@@ -94,8 +95,8 @@ def _of(table: Table, name: str) -> list[float]:
 
 def _varied(table: Table) -> list[str]:
     """The parameters that are not the same everywhere; the seed too, where it alone makes the difference."""
-    varied = [each for each in table.parameters[:-1] if len(set(table.columns[each])) > 1]
-    return varied or [each for each in table.parameters[-1:] if len(set(table.columns[each])) > 1]
+    varied = [parameter for parameter in table.parameters[:-1] if len(set(table.columns[parameter])) > 1]
+    return varied or [parameter for parameter in table.parameters[-1:] if len(set(table.columns[parameter])) > 1]
 
 
 def _against(table: Table, parameter: str, result: str) -> str:
@@ -115,8 +116,8 @@ def _statistics(table: Table, names: Sequence[str]) -> str:
     for name in names:
         values = _of(table, name)
         figures = (min(values), fmean(values), median(values), max(values), pstdev(values))
-        lines.append([name, str(len(values)), *(f"{each:.6g}" for each in figures)])
-    return _html_table([localized(each) for each in (*heads, phrase("standard deviation"))], lines)
+        lines.append([name, str(len(values)), *(f"{figure:.6g}" for figure in figures)])
+    return _html_table([localized(head) for head in (*heads, phrase("standard deviation"))], lines)
 
 
 def _failures(table: Table, command: str) -> str:
@@ -129,7 +130,7 @@ def _failures(table: Table, command: str) -> str:
         lines.append([row, str(table.columns["error"][place]), f"{command} --rerun {row}"])
     heads = [phrase("row"), phrase("error"), phrase("run it again with")]
     title = f"<h2>{_said(phrase('What failed'))}</h2>"
-    return title + _html_table([localized(each) for each in heads], lines, text=(1, 2))
+    return title + _html_table([localized(head) for head in heads], lines, text=(1, 2))
 
 
 def _rows(table: Table) -> str:
@@ -158,5 +159,5 @@ def _html_table(
             for place, each in enumerate(line)
         )
         rows.append(f'<tr id="row-{line[0]}">{cells}</tr>' if targets else f"<tr>{cells}</tr>")
-    head = "".join(f"<th>{escape(each)}</th>" for each in heads)
+    head = "".join(f"<th>{escape(head)}</th>" for head in heads)
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>'

@@ -81,9 +81,12 @@ def scatter(
     across_values: Sequence[object], values: Sequence[float], rows: Sequence[object], across_label: str, label: str
 ) -> str:
     """A result against a parameter, a point for each run, and a line through the means where values recur."""
-    numbers = all(isinstance(each, int | float) and not isinstance(each, bool) for each in across_values)
+    numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in across_values)
     names = [] if numbers else list(dict.fromkeys(map(str, across_values)))
-    places = [float(each) if numbers else float(names.index(str(each))) for each in across_values]  # type: ignore[arg-type]
+    places = [
+        float(value) if numbers else float(names.index(str(value)))  # type: ignore[arg-type]
+        for value in across_values
+    ]
     across = (
         Axis.of_numbers(places, _LEFT, _WIDTH - _RIGHT) if numbers else Axis.of_names(names, _LEFT, _WIDTH - _RIGHT)
     )

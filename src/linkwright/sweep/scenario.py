@@ -137,7 +137,7 @@ def check_values(name: str, values: object, span: Span | None = None) -> None:
     """
     if isinstance(values, Uniform | Normal):
         numbers = (values.low, values.high) if isinstance(values, Uniform) else (values.mean, values.stddev)
-        if all(isinstance(each, int | float) and abs(each) < float("inf") for each in numbers):
+        if all(isinstance(number, int | float) and abs(number) < float("inf") for number in numbers):
             return
         wrong: Phrase = phrase("parameter '{name}': the numbers that it is drawn by are to be finite", name=name)
     elif isinstance(values, str) or not isinstance(values, Sequence):
@@ -145,7 +145,7 @@ def check_values(name: str, values: object, span: Span | None = None) -> None:
     elif not values:
         wrong = phrase("parameter '{name}' has no values", name=name)
     else:
-        bad = [each for each in values if not isinstance(each, bool | int | float | str)]
+        bad = [value for value in values if not isinstance(value, bool | int | float | str)]
         if not bad:
             return
         kind = type(bad[0]).__name__
@@ -158,7 +158,7 @@ def check_values(name: str, values: object, span: Span | None = None) -> None:
 def _seeds(seeds: object, span: Span) -> Sequence[int]:
     if isinstance(seeds, int) and not isinstance(seeds, bool) and seeds > 0:
         return range(seeds)
-    if isinstance(seeds, Sequence) and seeds and all(isinstance(each, int) and each >= 0 for each in seeds):
+    if isinstance(seeds, Sequence) and seeds and all(isinstance(seed, int) and seed >= 0 for seed in seeds):
         return tuple(seeds)
     message = phrase("the seeds are to be a positive number of them, or a list of whole numbers from 0 on")
     raise LinkwrightError(Diagnostic("SWEEP105", message, span, hint=phrase("such as {name}=100", name="seeds")))
@@ -172,7 +172,7 @@ def _check_names(function: Callable[..., object], parameters: Mapping[str, objec
         for name, each in taken.items()
         if each.default is each.empty and each.kind in (*kinds, inspect.Parameter.POSITIONAL_ONLY) and name != SEED
     ]
-    takes_all = any(each.kind is inspect.Parameter.VAR_KEYWORD for each in taken.values())
+    takes_all = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in taken.values())
     unknown = [name for name in parameters if not takes_all and (name not in taken or taken[name].kind not in kinds)]
     missing = [name for name in needed if name not in parameters]
     reserved = [name for name in parameters if name in COLUMNS]
@@ -235,7 +235,11 @@ def _cannot_run(path: Path, error: BaseException) -> LinkwrightError:
 
 def line_of(path: Path, error: BaseException) -> int | None:
     """The line of a file in which an error was raised, or which called what raised it."""
-    lines = [each.lineno for each in traceback.extract_tb(error.__traceback__) if each.filename == str(path)]
+    lines = [
+        frame_summary.lineno
+        for frame_summary in traceback.extract_tb(error.__traceback__)
+        if frame_summary.filename == str(path)
+    ]
     return lines[-1] if lines else None
 
 

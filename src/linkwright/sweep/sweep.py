@@ -55,7 +55,7 @@ class Sweep:
         """
         runs = planned(self.scenario)
         with Journal(self.table, fingerprint(self.scenario, runs), resume=resume) as journal:
-            failed = sum(bool(each.error) for each in journal.outcomes.values())
+            failed = sum(bool(outcome.error) for outcome in journal.outcomes.values())
 
             def done(outcome: Outcome) -> None:
                 nonlocal failed

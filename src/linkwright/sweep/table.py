@@ -100,12 +100,12 @@ def _parquet(table: Table) -> bytes:
 
 def _alike(values: Sequence[Result]) -> list[Result]:
     """Values of one type, as a column of Parquet has: floats where some are, texts where they differ otherwise."""
-    kinds = {type(each) for each in values if each is not None}
+    kinds = {type(value) for value in values if value is not None}
     if len(kinds) < 2:
         return list(values)
     if kinds == {int, float}:
-        return [None if each is None else float(each) for each in values]
-    return [None if each is None else _cell(each) for each in values]
+        return [None if value is None else float(value) for value in values]
+    return [None if value is None else _cell(value) for value in values]
 
 
 def _pyarrow() -> Any:

@@ -80,7 +80,9 @@ class Recording:
     def _subscribe(self, msg_type: Any) -> None:
         self._graph.unwatch(self._look)
         offered = [publisher.qos_profile.durability for publisher in self._graph.bus.publishers(self.topic)]
-        keeps = bool(offered) and all(each is DurabilityPolicy.TRANSIENT_LOCAL for each in offered)
+        keeps = bool(offered) and all(
+            durability_policy is DurabilityPolicy.TRANSIENT_LOCAL for durability_policy in offered
+        )
         qos = QoSProfile(
             history=HistoryPolicy.KEEP_ALL,
             reliability=ReliabilityPolicy.BEST_EFFORT,

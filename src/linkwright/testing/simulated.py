@@ -343,7 +343,7 @@ class SteppedSimulation(SteppedGraph):
 
 def _gripping(world: World, friction: float) -> World:
     """A world in which what stands still has another coefficient of friction."""
-    models = tuple(with_friction(each, friction) if each.static else each for each in world.models)
+    models = tuple(with_friction(model, friction) if model.static else model for model in world.models)
     return replace(world, models=models)
 
 

@@ -72,7 +72,9 @@ class Bodies:
         """The positive masses of a body's links together, in kg; added up once."""
         if body not in self._masses:
             inertials = [link.inertial for link in self.members(body)]
-            self._masses[body] = sum(each.mass for each in inertials if each is not None and each.mass > 0)
+            self._masses[body] = sum(
+                inertial.mass for inertial in inertials if inertial is not None and inertial.mass > 0
+            )
         return self._masses[body]
 
     @cached_property

@@ -127,8 +127,8 @@ class UrdfReport(Findings):
     ) -> None:
         """A required child is not there; `kind` is the type of a joint where only such joints want it."""
         candidates = [each for each in element.elements() if each.tag not in rule.child_rules]
-        like = nearest(child.tag, [each.tag for each in candidates], limit=1)
-        misspelt = next((each for each in candidates if each.tag in like), None)
+        like = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
+        misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
         hint = phrase(
             "add <{tag}/>: {meaning}", tag=f"{child.tag}{_usual_attributes(child)}", meaning=term(child.meaning)
         )

@@ -37,7 +37,9 @@ def meanings(name: str) -> list[Phrase]:
 def names() -> list[str]:
     """The names of all elements and attributes, each once."""
     found = [
-        name for path, rule in _elements(ROBOT, ()) for name in (path[-1], *(each.name for each in rule.attributes))
+        name
+        for path, rule in _elements(ROBOT, ())
+        for name in (path[-1], *(attribute.name for attribute in rule.attributes))
     ]
     return list(dict.fromkeys(found))
 

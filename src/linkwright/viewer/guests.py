@@ -113,7 +113,7 @@ class GuestRecordings:
         if self._looking is not None:
             self._looking.cancel()
         guests, self._guests = self._guests, {}
-        await asyncio.gather(*(_end(each) for each in guests.values()), *self._closing)
+        await asyncio.gather(*(_end(guest) for guest in guests.values()), *self._closing)
 
     async def _make_room(self) -> None:
         """At the limit, end the recording that its pages left first, so that one may be tried after another."""

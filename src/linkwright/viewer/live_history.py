@@ -127,7 +127,7 @@ class LiveHistory:
         graph = self._context.node.graph
         found = {}
         for name, keeper in list(self._keepers.items()):
-            offered = [each.qos_profile for each in graph.get_publishers_info_by_topic(name)]
+            offered = [endpoint.qos_profile for endpoint in graph.get_publishers_info_by_topic(name)]
             found[name] = KeptTopic(keeper.type_name, tuple(offered or [keeper.qos_profile]))
         return found
 
@@ -150,7 +150,7 @@ class LiveHistory:
         if reset is not None:
             lasting = [name for name, each in topics.items() if _is_latched(each)]
             before = [(name, reset, data) for name, _, data in self.history.state_at(lasting, reset - 1)]
-            messages = [*before, *(each for each in messages if each[1] >= reset)]
+            messages = [*before, *(message for message in messages if message[1] >= reset)]
         return in_simulated_time(messages)
 
     def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
@@ -182,7 +182,7 @@ class LiveHistory:
 
     def wanted(self) -> frozenset[str]:
         """The topics that the viewer is subscribed to; the clock is told by `tell_time`."""
-        return frozenset(each.name for each in self._subscriptions()) - {CLOCK_TOPIC}
+        return frozenset(subscription.name for subscription in self._subscriptions()) - {CLOCK_TOPIC}
 
     def tell_time(self, stamp_ns: int) -> None:
         """Set the viewer's clock to a time, or publish the simulated time of then."""
@@ -241,19 +241,19 @@ class LiveHistory:
 
     @staticmethod
     def _give(subscriptions: list[Subscription[Any]], topic: str, stamp_ns: int, data: bytes) -> None:
-        for each in subscriptions:
-            if each.name == topic:
-                each.enqueue(data, MessageInfo(stamp_ns, stamp_ns))
+        for subscription in subscriptions:
+            if subscription.name == topic:
+                subscription.enqueue(data, MessageInfo(stamp_ns, stamp_ns))
 
     def _review(self) -> None:
         """Give new subscriptions the state at the time that is shown."""
-        fresh = [each for each in self._subscriptions() if each not in self._known]
+        fresh = [subscription for subscription in self._subscriptions() if subscription not in self._known]
         if self.live or not fresh:
             return
         self._known = set(self._subscriptions())
         position = self.playback.position_ns
         self.playback.take_over(position)
-        for message in self.history.state_at({each.name for each in fresh} - {CLOCK_TOPIC}, position):
+        for message in self.history.state_at({subscription.name for subscription in fresh} - {CLOCK_TOPIC}, position):
             self._give(fresh, *message)
 
     def _begin_anew(self) -> None:
@@ -268,11 +268,13 @@ class LiveHistory:
             self.begin_anew()
         subscriptions = self._subscriptions()
         with self._lock:
-            for message in self.history.state_at({each.name for each in subscriptions}, self.history.end_ns):
+            for message in self.history.state_at(
+                {subscription.name for subscription in subscriptions}, self.history.end_ns
+            ):
                 self._give(subscriptions, *message)
             self.live = True
         self.changed()
 
 
 def _is_latched(topic: KeptTopic) -> bool:
-    return all(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in topic.offered)
+    return all(profile.durability is DurabilityPolicy.TRANSIENT_LOCAL for profile in topic.offered)

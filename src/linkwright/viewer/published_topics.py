@@ -60,10 +60,10 @@ class PublishedTopics:
         publishers: dict[str, list[tuple[str, str]]] = {}
         topics: dict[str, set[str]] = {}
         own = self._node.get_name()
-        for each in self._node.graph.publishers():
-            node = (each.node or UNKNOWN_NODE).name
+        for publisher in self._node.graph.publishers():
+            node = (publisher.node or UNKNOWN_NODE).name
             if node != own:
-                publishers.setdefault(each.name, []).append((node, each.type_name))
-                topics.setdefault(each.type_name, set()).add(each.name)
+                publishers.setdefault(publisher.name, []).append((node, publisher.type_name))
+                topics.setdefault(publisher.type_name, set()).add(publisher.name)
         self._publishers = publishers
         self._topics = {message: sorted(names) for message, names in topics.items()}

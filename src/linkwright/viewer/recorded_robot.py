@@ -21,7 +21,7 @@ _DESCRIPTION = "/robot_description"
 
 def description_topic(bag: BagReader) -> str | None:
     """The topic with the description of the recording's robot; None where there is none."""
-    names = [each.name for each in bag.topics if each.count and each.name.endswith(_DESCRIPTION)]
+    names = [topic.name for topic in bag.topics if topic.count and topic.name.endswith(_DESCRIPTION)]
     own = namespace_of_transforms(bag) + _DESCRIPTION
     return own if own in names else next(iter(names), None)
 
@@ -31,7 +31,7 @@ def namespace_of_transforms(bag: BagReader) -> str:
 
     Of several robots it is the first that has a description.
     """
-    names = [each.name for each in bag.topics if each.count]
+    names = [topic.name for topic in bag.topics if topic.count]
     if TRANSFORMS in names or STATIC_TRANSFORMS in names:
         return ""
     found = [name.removesuffix(TRANSFORMS) for name in names if name.endswith(TRANSFORMS)]
@@ -42,7 +42,7 @@ def namespace_of_transforms(bag: BagReader) -> str:
 def lacks_transforms(bag: BagReader) -> bool:
     """Whether a recording does not tell how joints stand but by joint states."""
     moving = namespace_of_transforms(bag) + TRANSFORMS
-    return not any(each.name == moving and each.count for each in bag.topics)
+    return not any(topic.name == moving and topic.count for topic in bag.topics)
 
 
 def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
@@ -77,7 +77,7 @@ class PlacedRobot:
     def __init__(self, recording: PublishedRecording, node: Node, bag: BagReader, robot: Robot) -> None:
         self._recording = recording
         self._description = description_topic(bag)
-        self._joint_states = next((each.name for each in bag.topics if each.type_name == _JOINT_STATES), None)
+        self._joint_states = next((topic.name for topic in bag.topics if topic.type_name == _JOINT_STATES), None)
         self._transforms = RobotTransforms(robot, "")
         self._zeros = _zeros(robot)
         self._positions = dict(self._zeros)

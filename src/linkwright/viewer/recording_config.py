@@ -77,7 +77,7 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
         shown_world.checked = True
     shown: Counter[str] = Counter()
     for message, kind, most in _DISPLAYS:
-        for topic in (each for each in bag.topics if each.type_name == message and each.count):
+        for topic in (topic for topic in bag.topics if topic.type_name == message and topic.count):
             if world and topic.name.startswith(RAYS_TOPIC):
                 continue  # the World display draws them
             own = not namespace or topic.name.startswith(f"{namespace}/")  # frames of other robots have the same names
@@ -96,9 +96,9 @@ def _add(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> No
     display = config.make(f"rviz_default_plugins/{kind}", topic.name.strip("/"))
     offers = topic.offered_qos
     display.section.put(("Topic", "Value"), topic.name, string=True)
-    if any(each.reliability is ReliabilityPolicy.BEST_EFFORT for each in offers):
+    if any(offer.reliability is ReliabilityPolicy.BEST_EFFORT for offer in offers):
         display.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
-    kept = bool(offers) and all(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in offers)
+    kept = bool(offers) and all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
     display.section.put(("Topic", "Durability Policy"), "Transient Local" if kept else "Volatile", string=True)
     config.insert(display)
     display.checked = checked
@@ -116,7 +116,7 @@ def _tree(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
     may have begun later.
     """
     both = namespace + TRANSFORMS, namespace + STATIC_TRANSFORMS
-    names = [each.name for each in bag.topics if each.name in both and each.count]
+    names = [topic.name for topic in bag.topics if topic.name in both and topic.count]
     moving = [name for name in names if name == both[0]]
     first = next(iter(bag.messages(moving or names)), None) if names else None
     if first is None:
@@ -131,7 +131,7 @@ def _tree(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
 def _frame_of_messages(bag: BagReader) -> str:
     """The frame of the first message that is shown: without transforms, it becomes the Fixed Frame."""
     for message, _, _ in _DISPLAYS:
-        for topic in (each for each in bag.topics if each.type_name == message and each.count):
+        for topic in (topic for topic in bag.topics if topic.type_name == message and topic.count):
             first = next(iter(bag.messages([topic.name])), None)
             if first is not None and (frame := _frame_of(first[2], message)):
                 return frame
@@ -140,5 +140,5 @@ def _frame_of_messages(bag: BagReader) -> str:
 
 def _frame_of(data: bytes, type_name: str) -> str:
     message = deserialize(data, get_message(type_name))
-    headers = [message.header] if hasattr(message, "header") else [each.header for each in message.markers]
-    return next((str(each.frame_id) for each in headers if each.frame_id), "")
+    headers = [message.header] if hasattr(message, "header") else [marker.header for marker in message.markers]
+    return next((str(header.frame_id) for header in headers if header.frame_id), "")

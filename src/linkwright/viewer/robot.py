@@ -128,21 +128,33 @@ class DescriptionSource:
         if not self._heard:
             return {}
         gids = set(map(self.current, self._heard))
-        return {each.gid: _node_text(each) for each in self._context.node.graph.endpoints() if each.gid in gids}
+        return {
+            endpoint.gid: _node_text(endpoint)
+            for endpoint in self._context.node.graph.endpoints()
+            if endpoint.gid in gids
+        }
 
     def current(self, gid: bytes) -> bytes:
         """The present GID of a publisher of descriptions: one in this process gets another by joining a network."""
         known = self._heard.get(gid)
         if known is None or not known.local:
             return gid
-        now = (each for each in self._context.node.graph.endpoints() if each.local and each.kind is known.kind)
-        return next((each.gid for each in now if (each.node, each.name) == (known.node, known.name)), gid)
+        now = (
+            endpoint
+            for endpoint in self._context.node.graph.endpoints()
+            if endpoint.local and endpoint.kind is known.kind
+        )
+        return next(
+            (endpoint.gid for endpoint in now if (endpoint.node, endpoint.name) == (known.node, known.name)), gid
+        )
 
     def _received(self, message: String, info: MessageInfo) -> None:
         self.publisher = info.publisher_gid
         if self.publisher not in self._heard:
             endpoints = self._context.node.graph.endpoints()
-            self._heard[self.publisher] = next((each for each in endpoints if each.gid == self.publisher), None)
+            self._heard[self.publisher] = next(
+                (endpoint for endpoint in endpoints if endpoint.gid == self.publisher), None
+            )
         self._on_text(message.data)
 
     def _read_file(self, address: str) -> Phrase | None:

@@ -237,7 +237,7 @@ class Viewer:
             cls: its class.
             receives: classes of messages that it receives beside those that its class names.
         """
-        found = next((each for each in self._features if type(each) is cls), None)
+        found = next((feature for feature in self._features if type(feature) is cls), None)
         if found is None:
             found = cls(self)
             self._take_in(found, receives)
@@ -260,7 +260,7 @@ class Viewer:
         manager = self.managers.enter(page)
         messages, frames = self.opening_messages(manager)
         manager.pages.add(page)  # what it is told from here on comes after all this
-        return [*(encode(each, page.language) for each in messages), *frames]
+        return [*(encode(message, page.language) for message in messages), *frames]
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
         """Messages for a page that begins to see a configuration, the frame table last; and binary frames."""

@@ -148,7 +148,7 @@ class _Builder:
 
     def _polygons(self, shape: Shape, polygons: Sequence[Polyline]) -> None:
         shape.kind, shape.size = "polyline", [polygons[0].height]
-        shape.outlines = [[number for point in each.points for number in point] for each in polygons]
+        shape.outlines = [[number for point in polygon.points for number in point] for polygon in polygons]
 
     def _mesh(self, link: str, shape: Shape, mesh: Mesh) -> None:
         shape.url = self._located(link, mesh.uri, MESH_TYPES)

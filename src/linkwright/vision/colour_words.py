@@ -20,7 +20,7 @@ PAINTS: dict[str, tuple[int, int, int]] = {
 }
 """Red, green and blue of the colours that have a word, 0 to 255."""
 
-SPELLINGS = {**{each: each for each in PAINTS}, "gray": "grey", "violet": "purple"}
+SPELLINGS = {**{paint: paint for paint in PAINTS}, "gray": "grey", "violet": "purple"}
 """English words for them."""
 
 

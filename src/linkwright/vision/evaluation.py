@@ -112,7 +112,7 @@ def evaluate(names: Sequence[str], truth: Sequence[Things], found: Sequence[Dete
             those that `names` lacks do not count.
     """
     known = {name: place for place, name in enumerate(names)}
-    detections = [_in_terms_of(known, each) for each in found]
+    detections = [_in_terms_of(known, detections) for detections in found]
     figures, confusion, sizes = [], _confusion(len(names), truth, detections), _by_size(truth, detections)
     for place, name in enumerate(names):
         precisions = _average_precisions(place, truth, detections)
@@ -130,8 +130,8 @@ def evaluate(names: Sequence[str], truth: Sequence[Things], found: Sequence[Dete
         )
     return Evaluation(
         len(truth),
-        _mean([each.ap50 for each in figures]),
-        _mean([each.ap for each in figures]),
+        _mean([figure.ap50 for figure in figures]),
+        _mean([figure.ap for figure in figures]),
         tuple(figures),
         confusion,
         sizes,

@@ -317,7 +317,7 @@ if hasattr(os, "register_at_fork"):
 
 def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
     """Log why a domain is not joined."""
-    findings = "\n".join(render(each) for each in error.diagnostics)
+    findings = "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
     logger.error(f"{findings}\nThis process goes on by itself: nobody outside sees its nodes.")
 
 

@@ -112,8 +112,12 @@ def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Di
 
 def untold_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
     """Return those of the `unfollowed_settings` that were not returned before: each is told of once in a process."""
-    found = [each for each in unfollowed_settings(environment) if each.code not in _told]
-    _told.update(each.code for each in found)
+    found = [
+        unfollowed_setting
+        for unfollowed_setting in unfollowed_settings(environment)
+        if unfollowed_setting.code not in _told
+    ]
+    _told.update(diagnostic.code for diagnostic in found)
     return found
 
 

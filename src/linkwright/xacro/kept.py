@@ -40,7 +40,7 @@ class Kept(Generic[_Key, _Value]):
         own = size_of(key, value)
         self._size += own  # too much where another value had this key, which counting anew puts right
         while self._size > self._most and values:
-            self._size = own + sum(size_of(*each) for each in list(values.items()))
+            self._size = own + sum(size_of(*item) for item in list(values.items()))
             if self._size > self._most:
                 self._start = (self._start + 1) % _STRIDE
                 for each in list(values)[self._start :: _STRIDE]:

@@ -161,13 +161,13 @@ def inserted(
         inner = outer + _STEP
     step = inner.removeprefix(outer) if inner.startswith(outer) and inner != outer else _STEP
     if tag.is_whole:
-        lines = newline.join(inner + block(each, inner, step, newline) for each in new)
+        lines = newline.join(inner + block(element, inner, step, newline) for element in new)
         return Replacement(tag.room, end, f">{newline}{lines}{newline}{outer}</{owner.tag}>")
     behind = element_range(after) if after is not None else None
-    if in_line and not any(True for each in new for _ in each.elements()):
+    if in_line and not any(True for element in new for _ in element.elements()):
         at = behind[1] if behind else tag.end if first else text.rindex("</", start, end)
-        return Replacement(at, at, "".join(block(each) for each in new))
-    lines = newline.join(inner + block(each, inner, step, newline) for each in new)
+        return Replacement(at, at, "".join(block(element) for element in new))
+    lines = newline.join(inner + block(element, inner, step, newline) for element in new)
     if behind is not None:
         return Replacement(behind[1], behind[1], f"{newline}{lines}")
     if first and child is not None:

@@ -96,7 +96,7 @@ def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
     text = source.text
     if not can_stand_in(text) or _DEFINITION in text:
         return read_as, None
-    bare = [each.start() for each in _BARE_AMPERSAND.finditer(tags_alone(text))]
+    bare = [match.start() for match in _BARE_AMPERSAND.finditer(tags_alone(text))]
     if not bare:
         return read_as, None
     for at in bare:
@@ -140,7 +140,7 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
             document, more = _parsed(source, read_as, readers)
         except LinkwrightError:
             raise error from None
-        if told.code == _AFTER_ROOT and any(each.code == _AFTER_ROOT for each in more):
+        if told.code == _AFTER_ROOT and any(diagnostic.code == _AFTER_ROOT for diagnostic in more):
             return document, more
         return document, (told, *more)
 

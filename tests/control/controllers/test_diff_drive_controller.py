@@ -74,7 +74,7 @@ async def test_all_wheels_of_a_side_turn_alike_and_their_mean_is_measured(stand)
     assert heard[-1].pose.pose.position.x == pytest.approx(0.2)
     told(stand, 1.0)
     await stand.step(controller)
-    assert [each.value for each in stand.commands.values()] == pytest.approx([10.0] * 4)
+    assert [command.value for command in stand.commands.values()] == pytest.approx([10.0] * 4)
 
 
 @pytest.mark.parametrize("feedback", [True, False], ids=["positions", "velocities"])
@@ -225,7 +225,7 @@ async def test_the_limits_of_jazzy_have_two_directions(wheels):
 
 async def test_another_controller_may_command_it(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
-    assert [each.name for each in controller.references] == ["base/linear/velocity", "base/angular/velocity"]
+    assert [reference.name for reference in controller.references] == ["base/linear/velocity", "base/angular/velocity"]
     controller.chained = True
     await wheels.step(controller)
     assert speeds(wheels) == [0.0, 0.0]

@@ -53,5 +53,5 @@ async def test_the_documented_drive_starts(stand, page):
     second = 1_000_000_000
     stand.say("geometry_msgs/msg/TwistStamped", "/base_controller/cmd_vel", stamped(second, 9.0))
     await stand.step(controller, 1.0)
-    assert [each.value for each in controller.commands] == pytest.approx([0.8 / 0.06] * 2)
+    assert [command.value for command in controller.commands] == pytest.approx([0.8 / 0.06] * 2)
     assert not warnings(stand)

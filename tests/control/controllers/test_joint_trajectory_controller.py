@@ -63,7 +63,7 @@ async def test_joints_are_held_where_they_are_until_a_trajectory_comes(stand):
     stand.joint("elbow", commands=("position",), position=-0.2, velocity=0.0)
     controller = stand.start(JointTrajectoryController, **BY_POSITION)
     await run(stand, controller, 0.05)
-    assert [each.value for each in controller.commands] == [0.3, -0.2]
+    assert [command.value for command in controller.commands] == [0.3, -0.2]
 
 
 async def test_positions_alone_are_connected_by_lines_and_commanded_one_update_ahead(stand):

@@ -48,10 +48,10 @@ async def test_a_drive_stops_before_its_time_out(stand):
     message.twist.linear.x = 1.0
     driver.send(message)
     await stand.step(controller, count=3)
-    assert [each.value for each in stand.commands.values()] == pytest.approx([10.0, 10.0])
+    assert [command.value for command in stand.commands.values()] == pytest.approx([10.0, 10.0])
     driver.be_lost()
     await stand.step(controller)
-    assert [each.value for each in stand.commands.values()] == [0.0, 0.0]
+    assert [command.value for command in stand.commands.values()] == [0.0, 0.0]
     (told,) = [each.text for each in stand.log if "was lost" in each.text]
     assert told.startswith("'/driver', which commanded by '/base/cmd_vel', was lost")
 

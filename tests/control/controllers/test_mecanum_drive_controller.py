@@ -93,7 +93,7 @@ async def test_a_command_holds_for_its_time_or_for_one_update(wheels):
 
 async def test_another_controller_may_command_it_and_its_state_is_published(wheels):
     controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
-    assert [each.name for each in controller.references] == [
+    assert [reference.name for reference in controller.references] == [
         "base/linear/x/velocity",
         "base/linear/y/velocity",
         "base/angular/z/velocity",

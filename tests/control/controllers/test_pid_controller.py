@@ -76,7 +76,7 @@ async def test_states_may_come_by_topic(stand):
 
 async def test_another_controller_may_command_the_references(stand):
     controller = wheel(stand, **BOTH, gains={"wheel": {"p": 1.0}})
-    assert [each.name for each in controller.references] == [
+    assert [reference.name for reference in controller.references] == [
         "controller/wheel/position",
         "controller/wheel/velocity",
     ]

@@ -159,7 +159,7 @@ async def test_the_older_names_of_parameters_are_those_of_humble(stand):
     told(stand, 1.0, 0.5)
     await stand.step(controller)
     assert commanded(stand, "left", "steer_left") == pytest.approx([10.0, atan(BASE / 1.8)])
-    assert not [each for each in warnings(stand) if "no parameter" in each]
+    assert not [warning for warning in warnings(stand) if "no parameter" in warning]
 
 
 async def test_wheels_are_slow_until_they_are_steered_where_that_is_asked_for(stand):
@@ -174,12 +174,12 @@ async def test_wheels_are_slow_until_they_are_steered_where_that_is_asked_for(st
 
 async def test_another_controller_may_command_it(stand):
     controller = vehicle(stand, BicycleSteeringController, BICYCLE)
-    assert [each.name for each in controller.references] == ["car/linear/velocity", "car/angular/velocity"]
+    assert [reference.name for reference in controller.references] == ["car/linear/velocity", "car/angular/velocity"]
     controller.chained = True
     controller.references[0].value, controller.references[1].value = 1.0, 0.0
     await stand.step(controller)
     assert commanded(stand, "wheel") == [10.0]
-    assert all(isnan(each.value) for each in controller.references)
+    assert all(isnan(reference.value) for reference in controller.references)
     await stand.step(controller)
     assert commanded(stand, "wheel") == [0.0]
 

@@ -27,7 +27,7 @@ def told(stand, *velocity: float) -> None:
 
 
 def commanded(stand) -> list[float]:
-    return [each.value for each in stand.commands.values()]
+    return [command.value for command in stand.commands.values()]
 
 
 def test_it_is_found_by_its_type():

@@ -109,7 +109,7 @@ def test_a_filter_agrees_with_least_squares_over_all_measurements(kind):
             measurements.append(measured(time, 0.02, vx=1.0 + random.normal(0, 0.1)))
         else:
             measurements.append(measured(time, 0.3, ax=random.normal(0, 0.5), vy=random.normal(0, 0.5)))
-    steps = list(np.diff([each.time_ns for each in measurements]) / SECOND)
+    steps = list(np.diff([measurement.time_ns for measurement in measurements]) / SECOND)
     for measurement in measurements:
         kalman.process(measurement)
     free, state, covariance = batch_solution(settings, measurements, steps)

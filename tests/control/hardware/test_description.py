@@ -16,11 +16,11 @@ def test_components_interfaces_and_parameters():
     assert findings == []
     assert (hardware.name, hardware.type, hardware.plugin) == ("arm", "system", "mock_components/GenericSystem")
     assert hardware.is_set("calculate_dynamics")
-    assert [each.name for each in hardware.joints[0].commands] == ["position", "velocity"]
+    assert [command.name for command in hardware.joints[0].commands] == ["position", "velocity"]
     assert hardware.joints[0].states[0].initial_value == 0.5
     assert isnan(hardware.joints[0].states[1].initial_value)
     assert hardware.sensors[0].parameters == {"frame_id": "base"}
-    assert [each.kind for each in hardware.components] == ["joint", "sensor", "gpio"]
+    assert [component.kind for component in hardware.components] == ["joint", "sensor", "gpio"]
 
 
 def test_limits_of_commands():
@@ -50,7 +50,7 @@ def test_mistakes_are_told_and_left_out():
         "</robot>", "<ros2_control name='b' type='sytem'/><ros2_control name='c' type='system'/></robot>"
     )
     (hardware,), findings = described(text)
-    assert [each.name for each in hardware.joints] == ["hip", "knee"]
+    assert [joint.name for joint in hardware.joints] == ["hip", "knee"]
     assert findings == [
         "CTL113 <ros2_control> has joint 'kne', which the robot does not have",
         "CTL114 Mimicked joint 'hipp' not found",

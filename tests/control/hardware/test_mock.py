@@ -22,11 +22,11 @@ def parameter(name: str, value: str) -> str:
 
 
 def states(hardware: GenericSystem) -> dict[str, float]:
-    return {each.name: each.value for each in hardware.states}
+    return {state.name: state.value for state in hardware.states}
 
 
 def command(hardware: GenericSystem, name: str, value: float) -> None:
-    next(each for each in hardware.commands if each.name == name).value = value
+    next(command for command in hardware.commands if command.name == name).value = value
 
 
 async def test_states_follow_commands_from_their_initial_values(made):

@@ -41,7 +41,7 @@ class Robot:
         return Asked(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
 
     def positions(self) -> list[float]:
-        return [each.value for each in self.manager.resources.states([f"{name}/position" for name in JOINTS])]
+        return [state.value for state in self.manager.resources.states([f"{name}/position" for name in JOINTS])]
 
 
 async def test_it_holds_where_it_is_and_follows_a_trajectory(graph):

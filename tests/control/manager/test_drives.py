@@ -42,7 +42,7 @@ class Base:
         await self.graph.settle()
 
     def wheels(self) -> list[float]:
-        return [each.value for each in self.manager.resources.commands(["left/velocity", "right/velocity"])]
+        return [command.value for command in self.manager.resources.commands(["left/velocity", "right/velocity"])]
 
 
 async def test_a_drive_commands_pid_controllers_in_chained_mode(graph):

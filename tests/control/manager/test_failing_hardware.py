@@ -98,7 +98,10 @@ async def test_its_controllers_stop_the_others_go_on_and_it_can_be_activated_aga
     listed = (await ask(graph, node, "list_controllers")).controller
     assert {each.name: each.state for each in listed} == {"hips": "inactive", "knees": "active"}
     components = (await ask(graph, node, "list_hardware_components")).component
-    assert {each.name: each.state.label for each in components} == {"arm": "unconfigured", "leg": "active"}
+    assert {component.name: component.state.label for component in components} == {
+        "arm": "unconfigured",
+        "leg": "active",
+    }
     assert arm.life == ("on", "error")
     first, second = said("ERROR")
     assert first.startswith("Error while reading hardware 'arm': ")
@@ -107,7 +110,7 @@ async def test_its_controllers_stop_the_others_go_on_and_it_can_be_activated_aga
     wanted["knees"].publish(array(data=[3.0]))
     await go_on(graph, clock, 2)
     leg = running._manager.resources.components["leg"]
-    assert [each.value for each in leg.commands] == [3.0]
+    assert [command.value for command in leg.commands] == [3.0]
 
     refused = await ask(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)
     assert not refused.ok

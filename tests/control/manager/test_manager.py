@@ -81,7 +81,7 @@ def started(made, *names):
 
 
 def value(made, name):
-    return {each.name: each.value for each in made.resources.commands([name])}[name]
+    return {command.name: command.value for command in made.resources.commands([name])}[name]
 
 
 async def test_a_controller_is_loaded_configured_switched_and_unloaded(made, said):
@@ -186,7 +186,7 @@ async def test_a_chain_is_activated_together_or_by_itself(made):
     assert it.controllers["low"].controller.chained
     assert it.switch([], ["high", "low"], STRICT)[0]
     assert it.switch(["high"], [], AUTO)[0]
-    assert all(each.controller.state is ACTIVE for each in it.controllers.values())
+    assert all(controller.controller.state is ACTIVE for controller in it.controllers.values())
 
 
 async def test_a_controller_that_throws_is_deactivated_and_what_it_moved_stands(made, said):
@@ -198,7 +198,7 @@ async def test_a_controller_that_throws_is_deactivated_and_what_it_moved_stands(
     command = it.resources.commands(["hip/velocity"])[0]
     it.cycle(2, 0.01)
     assert command.value == 0.0
-    assert [each.is_active for each in it.controllers.values()] == [False, False]
+    assert [controller.is_active for controller in it.controllers.values()] == [False, False]
     errors = said("ERROR")
     assert errors[0].startswith("Caught exception while updating: RuntimeError: out of luck\nTraceback")
     assert errors[1] == "Deactivating controllers : [ low high ] as their update resulted in an error!"

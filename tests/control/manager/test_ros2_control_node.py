@@ -74,13 +74,15 @@ async def test_controllers_run_by_services_and_topics(graph, clock, tmp_path, sa
         ("broadcaster", "active", []),
         ("positions", "active", ["hip/position", "knee/position"]),
     ]
-    assert [each.state.label for each in activity[-1].controllers] == ["active", "active"]
+    assert [controller.state.label for controller in activity[-1].controllers] == ["active", "active"]
     components = (await ask(graph, node, "list_hardware_components")).component
-    assert [(each.name, each.plugin_name, each.state.label) for each in components] == [
+    assert [(component.name, component.plugin_name, component.state.label) for component in components] == [
         ("arm", "mock_components/GenericSystem", "active")
     ]
     interfaces = await ask(graph, node, "list_hardware_interfaces")
-    assert [(each.name, each.is_claimed) for each in interfaces.command_interfaces] == [
+    assert [
+        (command_interface.name, command_interface.is_claimed) for command_interface in interfaces.command_interfaces
+    ] == [
         ("hip/position", True),
         ("knee/position", True),
     ]
@@ -112,7 +114,7 @@ async def test_the_description_comes_by_its_topic(graph, clock, tmp_path, said):
     node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(CONTROL))
     await graph.settle()
     components = (await ask(graph, node, "list_hardware_components")).component
-    assert [each.name for each in components] == ["arm"]
+    assert [component.name for component in components] == ["arm"]
     set_state = await ask(graph, node, "set_hardware_component_state", name="nobody")
     assert not set_state.ok
     assert said("ERROR") == ["hardware component with name 'nobody' does not exist"]

@@ -47,7 +47,7 @@ async def test_they_are_published_each_second_while_somebody_listens(graph, cloc
     assert len(names) == 1
     assert len(names[0].names) == len(values[-1].values)
     assert names[0].names_version == values[-1].names_version == 1
-    told = {each.name: each.value for each in full[-1].statistics}
+    told = {statistic.name: statistic.value for statistic in full[-1].statistics}
     assert told["broadcaster.stats/periodicity/average"] == pytest.approx(100.0)
     assert told["broadcaster.stats/execution_time/sample_count"] >= 99.0
     assert told["arm.stats/read_cycle/periodicity/average"] == pytest.approx(100.0)

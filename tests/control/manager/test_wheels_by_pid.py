@@ -26,7 +26,7 @@ def pid(wheel: str) -> dict[str, Any]:
 
 
 async def test_a_drive_turns_its_wheels_by_way_of_pid(graph):
-    types = {f"pid_{each}": {"type": "pid_controller/PidController"} for each in WHEELS}
+    types = {f"pid_{wheel}": {"type": "pid_controller/PidController"} for wheel in WHEELS}
     types["base"] = {"type": "diff_drive_controller/DiffDriveController"}
     base = {
         "left_wheel_names": ["pid_left/left"],
@@ -36,7 +36,7 @@ async def test_a_drive_turns_its_wheels_by_way_of_pid(graph):
         "position_feedback": False,
         "use_stamped_vel": False,
     }
-    text = robot("".join(joint(each, "velocity") for each in WHEELS), joints=WHEELS)
+    text = robot("".join(joint(wheel, "velocity") for wheel in WHEELS), joints=WHEELS)
     made = manager(graph, text, types, pid_left=pid("left"), pid_right=pid("right"), base=base)
     for name in types:
         assert made.load(name)
@@ -45,8 +45,8 @@ async def test_a_drive_turns_its_wheels_by_way_of_pid(graph):
     assert made.switch(["base"], [], STRICT)[0]
     node = graph.create_node("driver")
     switch = get_service("std_srvs/srv/SetBool")
-    for each in WHEELS:
-        node.create_client(switch, f"/pid_{each}/set_feedforward_control").call_async(switch.Request(data=True))
+    for wheel in WHEELS:
+        node.create_client(switch, f"/pid_{wheel}/set_feedforward_control").call_async(switch.Request(data=True))
     twists = node.create_publisher(TWIST, "/base/cmd_vel_unstamped", 10)
     command = get_message(TWIST)()
     command.linear.x = 0.3
@@ -54,5 +54,5 @@ async def test_a_drive_turns_its_wheels_by_way_of_pid(graph):
         twists.publish(command)
         await graph.settle()
         made.cycle(number * 10_000_000, 0.01)
-    speeds = [each.value for each in made.resources.states([f"{each}/velocity" for each in WHEELS])]
+    speeds = [state.value for state in made.resources.states([f"{wheel}/velocity" for wheel in WHEELS])]
     assert speeds == pytest.approx([0.3 / RADIUS] * 2, rel=0.01)

@@ -107,7 +107,7 @@ def test_a_trajectory_with_a_start_in_the_past_goes_on_at_the_segment_that_is_du
 def test_positions_follow_from_velocities_and_velocities_from_accelerations():
     trajectory = Trajectory([point(1.0, [], [2.0]), point(2.0, [], [4.0]), point(3.0, [], [], [0.0])])
     trajectory.begin(SECOND, MotionState([0.0]))
-    assert [each.state.positions for each in trajectory.points] == [[1.0], [4.0], [8.0]]
+    assert [point.state.positions for point in trajectory.points] == [[1.0], [4.0], [8.0]]
     assert trajectory.points[2].state.velocities == [4.0]
 
 
@@ -117,9 +117,9 @@ def test_positions_follow_from_velocities_and_velocities_from_accelerations():
     st.sampled_from([1, 2, 3]),
 )
 def test_a_trajectory_goes_through_its_points_without_a_jump(points, begin, known):
-    times = np.cumsum([each[0] for each in points])
+    times = np.cumsum([point[0] for point in points])
     made = [
-        point(float(time), *([each] for each in values[:known]))
+        point(float(time), *([value] for value in values[:known]))
         for time, (_, *values) in zip(times, points, strict=True)
     ]
     trajectory = Trajectory(made)

@@ -44,7 +44,7 @@ def description(kind: str) -> str:
     interfaces = f"<command_interface name='{kind}'/>" + "".join(
         f"<state_interface name='{each}'/>" for each in ("position", "velocity")
     )
-    links = "".join(f"<link name='{each}'/>" for each in ("world", *(f"{each}_link" for each in JOINTS)))
+    links = "".join(f"<link name='{each}'/>" for each in ("world", *(f"{joint}_link" for joint in JOINTS)))
     joints = "".join(
         f"<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{name}_link'/><axis xyz='0 1 0'/>"
         "<limit lower='-3' upper='3' effort='100' velocity='5'/></joint>"
@@ -107,7 +107,7 @@ class Arm:
         await self.graph.settle()
 
     def positions(self) -> list[float]:
-        return [self.server.simulation.joint_state(f"arm::{each}")[0] for each in JOINTS]
+        return [self.server.simulation.joint_state(f"arm::{joint}")[0] for joint in JOINTS]
 
     def ask(self, *points: Any) -> Asked:
         goal = get_action(ACTION).Goal(trajectory=trajectory(*points))

@@ -198,7 +198,9 @@ async def test_what_is_not_in_the_model_is_told(file):
         assert joint == "Skipping joint in the URDF named 'third_joint' which is not in the gazebo model."
         assert sensor.startswith("sensor 'ft' of <ros2_control>: the model has no IMU and no force and torque sensor")
         interfaces = await world.ask("list_hardware_interfaces")
-        assert [each.name for each in interfaces.command_interfaces] == ["left_joint/velocity"]
+        assert [command_interface.name for command_interface in interfaces.command_interfaces] == [
+            "left_joint/velocity"
+        ]
 
 
 async def test_a_reset_goes_on_with_what_is_active(file):

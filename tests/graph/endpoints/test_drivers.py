@@ -109,7 +109,7 @@ class Known:
         ]
 
     def identities(self) -> list[NodeIdentity]:
-        return [NodeIdentity(each, "/") for each in self._names]
+        return [NodeIdentity(name, "/") for name in self._names]
 
 
 def warned(graph: Known, message_type: type = Twist) -> list[str]:

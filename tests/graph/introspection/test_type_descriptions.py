@@ -42,8 +42,10 @@ async def test_a_type_and_all_within_it(graph: Graph) -> None:
         "effort",
     ]
     nested = ["builtin_interfaces/msg/Time", "std_msgs/msg/Header"]
-    assert [each.type_name for each in described.referenced_type_descriptions] == nested
-    assert [(each.type_name, each.encoding) for each in response.type_sources] == [
+    assert [
+        referenced_type_description.type_name for referenced_type_description in described.referenced_type_descriptions
+    ] == nested
+    assert [(type_source.type_name, type_source.encoding) for type_source in response.type_sources] == [
         (name, "msg") for name in (JOINT_STATE, *nested)
     ]
     assert "float64[] position" in response.type_sources[0].raw_file_contents
@@ -53,7 +55,7 @@ async def test_a_service_whose_parts_stand_in_no_file_of_their_own(graph: Graph)
     node = graph.create_node("node")
     node.create_client(get_service("std_srvs/srv/SetBool"), "switch")
     response = await asked(graph, node, type_name="std_srvs/srv/SetBool", type_hash=type_hash("std_srvs/srv/SetBool"))
-    encodings = {each.type_name: each.encoding for each in response.type_sources}
+    encodings = {type_source.type_name: type_source.encoding for type_source in response.type_sources}
     assert encodings["std_srvs/srv/SetBool"] == "srv"
     assert encodings["std_srvs/srv/SetBool_Request"] == "implicit"
 

@@ -94,7 +94,7 @@ async def test_failures_and_errors(managed, log, answers, verdict, state):
     assert managed.trigger_configure() is verdict
     assert managed.lifecycle_state.label == state
     errors = [record.text for record in log]
-    assert len(errors) == sum(not isinstance(each, TransitionCallbackReturn) for each in answers.values())
+    assert len(errors) == sum(not isinstance(answer, TransitionCallbackReturn) for answer in answers.values())
     if answers["configure"] is True:
         assert errors == [
             "on_configure returned True; it must return TransitionCallbackReturn.SUCCESS, FAILURE or ERROR"
@@ -193,7 +193,7 @@ async def test_others_drive_it_through_services(graph, managed, log):
         "Transition is not registered: No transition matching 77 found for current state active",
     ]
     states = (await ask("get_available_states", "GetAvailableStates")).available_states
-    assert [(each.id, each.label) for each in states] == [
+    assert [(state.id, state.label) for state in states] == [
         *((0, "unknown"), (1, "unconfigured"), (2, "inactive"), (3, "active"), (4, "finalized")),
         *((10, "configuring"), (11, "cleaningup"), (12, "shuttingdown"), (13, "activating"), (14, "deactivating")),
         (15, "errorprocessing"),

@@ -240,8 +240,8 @@ async def test_levels_over_services(graph):
         set_levels.srv_type.Request(levels=[level(name="node", level=10), level(name="node", level=11)])
     )
     await graph.settle()
-    assert [each.successful for each in answer.result().results] == [True, False]
+    assert [result.successful for result in answer.result().results] == [True, False]
     assert node.get_logger().level is LogLevel.DEBUG
     answer = get_levels.call_async(get_levels.srv_type.Request(names=["node", "x"]))
     await graph.settle()
-    assert [(each.name, each.level) for each in answer.result().levels] == [("node", 10), ("x", 0)]
+    assert [(level.name, level.level) for level in answer.result().levels] == [("node", 10), ("x", 0)]

@@ -32,7 +32,7 @@ async def test_declared_parameters_have_their_default_or_what_is_given(graph):
     assert node.declare_parameter("zeros.arm.elbow", 0.0).value == 1.5
     assert node.get_parameter("frame").type_ is ParameterType.STRING
     assert node.parameter_names() == ["use_sim_time", "rate", "frame", "zeros.arm.elbow"]
-    assert [each.value for each in node.get_parameters(["frame", "rate"])] == ["map", 50]
+    assert [get_parameter.value for get_parameter in node.get_parameters(["frame", "rate"])] == ["map", 50]
     assert node.has_parameter("rate")
     assert not node.has_parameter("arm")
     assert node.declare_parameter("other", 1, ignore_override=True).value == 1
@@ -269,7 +269,10 @@ async def test_descriptors_are_described_and_replaced(graph):
     node = graph.create_node("node")
     node.declare_parameter("p", 5, ParameterDescriptor(description="how many"))
     assert node.describe_parameter("p") == DescriptorMessage(name="p", type=2, description="how many")
-    assert [each.name for each in node.describe_parameters(["p", "use_sim_time"])] == ["p", "use_sim_time"]
+    assert [describe_parameter.name for describe_parameter in node.describe_parameters(["p", "use_sim_time"])] == [
+        "p",
+        "use_sim_time",
+    ]
     tight = DescriptorMessage(type=2, integer_range=[IntegerRange(from_value=0, to_value=3)])
     with pytest.raises(InvalidParameterValueException):
         node.set_descriptor("p", tight)
@@ -339,7 +342,7 @@ async def test_the_callback_added_last_is_called_first_and_all_can_be_removed(gr
         return SetParametersResult(successful=True)
 
     def post(parameters):
-        calls.append([each.name for each in parameters])
+        calls.append([parameter.name for parameter in parameters])
 
     node.add_pre_set_parameters_callback(pre)
     node.add_on_set_parameters_callback(first)

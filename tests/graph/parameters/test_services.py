@@ -57,7 +57,9 @@ async def test_values_types_and_descriptions_are_asked_for(graph, client):
     assert [values[0].integer_value, values[1].string_value] == [30, "left"]
     assert list((await answer(graph, client.get_parameter_types(["rate", "any", "late"]))).types) == [2, 0, 0]
     descriptors = (await answer(graph, client.describe_parameters(["arm.name"]))).descriptors
-    assert [(each.name, each.type, each.description) for each in descriptors] == [("arm.name", 4, "which")]
+    assert [(descriptor.name, descriptor.type, descriptor.description) for descriptor in descriptors] == [
+        ("arm.name", 4, "which")
+    ]
     listed = (await answer(graph, client.list_parameters(["arm"]))).result
     assert (list(listed.names), list(listed.prefixes)) == (["arm.name"], ["arm"])
     assert len((await answer(graph, client.list_parameters(depth=1))).result.names) == 4
@@ -81,7 +83,7 @@ async def test_setting_from_outside(graph, server, client):
         callback=lambda done: told.append(done.result()),
     )
     results = (await answer(graph, future)).results
-    assert [each.successful for each in results] == [True, False, False]
+    assert [result.successful for result in results] == [True, False, False]
     assert results[1].reason == "unlucky"
     assert results[2].reason == "Invalid access to undeclared parameter(s): ['gone']"
     assert len(told) == 1

@@ -365,8 +365,8 @@ pose = (
         *([st.floats(-10, 10)] * 3),
         *([st.floats(-1, 1)] * 4),
     )
-    .filter(lambda values: sum(each * each for each in values[3:]) > 0.1)
-    .map(lambda values: (*values[:3], *(each / sqrt(sum(q * q for q in values[3:])) for each in values[3:])))
+    .filter(lambda values: sum(value * value for value in values[3:]) > 0.1)
+    .map(lambda values: (*values[:3], *(value / sqrt(sum(q * q for q in values[3:])) for value in values[3:])))
 )
 
 

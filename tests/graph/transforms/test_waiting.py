@@ -95,7 +95,7 @@ async def test_broadcasters_and_a_listener(graph, clock):
     graph.create_node("late").create_subscription(TFMessage, "/tf_static", messages.append, static.pub_tf.qos_profile)
     await graph.settle()
     (message,) = messages
-    assert [each.child_frame_id for each in message.transforms] == ["camera", "laser"]
+    assert [transform.child_frame_id for transform in message.transforms] == ["camera", "laser"]
     listener.unregister()
     moving.sendTransform(stamped("map", "base", 7))
     await graph.settle()

@@ -186,7 +186,7 @@ class TestCounts:
         monkeypatch.delenv("LINKWRIGHT_DDS")
         me = psutil.Process()
         await launch()  # what is made once and kept, is made
-        threads, children = set(threading.enumerate()), {each.pid for each in me.children(recursive=True)}
+        threads, children = set(threading.enumerate()), {child.pid for child in me.children(recursive=True)}
         seen: list[tuple[int, int]] = []
 
         def look(_: Any) -> None:
@@ -204,7 +204,7 @@ class TestCounts:
 
         def left() -> list[object]:
             ours = [each for each in threading.enumerate() if each not in threads and not _is_pooled(each)]
-            return [*ours, *(each for each in me.children(recursive=True) if each.pid not in children)]
+            return [*ours, *(child for child in me.children(recursive=True) if child.pid not in children)]
 
         await eventually(lambda: not left(), what=lambda: f"left behind: {left()}")
 

@@ -104,7 +104,7 @@ class TestWithoutTheOption:
         done = await launch(
             IncludeLaunchDescription([FindPackageShare("zzz_of_others"), "/launch/robot.launch.py"]),
             IncludeLaunchDescription([FindPackageShare("gazebo_ros"), "/launch/of_another_release.launch.py"]),
-            *(IncludeLaunchDescription(str(each)) for each in files),
+            *(IncludeLaunchDescription(str(file)) for file in files),
             ExecuteProcess(cmd=[sys.executable, "-c", "print('the rest runs')"], output="screen"),
         )
         assert "the rest runs" in done.out

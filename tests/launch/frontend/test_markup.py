@@ -219,7 +219,7 @@ def test_errors_have_a_place_and_a_hint(
 def test_independent_errors_come_together() -> None:
     with pytest.raises(LinkwrightError) as raised:
         parse('<launch><argg name="x"/><let nam="a"/></launch>')
-    assert [each.code for each in raised.value.diagnostics] == ["LAUNCH115", "LAUNCH117"]
+    assert [diagnostic.code for diagnostic in raised.value.diagnostics] == ["LAUNCH115", "LAUNCH117"]
 
 
 def test_classes_of_errors() -> None:

@@ -72,7 +72,7 @@ class TestRequests:
             SetParametersFromFile(str(path)),
             v="true",
         )
-        given = [(each.name, each.value) for each in request.parameters]
+        given = [(parameter.name, parameter.value) for parameter in request.parameters]
         assert [name for name, _ in given] == ["a", "c", "d", "b.x", "c", "d"]
         assert given[0][1].string_value == "text"
         assert given[1][1].integer_value == 9  # a node's own name counts more than a pattern, whichever comes first

@@ -39,7 +39,7 @@ async def test_what_a_controller_says_is_said_by_the_node_that_runs_it(launch: A
         ends_when(printed("Configured and activated arm")),
     )
     assert done.succeeded, done.err
-    (line,) = [each for each in done.err.splitlines() if "open_lop_control" in each]
+    (line,) = [line for line in done.err.splitlines() if "open_lop_control" in line]
     assert re.match(r"\[ros2_control_node-1\] \[WARN\] \[[0-9.]+\] \[arm\]: ", line)
     assert line.endswith("'open_lop_control' is no parameter of this controller; did you mean 'open_loop_control'?")
 

@@ -31,7 +31,7 @@ def test_it_turns_as_far_as_it_is_told(angle):
     assert step.outcome is Outcome.DONE
     assert step.traveled == pytest.approx(angle, abs=0.1)
     assert pose[2] - START[2] == pytest.approx(angle, abs=0.1)
-    assert max(abs(each.yaw) for each in speeds) <= 1.0
+    assert max(abs(speed.yaw) for speed in speeds) <= 1.0
 
 
 @pytest.mark.parametrize("distance", [0.5, -0.3])
@@ -39,7 +39,7 @@ def test_it_drives_as_far_as_it_is_told(distance):
     step, _, _, speeds = run(DriveStraight(distance, 0.1, 0.0, 2.0, START))
     assert step.outcome is Outcome.DONE
     assert step.traveled == pytest.approx(abs(distance), abs=0.011)
-    assert {np.sign(each.x) for each in speeds} == {np.sign(distance)}
+    assert {np.sign(speed.x) for speed in speeds} == {np.sign(distance)}
 
 
 def test_it_stops_before_an_obstacle():

@@ -51,7 +51,7 @@ class Eye:
 
     def see(self, *points, origin=(2.05, 2.05, 0.3)) -> np.ndarray:
         self.time_ns += SECOND
-        points = np.array([(*each, 0.3)[:3] if len(each) == 2 else each for each in points], float).reshape(-1, 3)
+        points = np.array([(*point, 0.3)[:3] if len(point) == 2 else point for point in points], float).reshape(-1, 3)
         self.buffer.take(np.array(origin, float), points, self.time_ns)
         return self.update()
 
@@ -84,7 +84,7 @@ def test_costs_fall_with_the_distance_as_nav2_says(obstacles, radius, factor):
     cells, inscribed = inflated(*obstacles, inflation_radius=radius, cost_scaling_factor=factor)
     reach = np.ceil(radius / 0.1) * 0.1
     for row, column in np.ndindex(cells.shape):
-        distance = 0.1 * min(hypot(row - each[0], column - each[1]) for each in obstacles)
+        distance = 0.1 * min(hypot(row - obstacle[0], column - obstacle[1]) for obstacle in obstacles)
         if distance == 0.0:
             expected = LETHAL
         elif distance > reach + 1e-9:

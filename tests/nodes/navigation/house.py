@@ -79,13 +79,13 @@ class Drift:
         node.create_subscription(TFMessage, "/tf", self._hear, TF_QOS)
 
     def _hear(self, message: TFMessage) -> None:
-        for each in message.transforms:
-            if each.child_frame_id == "base_footprint":
-                at, turned = each.transform.translation, each.transform.rotation
+        for transform in message.transforms:
+            if transform.child_frame_id == "base_footprint":
+                at, turned = transform.transform.translation, transform.transform.rotation
                 yaw = rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2]
                 self._move(np.array((at.x, at.y, yaw)))
                 pose = (self.pose[0], self.pose[1], 0.0, *quaternion_from_rpy((0.0, 0.0, float(self.pose[2]))))
-                stamp_ns = each.header.stamp.nanoseconds
+                stamp_ns = transform.header.stamp.nanoseconds
                 batch = TransformBatch(("odom",), ("base_footprint",), stamp_ns, np.array([pose]))
                 self._publisher.publish(TFMessage(batch=batch))
 

@@ -103,5 +103,5 @@ def pose_stamped(x: float, y: float, yaw: float = 0.0, frame: str = "map") -> An
 def path_message(poses: Any, frame: str = "map") -> Any:
     message = get_message("nav_msgs/msg/Path")()
     message.header.frame_id = frame
-    message.poses = [pose_stamped(*each, frame=frame) for each in poses]
+    message.poses = [pose_stamped(*pose, frame=frame) for pose in poses]
     return message

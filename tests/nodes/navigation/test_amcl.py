@@ -232,7 +232,7 @@ def test_poses_particles_and_transforms_are_those_of_nav2(begin: Begin) -> None:
     assert len(house.poses) == before + 1
     assert house.poses.last.header.frame_id == "map"
     assert 500 <= len(clouds.last.particles) <= 2000
-    assert sum(each.weight for each in clouds.last.particles) == pytest.approx(1.0)
+    assert sum(particle.weight for particle in clouds.last.particles) == pytest.approx(1.0)
     assert clouds.last.header.frame_id == "map"
     _, stamp_ns = house.buffer.lookup("map", "odom", 0)
     now_ns = house.amcl.node.get_clock().now().nanoseconds

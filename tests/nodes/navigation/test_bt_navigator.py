@@ -42,7 +42,7 @@ class Planner:
             return result
         goal = handle.request
         poses = [each.pose.position for each in (goal.goals if hasattr(goal, "goals") else [goal.goal])]
-        result.path = path_message(line(self.scene.pose[:2], *[(each.x, each.y) for each in poses]))
+        result.path = path_message(line(self.scene.pose[:2], *[(pose.x, pose.y) for pose in poses]))
         handle.succeed()
         return result
 
@@ -174,6 +174,8 @@ async def test_waypoints_are_followed_and_missed_ones_told(scene):
     scene.planner.failures = 2
     await goal.send(poses=[pose_stamped(1.0, 3.5), pose_stamped(2.0, 1.0)])
     assert await goal.ends(90.0) == GoalStatus.SUCCEEDED
-    missed = [getattr(each, "index", each) for each in goal.answer.result.missed_waypoints]  # Jazzy's are messages
+    missed = [
+        getattr(missed_waypoint, "index", missed_waypoint) for missed_waypoint in goal.answer.result.missed_waypoints
+    ]  # Jazzy's are messages
     assert missed == [0]
     assert scene.distance_to(2.0, 1.0) < 0.26

@@ -79,7 +79,7 @@ async def test_the_robot_stops_for_something_in_the_zone_and_goes_on_when_it_is_
     scene.seen = ()
     await scene.run(1.0)
     assert scene.velocity.x == pytest.approx(0.4)
-    assert [(each.action_type, each.polygon_name) for each in states[-2:]] == [(1, "stop"), (0, "")]
+    assert [(state.action_type, state.polygon_name) for state in states[-2:]] == [(1, "stop"), (0, "")]
     assert any(each.text == "Robot to stop due to stop" for each in log)
     assert node.lifecycle_state == ACTIVE
 
@@ -156,7 +156,7 @@ async def test_a_robot_slows_down_towards_a_wall_with_the_footprint_of_its_costm
     scene.wall = scene.pose[0] + 1.5
     await scene.run(8.0)
     assert 0.2 < scene.wall - scene.pose[0] < 0.45
-    speeds = [each.x for each in scene.speeds if each.x > 0]
+    speeds = [speed.x for speed in scene.speeds if speed.x > 0]
     assert speeds[0] == pytest.approx(0.4)
     assert 0 < speeds[-1] < 0.2
 
@@ -244,7 +244,7 @@ async def test_a_parameter_that_cannot_be_is_said_and_nothing_passes(scene, moni
     await scene.run(0.5)
     assert node.lifecycle_state == UNCONFIGURED
     errors = [each.text for each in log if each.level == LogLevel.ERROR]
-    assert any("NODE433" in each and name in each for each in errors)
+    assert any("NODE433" in error and name in error for error in errors)
     assert scene.speeds == []
 
 

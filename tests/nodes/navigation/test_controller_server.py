@@ -166,7 +166,7 @@ async def test_a_speed_limit_is_kept(start):
     publisher.publish(limit)
     await goal.send(path=path_message(PATH))
     await scene.run(3.0)
-    assert 0.05 < max(each.x for each in scene.speeds) <= 0.1 + 1e-9
+    assert 0.05 < max(speed.x for speed in scene.speeds) <= 0.1 + 1e-9
 
 
 async def test_an_empty_path_and_an_unknown_controller_are_refused(start, log):

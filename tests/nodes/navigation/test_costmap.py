@@ -94,7 +94,7 @@ async def test_transforms_are_heard_where_its_server_hears_them(graph, scene):
     """The launch files of nav2 make the topics of transforms relative, for robots in namespaces."""
     options = NodeOptions(remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])
     node = make_costmap(scene.node, graph, options, "global_costmap")
-    heard = {each.topic_name for each in node.subscriptions}
+    heard = {subscription.topic_name for subscription in node.subscriptions}
     assert {"/tf", "/tf_static"} <= heard
     node.leave()
     node.destroy_node()

@@ -39,9 +39,12 @@ def test_the_walls_of_our_house_are_mapped_within_5_cm_and_the_loop_is_closed(mo
         grid = grid_of(test.call("/slam_toolbox/dynamic_map", get_service("nav_msgs/srv/GetMap").Request()).map)
         here = test.robot_pose()
         true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
-        correction = [each for message in transforms for each in message.transforms if each.header.frame_id == "map"][
-            -1
-        ]
+        correction = [
+            transform
+            for message in transforms
+            for transform in message.transforms
+            if transform.header.frame_id == "map"
+        ][-1]
         mapper.close()
     # The loop: odometry ends a metre from where the robot is, and the map does not.
     at, turned = correction.transform.translation, correction.transform.rotation

@@ -106,7 +106,7 @@ def planar(transform: Any) -> np.ndarray:
 
 def map_to_odom(tf: Any) -> Any:
     """The last transform that the node published."""
-    found = [each for message in tf for each in message.transforms if each.header.frame_id == "map"]
+    found = [transform for message in tf for transform in message.transforms if transform.header.frame_id == "map"]
     assert found[-1].child_frame_id == "odom"
     return found[-1]
 

@@ -119,7 +119,7 @@ class SeekingRobot(SteppedSimulation):
 
     def said(self) -> list[str]:
         """What the robot has said."""
-        return [each.data for each in self.said_messages]
+        return [said_message.data for said_message in self.said_messages]
 
     def go_on_until_said(self, word: str, seconds: float = 60.0) -> bool:
         """Let time pass until the robot says something with a word in it."""

@@ -86,7 +86,7 @@ async def seen(test, recording, topic, message):
 
 
 def classes(message):
-    return sorted(each.results[0].hypothesis.class_id for each in message.detections)
+    return sorted(detection.results[0].hypothesis.class_id for detection in message.detections)
 
 
 @pytest.mark.parametrize("encoding", ["rgb8", "bgr8"])
@@ -97,7 +97,7 @@ async def test_detections_have_names_centres_sizes_and_the_header_of_the_picture
     message = await seen(test, recording, "/yolo/image_raw", image(encoding))
     assert (message.header.stamp.sec, message.header.frame_id) == (7, "camera")
     assert classes(message) == ["blue", "red"]
-    (blue,) = [each for each in message.detections if each.results[0].hypothesis.class_id == "blue"]
+    (blue,) = [detection for detection in message.detections if detection.results[0].hypothesis.class_id == "blue"]
     assert (blue.bbox.center.position.x, blue.bbox.center.position.y) == (115.0, 60.0)
     assert (blue.bbox.size_x, blue.bbox.size_y, blue.bbox.center.theta) == (30.0, 40.0, 0.0)
     assert blue.results[0].hypothesis.score == pytest.approx(1.0)
@@ -226,7 +226,7 @@ async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
     recording, picture = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
     await test.settle()
     message = await seen(test, recording, "/camera/rgb/image_raw", image())
-    (blue,) = [each for each in message.detections if each.class_name == "blue"]
+    (blue,) = [detection for detection in message.detections if detection.class_name == "blue"]
     assert (blue.class_id, blue.score) == (4, pytest.approx(1.0))
     assert (blue.bbox.center.position.x, blue.bbox.size.y) == (115.0, 40.0)
     await eventually(lambda: len(picture) == 1)
@@ -273,7 +273,7 @@ async def test_as_other_packages_name_things(test, start, kind, parameters, topi
 async def test_parameters_that_it_cannot_start_with(test, start, parameters, code):
     with pytest.raises(LinkwrightError) as caught:
         await start(**parameters)
-    assert [each.code for each in caught.value.diagnostics] == [code]
+    assert [diagnostic.code for diagnostic in caught.value.diagnostics] == [code]
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ def test_things_get_ids_and_keep_what_was_said_of_them():
         test.settle()
         for number in range(10):
             picture(test, number, (100 + number, "ball", 0.9), (300 - number, "crate", 0.8), (200, "ball", 0.15))
-        assert [[each.id for each in message.detections] for message in tracked] == [[]] + [["1", "2"]] * 9
+        assert [[detection.id for detection in message.detections] for message in tracked] == [[]] + [["1", "2"]] * 9
         last = tracked.last.detections[1]
         assert last.results[0].hypothesis.class_id == "crate"
         assert last.bbox.center.position.x == pytest.approx(291)
@@ -47,7 +47,7 @@ def test_parameters_are_those_of_bytetrack():
         array.detections = [detection(array.header, 0, 0, 9, 9, "ball", score) for score in (0.96, 0.9)]
         test.publish("/detections", array)
         test.settle()
-        assert [each.id for each in tracked.last.detections] == ["1"]
+        assert [detection.id for detection in tracked.last.detections] == ["1"]
 
 
 @pytest.mark.parametrize("given", [{"match_thresh": 1.5}, {"track_buffer": 0}, {"track_low_thresh": "low"}])
@@ -67,11 +67,11 @@ def test_as_yolo_ros_with_its_messages_and_parameters():
         array.detections = [yolo_detection(10, 20, 40, 60, "ball", 0.9), yolo_detection(80, 20, 90, 60, "cone", 0.8)]
         test.publish("/yolo/detections", array)
         test.settle()
-        assert [(each.id, each.class_name, each.class_id) for each in tracked.last.detections] == [
+        assert [(detection.id, detection.class_name, detection.class_id) for detection in tracked.last.detections] == [
             ("1", "ball", 4),
             ("2", "cone", 4),
         ]
         assert tracked.last.detections[0].bbox.size.y == 40
         assert tracked.last.header.frame_id == "camera"
-        assert [each.id for each in array.detections] == ["", ""], "what others hear, too, stays as it is"
+        assert [detection.id for detection in array.detections] == ["", ""], "what others hear, too, stays as it is"
         assert not any("no parameter" in record.text or "not read" in record.text for record in test.log)

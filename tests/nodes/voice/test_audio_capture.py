@@ -42,7 +42,7 @@ def start(test, kind=AudioCapture, namespace="/", **parameters):
 
 
 def samples(messages):
-    return np.concatenate([np.frombuffer(bytes(each), "<i2") for each in messages])
+    return np.concatenate([np.frombuffer(bytes(message), "<i2") for message in messages])
 
 
 async def test_a_file_in_the_time_of_the_clock(test, wav):

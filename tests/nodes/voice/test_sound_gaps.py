@@ -19,7 +19,7 @@ def stamped(arrivals):
 
 def missing(stamps):
     gaps = SoundGaps()
-    return [gaps.missing(each, BLOCK) for each in stamps]
+    return [gaps.missing(stamp, BLOCK) for stamp in stamps]
 
 
 def test_stamps_count_samples_while_blocks_come_early_and_late():

@@ -72,8 +72,8 @@ async def test_nobody_says_anything_and_it_stops(stage, talk):
 
 def travelled(robot):
     """Metres and radians that the velocities make, each for the 50 ms between them."""
-    return sum(each.linear.x for each in robot.velocities) * 0.05, sum(
-        each.angular.z for each in robot.velocities
+    return sum(velocity.linear.x for velocity in robot.velocities) * 0.05, sum(
+        velocity.angular.z for velocity in robot.velocities
     ) * 0.05
 
 
@@ -451,13 +451,13 @@ async def test_what_a_service_answers_is_said(stage, talk):
 
 
 def clients(stage):
-    return [each.name for each in stage.graph.endpoints() if each.kind is EndpointKind.CLIENT]
+    return [endpoint.name for endpoint in stage.graph.endpoints() if endpoint.kind is EndpointKind.CLIENT]
 
 
 async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, talk):
     robot = talk()
     await stage.graph.settle()
-    assert [each for each in clients(stage) if "/_action/" not in each] == []
+    assert [client for client in clients(stage) if "/_action/" not in client] == []
     assert await robot.type("what do you see") == "I cannot: nobody serves '/vision/describe/en'"
     kind = get_service("std_srvs/srv/Trigger")
     stage.node.create_service(kind, "/vision/describe/en", lambda request, response: kind.Response(True, "a red ball"))

@@ -45,7 +45,7 @@ def worlds(draw) -> str:
 
 
 def places(world) -> dict[str, tuple[float, ...]]:
-    return {each.name: each.pose for each in placed_links(world.world)}
+    return {placed_link.name: placed_link.pose for placed_link in placed_links(world.world)}
 
 
 def close(some, others, tolerance: float = 1e-6) -> bool:
@@ -81,7 +81,7 @@ def test_sizes_and_names_and_back_again_give_the_same_text(text, size, twice):
     names = ["a", "d"] if twice else ["a"]
     after = change(before, [Change(name, new_name=f"new {name}", size=size) for name in names])
     assert after.things["new a"].shape.size == size
-    masses = [each.links[0].inertial for each in before.world.models]
+    masses = [model.links[0].inertial for model in before.world.models]
     back = [Change(f"new {name}", new_name=name, size=before.things[name].shape.size) for name in names]
     again = change(after, back)
     assert again.things["a"].shape.size == old

@@ -14,7 +14,7 @@ TWO = PLAIN.replace(BOX, f"{BOX}    <!-- between -->\n{OTHER}")
 
 
 def links(world: WorldText) -> dict[str, tuple[float, ...]]:
-    return {each.name: each.pose for each in placed_links(world.world)}
+    return {placed_link.name: placed_link.pose for placed_link in placed_links(world.world)}
 
 
 def test_a_group_is_a_model_of_models_that_stand_where_they_stood():

@@ -27,7 +27,7 @@ SAVED = inside(
 
 
 def links(world):
-    return {each.name: each.pose for each in placed_links(world.world)}
+    return {placed_link.name: placed_link.pose for placed_link in placed_links(world.world)}
 
 
 def test_things_are_where_the_state_says():

@@ -112,7 +112,7 @@ def test_a_skin_stands_where_its_skeleton_begins(tmp_path: Path, matrix, begins)
 def test_a_plain_figure_stands_for_a_skin_that_is_not_there():
     skin = "<skin><filename>walk.dae</filename></skin>"
     simulation = simulated(GROUND, ACTOR.replace(LINK, skin).replace("0 0 0 0 0 0</pose></w", "0 1 0 0 0 0</pose></w"))
-    assert [each.code for each in simulation.scene.diagnostics] == ["SIM112"]
+    assert [diagnostic.code for diagnostic in simulation.scene.diagnostics] == ["SIM112"]
     (figure,) = simulation.scene.figures
     assert simulation.model.body(figure.links[0].name).geomnum == len(figure.model.links[0].visuals) > 1
 

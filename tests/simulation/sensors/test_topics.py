@@ -124,7 +124,7 @@ async def test_the_other_types_of_a_lasers_output(kind: str):
         if kind == "Range":
             assert (message.range, message.field_of_view) == (2.0, pytest.approx(pi))
         elif kind == "PointCloud":
-            assert [(each.x, each.y, each.z) for each in message.points] == [pytest.approx((2.0, 0.0, 0.0))]
+            assert [(point.x, point.y, point.z) for point in message.points] == [pytest.approx((2.0, 0.0, 0.0))]
         else:
             assert (message.point_step, message.width, message.height, message.is_dense) == (16, 1, 1, True)
             assert np.frombuffer(bytes(message.data), np.float32) == pytest.approx([2.0, 0.0, 0.0, 0.0], abs=1e-6)
@@ -157,10 +157,10 @@ async def test_other_lasers_of_ros_1_have_the_messages_that_they_had(library: st
         if library == "range":
             assert (message.range, message.radiation_type) == (2.0, message.ULTRASOUND)
         elif library == "block_laser":
-            assert [(each.x, each.y, each.z) for each in message.points] == [pytest.approx((2.0, 0.0, 0.0))]
+            assert [(point.x, point.y, point.z) for point in message.points] == [pytest.approx((2.0, 0.0, 0.0))]
         else:
             names = ["x", "y", "z", "intensity", "ring", "time"]
-            assert (message.width, message.point_step, [each.name for each in message.fields]) == (1, 22, names)
+            assert (message.width, message.point_step, [field.name for field in message.fields]) == (1, 22, names)
         assert not log
 
 
@@ -169,9 +169,9 @@ def rows_of(cloud) -> np.ndarray:
     kinds = {4: np.uint16, 7: np.float32}
     layout = np.dtype(
         {
-            "names": [each.name for each in cloud.fields],
-            "formats": [kinds[each.datatype] for each in cloud.fields],
-            "offsets": [each.offset for each in cloud.fields],
+            "names": [field.name for field in cloud.fields],
+            "formats": [kinds[field.datatype] for field in cloud.fields],
+            "offsets": [field.offset for field in cloud.fields],
             "itemsize": cloud.point_step,
         }
     )
@@ -215,7 +215,7 @@ async def test_a_lidar_of_gz_has_points_beside_its_scan():
         assert scan.header.frame_id == "robot/head/eye"
         assert list(scan.ranges) == [inf, 2.0, inf]
         assert (cloud.width, cloud.height, cloud.is_dense) == (3, 1, False)
-        assert [(each.name, each.offset) for each in cloud.fields][3:] == [("intensity", 16), ("ring", 24)]
+        assert [(field.name, field.offset) for field in cloud.fields][3:] == [("intensity", 16), ("ring", 24)]
         assert cloud.point_step == 32
         assert not log
 
@@ -275,9 +275,9 @@ async def test_contacts_of_gz_are_told_while_something_touches():
         assert (contact.collision1.name, contact.collision1.type) == ("crate::link::collision", 5)
         assert contact.collision2.name == "ground::link::collision"
         assert len(contact.wrenches) == len(contact.depths) == len(contact.positions) == len(contact.normals)
-        up = sum(each.body_1_wrench.force.z for each in contact.wrenches)
+        up = sum(wrench.body_1_wrench.force.z for wrench in contact.wrenches)
         assert up == pytest.approx(2.0 * 9.81, rel=0.02)
-        assert sum(each.body_2_wrench.force.z for each in contact.wrenches) == pytest.approx(-up)
+        assert sum(wrench.body_2_wrench.force.z for wrench in contact.wrenches) == pytest.approx(-up)
         assert not log
 
 
@@ -473,7 +473,7 @@ async def test_boxes_are_around_what_is_labelled():
     text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{EYE}"))
     async with served(*world, text) as (server, graph, _):
         boxes, image = await heard(server, graph, "/boxes", "/boxes_image")
-        found = {each.results[0].hypothesis.class_id: each.bbox for each in boxes.detections}
+        found = {detection.results[0].hypothesis.class_id: detection.bbox for detection in boxes.detections}
         assert sorted(found) == ["7", "9"]
         # 1.5 m away and 0.4 m wide, at a focal length of 32 pixels: 8.5 pixels, 10.7 from the middle of the picture.
         left, right = found["7"], found["9"]

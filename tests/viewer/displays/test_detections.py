@@ -27,8 +27,8 @@ def config(cls: str, extra: str = "") -> RvizConfig:
 
 def publish(w, topic: str, *messages) -> None:
     publisher = w.graph.create_node("talker").create_publisher(type(messages[0]), topic, 10)
-    for each in messages:
-        publisher.publish(each)
+    for message in messages:
+        publisher.publish(message)
 
 
 def box(x: float = 1.0):
@@ -158,7 +158,7 @@ async def test_an_image_is_shown_with_what_was_found_in_it(monkeypatch):
 
         async def now() -> list:
             await w.settle()
-            told = {each.fields["kind"]: each for each in contents(w.display("Detections"))}
+            told = {content.fields["kind"]: content for content in contents(w.display("Detections"))}
             picture, boxes = told.get("image_frame"), told.get("picture_boxes")
             return [picture and picture.stamp, boxes and boxes.stamp, boxes and boxes.fields["of_image"]]
 
@@ -171,7 +171,9 @@ async def test_an_image_is_shown_with_what_was_found_in_it(monkeypatch):
         assert await now() == [1.0, 1.0, False]
         detector.publish(found(2, result("ball", 0.5)))
         assert await now() == [2.0, 2.0, True]
-        (boxes,) = [each for each in contents(w.display("Detections")) if each.fields["kind"] == "picture_boxes"]
+        (boxes,) = [
+            content for content in contents(w.display("Detections")) if content.fields["kind"] == "picture_boxes"
+        ]
         assert boxes.fields["boxes"].tolist() == [10, 20, 4, 6, 0]
         assert (boxes.fields["names"], boxes.fields["scores"].tolist()) == (["ball"], [0.5])
         assert np.array_equal(boxes.fields["colors"], class_color("ball", {}))
@@ -183,7 +185,7 @@ async def test_images_are_shown_as_they_come_when_nothing_detects(monkeypatch):
         publish(w, "/found", found(1, result("ball", 0.5)))
         publish(w, "/topic", image(5))
         await w.settle()
-        assert [each.fields["kind"] for each in contents(w.display("Detections"))] == ["image_frame"]
+        assert [content.fields["kind"] for content in contents(w.display("Detections"))] == ["image_frame"]
 
 
 # --- the threshold -----------------------------------------------------------------------------------------------

@@ -73,7 +73,7 @@ async def test_no_more_pixels_are_sent_than_the_panel_has():
 
         async def sizes() -> list[tuple[int, int]]:
             await w.settle()
-            return [(each.fields["columns"], each.fields["rows"]) for each in contents(display)]
+            return [(content.fields["columns"], content.fields["rows"]) for content in contents(display)]
 
         publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))

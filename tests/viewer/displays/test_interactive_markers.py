@@ -51,7 +51,7 @@ class Server:
 
     def __init__(self, graph, *markers: InteractiveMarker) -> None:
         node = graph.create_node("handle_server")
-        self.markers = {each.name: each for each in markers}
+        self.markers = {marker.name: marker for marker in markers}
         self.sequence = 0
         self.feedback: list[Feedback] = []
         self._updates = node.create_publisher(Update, "/handles/update", 100)
@@ -75,7 +75,7 @@ class Server:
 def shown(world) -> dict[str, dict]:
     """By kind and name, what a page would be sent."""
     (display,) = world.viewer.displays
-    return {f"{each.fields['kind']} {each.fields['name']}": each.fields for each in contents(display)}
+    return {f"{content.fields['kind']} {content.fields['name']}": content.fields for content in contents(display)}
 
 
 def status(world) -> dict[str, tuple[str, str]]:
@@ -237,7 +237,7 @@ def test_a_menu_without_markers_is_a_text_that_faces_the_viewer():
 
 
 def test_controls_of_one_name_are_told_apart():
-    names = [each.name for each in read(marker("one", *(Control(name="a") for _ in range(3)))).controls]
+    names = [control.name for control in read(marker("one", *(Control(name="a") for _ in range(3)))).controls]
     assert names == ["a", "a_u0", "a_u1"]
 
 

@@ -181,10 +181,10 @@ async def test_namespaces_have_boxes_that_the_file_may_have_cleared():
         publisher.publish(marker(ns="seen"))
         publisher.publish(marker(ns="hidden"))
         await w.settle()
-        (row,) = [each for each in display.properties.rows() if each.name == "Namespaces"]
+        (row,) = [row for row in display.properties.rows() if row.name == "Namespaces"]
         assert {child.name: child.value for child in row.children} == {"seen": True, "hidden": False}
         display.set_property(("Namespaces",), False)
-        (row,) = [each for each in display.properties.rows() if each.name == "Namespaces"]
+        (row,) = [row for row in display.properties.rows() if row.name == "Namespaces"]
         assert {child.value for child in row.children} == {False}
 
 

@@ -56,7 +56,7 @@ async def test_cells_are_drawn_as_properties_ask():
         assert w.status("OccupancyGrid")["Transform"] == ("ok", "Transform OK")
 
         def cells() -> int:
-            return sum(len(each["points"]) // 3 for each in shown_markers(display).values())
+            return sum(len(shown_marker["points"]) // 3 for shown_marker in shown_markers(display).values())
 
         display.set_property(("Voxel Rendering",), "All Voxels")
         assert cells() == 3

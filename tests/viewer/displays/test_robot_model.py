@@ -220,7 +220,9 @@ async def test_a_new_description_replaces_the_robot_and_its_frames():
         scene = await client.until("robot_scene", revision=2)
         assert [link["name"] for link in scene["links"]] == ["base", "tip", "point"]
         await client.drain()  # the table of frames may come before or after
-        tables = [each for each in client.messages if isinstance(each, dict) and each["type"] == "frame_table"]
+        tables = [
+            message for message in client.messages if isinstance(message, dict) and message["type"] == "frame_table"
+        ]
         assert sorted(tables[-1]["names"]) == ["base", "tip"]
 
 

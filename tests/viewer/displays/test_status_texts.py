@@ -38,7 +38,7 @@ def _statuses(folder: Path) -> list[tuple[str, ast.expr]]:
 
 
 def test_every_status_is_a_phrase_and_so_in_the_catalogues():
-    statuses = [each for room in ("displays", "frames", "visualization") for each in _statuses(VIEWER / room)]
+    statuses = [status for room in ("displays", "frames", "visualization") for status in _statuses(VIEWER / room)]
     assert len(statuses) > 100
     assert [place for place, text in statuses if _is_plain(text)] == []
 

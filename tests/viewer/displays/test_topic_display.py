@@ -53,7 +53,7 @@ def point_at(stamp_ns: int, frame: str) -> PointStamped:
 
 def points(world) -> list[list[float]]:
     """Of the frames that a page would be sent, in the fixed frame, oldest first."""
-    shown = sorted(contents(world.display("PointStamped")), key=lambda each: each.key)
+    shown = sorted(contents(world.display("PointStamped")), key=lambda content: content.key)
     assert all(each.fields["kind"] == "point_marks" for each in shown)
     return [(each.fields["positions"] @ rotation_matrix(each.pose[3:]).T + each.pose[:3]).tolist() for each in shown]
 
@@ -299,7 +299,7 @@ async def test_many_displays_that_wait_describe_no_endpoints_but_publishers(monk
     many = "".join(entry.replace("/clicked_point", f"/point{i}") for i in range(40))
     async with world(RvizConfig.parse(FILE.replace(entry, many))) as w:
         other = w.graph.create_node("other").create_publisher(PointStamped, "/point7x", 10)
-        shown = [each for each in w.viewer.displays if each.CLASS.endswith("PointStamped")]
+        shown = [display for display in w.viewer.displays if display.CLASS.endswith("PointStamped")]
         assert len(shown) == 40
         await eventually(lambda: "/point7x" in shown[7].status[0].text)
         assert described.count(EndpointKind.SUBSCRIPTION) == 0

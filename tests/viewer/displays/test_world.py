@@ -70,7 +70,7 @@ class Simulation:
 
 
 def sent(made, kind: str):
-    return next((each for each in contents(made.display("World")) if each.fields["kind"] == kind), None)
+    return next((content for content in contents(made.display("World")) if content.fields["kind"] == kind), None)
 
 
 def links_of(made) -> int:

@@ -90,7 +90,9 @@ class Compared:
             from linkwright.viewer.protocol.binary import unpack_transforms
 
             frames = self.made.viewer.manager.opening()[2]
-            poses = unpack_transforms(next(each for each in frames if isinstance(each, bytes)))[1][names.index(frame)]
+            poses = unpack_transforms(next(frame for frame in frames if isinstance(frame, bytes)))[1][
+                names.index(frame)
+            ]
         return poses
 
 
@@ -111,7 +113,7 @@ def marks(message: dict, side: str) -> dict[str, str]:
 async def test_a_page_is_told_of_all_differences_and_of_the_links_that_show_them(tmp_path):
     async with compared(tmp_path) as (both, client):
         told = await client.until("compared_descriptions")
-        displays = [each.id for each in both.made.viewer.displays if each.CLASS.endswith("RobotModel")]
+        displays = [display.id for display in both.made.viewer.displays if display.CLASS.endswith("RobotModel")]
         assert [told["new"]["display"], told["old"]["display"]] == displays
         assert told["new"]["label"].endswith("new.urdf")
         assert marks(told, "old") == {"camera": "removed"}

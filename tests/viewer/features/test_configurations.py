@@ -211,7 +211,7 @@ Window Geometry:
 async def test_a_file_of_rviz_1_is_shown_and_stays_one():
     async with opened(ROS_1) as (made, client):
         displays = client.first["tree"]["displays"]
-        assert [each["cls"] for each in displays][:5] == [
+        assert [display["cls"] for display in displays][:5] == [
             "rviz_default_plugins/Grid",
             "rviz_common/Group",
             "rviz_default_plugins/PointStamped",

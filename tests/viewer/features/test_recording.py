@@ -36,7 +36,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def made_in(folder: Path) -> set[str]:
     """The names of what is in a folder."""
-    return {each.name for each in folder.iterdir()}
+    return {path.name for path in folder.iterdir()}
 
 
 def mcap(recording: str) -> Path:
@@ -88,7 +88,7 @@ async def test_what_all_topics_carry_is_recorded_and_the_file_opens_again(folder
         assert Path(state["path"]).parent == folder
         assert Path(file["path"]) == Path(state["path"])
         with BagReader(file["path"]) as bag:
-            assert {"/tf", "/tf_static"} <= {each.name for each in bag.topics}
+            assert {"/tf", "/tf_static"} <= {topic.name for topic in bag.topics}
             assert len(list(bag.messages([TF]))) == 5
 
 
@@ -103,7 +103,7 @@ async def test_only_chosen_topics_are_recorded():
         await client.send("stop_recording")
         (file,) = (await ended(client))["files"]
         with BagReader(file["path"]) as bag:
-            assert [each.name for each in bag.topics] == [TF]
+            assert [topic.name for topic in bag.topics] == [TF]
 
 
 @skipping

@@ -80,7 +80,7 @@ async def test_pages_hear_of_no_simulation_where_there_is_none():
 
 async def test_what_serves_a_simulation_is_made_when_its_topic_comes_or_a_page_asks():
     def kinds(viewer) -> set[str]:
-        return {type(each).__name__ for each in viewer._features}
+        return {type(feature).__name__ for feature in viewer._features}
 
     async with world() as made, page(made.viewer) as client:
         assert not (await client.opened())["modelling_state"]["available"]

@@ -36,7 +36,11 @@ def config() -> RvizConfig:
 
 
 def x_of(client, transforms, name: str) -> float:
-    table = next(each for each in reversed(client.messages) if isinstance(each, dict) and each["type"] == "frame_table")
+    table = next(
+        message
+        for message in reversed(client.messages)
+        if isinstance(message, dict) and message["type"] == "frame_table"
+    )
     return float(transforms.poses[table["names"].index(name), 0])
 
 
@@ -172,7 +176,7 @@ async def test_exact_synchronization_shows_frames_at_the_time_of_messages():
         made.move_arm(x=2.0)  # the newest, yet the frame is shown where it was half way
         points.publish(point(0.0, (stamps[0] + stamps[1]) / 2))
         await client.drain()
-        frames = [each for each in client.messages if not isinstance(each, dict) and hasattr(each, "poses")]
+        frames = [message for message in client.messages if not isinstance(message, dict) and hasattr(message, "poses")]
         shown = x_of(client, frames[-1], "tip")
         assert 0.3 < shown < 0.7
 

@@ -88,7 +88,7 @@ async def test_a_page_sets_speed_and_whether_it_begins_anew(tmp_path):
         await client.send("set_playback", speed=-5, loop=False)
         await client.send("set_playback", speed=2, loop=True)
         await client.until("playhead", speed=2, loop=True)
-        assert not any(isinstance(each, dict) and each.get("speed") == -5 for each in client.messages)
+        assert not any(isinstance(message, dict) and message.get("speed") == -5 for message in client.messages)
 
 
 @skipping
@@ -100,7 +100,11 @@ async def test_a_simulation_that_was_recorded_has_no_bar(tmp_path):
             assert (await client.until("simulation_status"))["present"] is False
             state.publish(state.msg_type(state=1))
             await client.until("playhead", playing=False, position=START + 10)
-            told = [each for each in client.messages if isinstance(each, dict) and each["type"] == "simulation_status"]
+            told = [
+                message
+                for message in client.messages
+                if isinstance(message, dict) and message["type"] == "simulation_status"
+            ]
             assert not any(each["present"] for each in told)
 
 

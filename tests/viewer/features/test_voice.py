@@ -154,7 +154,7 @@ async def test_of_two_pages_the_one_talks_that_holds_the_button():
         await first.until("voice_state", talking="you")
         await first.socket.send_bytes(frame(BLOCK[:9]))
         await eventually(lambda: len(ears.blocks) == 2)
-        assert [len(each) for each in ears.blocks] == [7, 9]
+        assert [len(block) for block in ears.blocks] == [7, 9]
         assert ears.held == [True, False]
 
 

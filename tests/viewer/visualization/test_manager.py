@@ -17,13 +17,13 @@ String = get_message("std_msgs/msg/String")
 async def test_groups_are_rows_that_hold_rows():
     async with opened() as (_, client):
         displays = client.first["tree"]["displays"]
-        assert [(each["name"], each["group"]) for each in displays] == [
+        assert [(display["name"], display["group"]) for display in displays] == [
             ("Grid", None),
             ("Marks", None),
             ("Clicks", "display-2"),
             ("Radar", None),
         ]
-        assert [each["supported"] for each in displays] == [True, True, True, False]
+        assert [display["supported"] for display in displays] == [True, True, True, False]
 
 
 async def test_a_group_that_is_switched_off_switches_off_what_it_holds():
@@ -120,7 +120,7 @@ async def test_a_robot_is_added_by_the_topic_of_its_description():
         publisher.publish(String(data='<robot name="other"><link name="base"/></robot>'))
         await client.send("ask_display_choices")
         topics = (await client.until("display_choices"))["topics"]
-        offered = next(each for each in topics if each["topic"] == "/other/robot_description")
+        offered = next(topic for topic in topics if topic["topic"] == "/other/robot_description")
         cls = "rviz_default_plugins/RobotModel"
         assert cls in offered["classes"]
         await edit(client, "add_display", cls=cls, name="Other", group=None, topic="/other/robot_description")
@@ -309,8 +309,10 @@ async def test_a_drag_is_taken_back_in_one_step_and_the_key_goes_again():
 
 
 async def rows_of(client, made, identity: str) -> list[dict]:
-    messages = [each for each in client.messages if isinstance(each, dict) and each["type"] == "display_properties"]
-    return next(each["properties"] for each in reversed(messages) if each["display"] == identity)
+    messages = [
+        message for message in client.messages if isinstance(message, dict) and message["type"] == "display_properties"
+    ]
+    return next(message["properties"] for message in reversed(messages) if message["display"] == identity)
 
 
 async def test_the_box_over_all_links_is_taken_back_with_what_it_did():

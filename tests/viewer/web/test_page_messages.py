@@ -27,7 +27,9 @@ WORDS += ["tip", "rviz_default_plugins/Grid", "rviz_default_plugins/Orbit", "rvi
 ROWS = ("Enabled", "Topic", "Topic/Depth", "Alpha", "Decay Time")
 IDS = ["global/Fixed Frame", "tool-6", "tool-6/Topic", *(f"display-{number}" for number in range(1, 14))]
 IDS += [f"{display}/{row}" for display in IDS[3:] for row in ROWS]
-MESSAGES = [each for each in PageMessage.__subclasses__() if each is not Received]  # which pages must not lie about
+MESSAGES = [
+    subclass for subclass in PageMessage.__subclasses__() if subclass is not Received
+]  # which pages must not lie about
 MESSAGES += [SetProperty] * 30
 
 

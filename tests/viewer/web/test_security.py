@@ -387,7 +387,7 @@ async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_
             await reader.readexactly(100)
         await is_served(client)
         assert len(server._page_contents) == 1
-        waiting = [each._transport.get_write_buffer_size() for each in server._admission._strangers.values()]
+        waiting = [stranger._transport.get_write_buffer_size() for stranger in server._admission._strangers.values()]
         assert len(waiting) > MAXIMUM_CONNECTIONS - 5
         assert max(waiting) < 256 << 10
         status, body, _ = await raw(served.viewer, "/assets/index-abc.js", token=False)
@@ -562,5 +562,5 @@ async def test_pages_write_nothing_but_configurations(served, tmp_path, name):
         await client.send("save_configuration", path=f"{tmp_path}/{name}", replace=True)
         assert (await client.until("configuration_refused"))["question"] is None
     assert (tmp_path / "notes.txt").read_text() == (tmp_path / ".bashrc").read_text() == "mine"
-    assert sorted(each.name for each in tmp_path.iterdir() if each.is_file()) == [
+    assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == [
         ".bashrc", "link.rviz", "notes.txt", "secret.png"]  # fmt: skip

@@ -103,11 +103,11 @@ async def answer_pings(client: Client) -> None:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    return {each.name: each.read_bytes() for each in folder.iterdir()}
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
 def left(scratch: Path) -> list[str]:
-    return [each.name for each in scratch.iterdir()]
+    return [path.name for path in scratch.iterdir()]
 
 
 @skipping
@@ -129,7 +129,7 @@ async def test_a_folder_is_shown_with_its_own_timeline_and_the_viewer_shows_what
 @skipping
 async def test_a_single_file_is_shown_under_its_name(tmp_path: Path):
     files = contents(recorded(tmp_path))
-    name = next(each for each in files if each.endswith(".mcap"))
+    name = next(file for file in files if file.endswith(".mcap"))
     async with host() as (_, sender):
         _, answer = await sender.send("anything", {name: files[name]})
         async with seen(sender, answer["recording"]) as client:
@@ -221,7 +221,7 @@ async def test_what_the_program_recorded_is_shown_and_stays(tmp_path: Path):
 @skipping
 async def test_a_recording_that_is_cut_off_is_shown_and_the_page_says_so(tmp_path: Path):
     files = contents(recorded(tmp_path))
-    name = next(each for each in files if each.endswith(".mcap"))
+    name = next(file for file in files if file.endswith(".mcap"))
     async with host() as (_, sender):
         status, answer = await sender.send("x", {name: files[name][:-100]})
         assert status == 200, answer

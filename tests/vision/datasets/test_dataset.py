@@ -227,7 +227,7 @@ def test_things_of_one_world_are_in_the_others(source, tmp_path):
     studio = Studio(replace(source, worlds=(*source.worlds, str(path))))
     try:
         assert studio.classes == ("ball", "crate", "drums")
-        labels = {each.label for index in range(1, 30, 2) for each in studio.take(index).labels}
+        labels = {label.label for index in range(1, 30, 2) for label in studio.take(index).labels}
         assert labels == {0, 1, 2}
     finally:
         studio.close()

@@ -65,7 +65,7 @@ def test_whole_boxes_of_balls_are_those_of_their_outlines(stage):
     compared = 0
     for shot in shots(stage, 12):
         labels, _ = labelled(stage, shot)
-        seen = {each.whole: each for each in labels}
+        seen = {label.whole: label for label in labels}
         axes = axes_of(shot.pose)
         for prop in (each for each in shot.shown if each.label == 0):
             center = (stage.simulation.data.geom_xpos[prop.geoms[0]] - np.array(shot.pose[:3])) @ axes
@@ -83,7 +83,7 @@ def test_whole_boxes_of_balls_are_those_of_their_outlines(stage):
             if not ((expected > -100) & (expected < 340)).all():
                 continue
             near = [box for box in seen if np.abs(np.array(box) - expected).max() <= 2.0]
-            hidden = not any(each.label == 0 for each in labels)
+            hidden = not any(label.label == 0 for label in labels)
             assert near or hidden or is_covered(stage, shot, prop)
             compared += bool(near)
     assert compared >= 5
@@ -108,9 +108,9 @@ def test_labels_are_those_of_another_renderer(stage):
         labels, _ = labelled(stage, shot)
         geoms = other.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
         boxes = [box_of(np.isin(geoms, prop.geoms)) for prop in shot.shown]
-        for each in labels:
-            if min(each.box[2] - each.box[0], each.box[3] - each.box[1]) >= 4:
-                assert min(np.abs(np.array(box) - each.box).max() for box in boxes if box is not None) <= 1
+        for label in labels:
+            if min(label.box[2] - label.box[0], label.box[3] - label.box[1]) >= 4:
+                assert min(np.abs(np.array(box) - label.box).max() for box in boxes if box is not None) <= 1
                 compared += 1
     assert compared >= 10
 
@@ -118,17 +118,17 @@ def test_labels_are_those_of_another_renderer(stage):
 def test_visible_and_whole_fit_together(stage):
     for shot in shots(stage, 8):
         labels, geoms = labelled(stage, shot)
-        for each in labels:
-            left, top, right, bottom = each.box
-            assert mask_of(each.counts, *geoms.shape).sum() == each.area
-            assert box_of(mask_of(each.counts, *geoms.shape)) == each.box
-            assert each.whole[0] <= left
-            assert each.whole[1] <= top
-            assert each.whole[2] >= right
-            assert each.whole[3] >= bottom
-            assert 0.0 < each.visibility <= 1.0
-            inside = each.whole[0] >= 0 and each.whole[1] >= 0 and each.whole[2] <= 320 and each.whole[3] <= 240
-            assert each.truncated != inside
+        for label in labels:
+            left, top, right, bottom = label.box
+            assert mask_of(label.counts, *geoms.shape).sum() == label.area
+            assert box_of(mask_of(label.counts, *geoms.shape)) == label.box
+            assert label.whole[0] <= left
+            assert label.whole[1] <= top
+            assert label.whole[2] >= right
+            assert label.whole[3] >= bottom
+            assert 0.0 < label.visibility <= 1.0
+            inside = label.whole[0] >= 0 and label.whole[1] >= 0 and label.whole[2] <= 320 and label.whole[3] <= 240
+            assert label.truncated != inside
 
 
 def test_what_nothing_hides_is_visible(stage):
@@ -141,7 +141,7 @@ def test_what_nothing_hides_is_visible(stage):
                 if other is not prop:
                     stage.hide(other.geoms)
             labels, _ = labelled(stage, alone(shot, prop))
-            assert all(each.visibility > 0.97 or each.truncated for each in labels)
+            assert all(label.visibility > 0.97 or label.truncated for label in labels)
             break
 
 

@@ -198,7 +198,7 @@ def test_a_device_that_is_not_there_is_told_of(tmp_path):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     if "CUDAExecutionProvider" in onnxruntime.get_available_providers():
         pytest.skip("there is a GPU")
-    assert [str(each) for each in opened(path, device="cuda:0").notes] == [
+    assert [str(note) for note in opened(path, device="cuda:0").notes] == [
         "onnxruntime has no 'cuda:0' here; the network runs on the CPU"
     ]
 
@@ -208,7 +208,7 @@ def test_a_gpu_whose_libraries_are_missing_leaves_the_processor_and_a_note(tmp_p
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     monkeypatch.setattr(sessions, "has_cuda", lambda: True)
     monkeypatch.setattr(sessions, "load_session", lambda file, gpu: load_session(file))
-    assert [str(each) for each in opened(path, device="cuda:0").notes] == [
+    assert [str(note) for note in opened(path, device="cuda:0").notes] == [
         "CUDA does not work here with 'cuda:0'; the network runs on the CPU"
     ]
 

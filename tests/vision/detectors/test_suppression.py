@@ -32,8 +32,8 @@ box = st.tuples(st.tuples(corner, corner, corner, corner), st.integers(1, 8), st
 
 @given(st.lists(box, max_size=25), st.sampled_from([0.0, 0.25, 0.5, 1.0]), st.integers(1, 30))
 def test_the_same_boxes_stay_inside_out_ones_too(rows, iou, most):
-    boxes = np.array([each[0] for each in rows], np.float32).reshape(-1, 4)
-    scores = np.array([each[1] / 8 for each in rows], np.float32)
-    classes = np.array([each[2] for each in rows], np.int32)
+    boxes = np.array([row[0] for row in rows], np.float32).reshape(-1, 4)
+    scores = np.array([row[1] / 8 for row in rows], np.float32)
+    classes = np.array([row[2] for row in rows], np.int32)
     expected = slowly(boxes.tolist(), scores.tolist(), classes.tolist(), iou, most)
     assert suppressed(boxes, scores, classes, iou, most).tolist() == expected

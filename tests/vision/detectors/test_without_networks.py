@@ -111,11 +111,11 @@ def test_pictures_in_which_a_code_is_only_half_there_are_no_error():
     look = detector("qr")
     for _ in range(40):
         picture = numbers.integers(0, 255, (240, 320), dtype=np.uint8)
-        top, left = (int(each) for each in numbers.integers(0, 120, 2))
+        top, left = (int(integer) for integer in numbers.integers(0, 120, 2))
         part = code[: 240 - top, : 320 - left]
         picture[top : top + part.shape[0], left : left + part.shape[1]] = part
         for _ in range(int(numbers.integers(0, 4))):
-            y, x = (int(each) for each in numbers.integers(0, 200, 2))
+            y, x = (int(integer) for integer in numbers.integers(0, 200, 2))
             picture[y : y + 30, x : x + 30] = 255
         found = look.detect(np.repeat(picture[..., np.newaxis], 3, axis=2), LIMITS)
         assert set(names(found)) <= {"kitchen"}

@@ -65,7 +65,7 @@ def look(playground, eye, model):
     return picture.colour, np.array([[columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]], np.float32)
 
 
-@pytest.mark.parametrize(("eye", "model", "name"), LOOKS, ids=[each[1] for each in LOOKS])
+@pytest.mark.parametrize(("eye", "model", "name"), LOOKS, ids=[look[1] for look in LOOKS])
 def test_it_finds_what_stands_before_it(playground, things, eye, model, name):
     picture, box = look(playground, eye, model)
     found = things.detect(picture, Limits())

@@ -26,7 +26,7 @@ SAMPLES = {
 @pytest.mark.parametrize("name", COLOURS)
 def test_colours_have_the_names_that_people_give_them(name):
     pixels = np.array(SAMPLES[name], np.uint8)
-    assert [COLOURS[each] for each in named_colours(pixels)] == [name] * len(pixels)
+    assert [COLOURS[named_colour] for named_colour in named_colours(pixels)] == [name] * len(pixels)
 
 
 def disc(colour, ground=(180, 180, 180), shade=1.0):

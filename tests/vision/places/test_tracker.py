@@ -17,8 +17,8 @@ def found(*things):
     if not things:
         return Detections.none(NAMES)
     boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in things]
-    scores = [each[3] if len(each) > 3 else 0.9 for each in things]
-    classes = [each[4] if len(each) > 4 else 0 for each in things]
+    scores = [thing[3] if len(thing) > 3 else 0.9 for thing in things]
+    classes = [thing[4] if len(thing) > 4 else 0 for thing in things]
     return Detections(np.array(boxes, np.float32), np.array(scores, np.float32), np.array(classes, np.int32), NAMES)
 
 

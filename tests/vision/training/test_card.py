@@ -54,7 +54,7 @@ def sum_of(world):
 def write_card(folder, *worlds, more=()):
     """What `linkwright dataset` writes down of pictures that were made in one run, or in more."""
     folder.mkdir(exist_ok=True)
-    listed = [{"name": f"rooms/{each}.world", "file": f"{each}.world", "sha256": sum_of(each)} for each in worlds]
+    listed = [{"name": f"rooms/{world}.world", "file": f"{world}.world", "sha256": sum_of(world)} for world in worlds]
     runs = [{"seed": 3, "most": 10}, *more]
     made = [{"worlds": listed, "added": ["mbot.urdf"], "options": options} for options in runs]
     (folder / "dataset.json").write_text(json.dumps({"made": made}))

@@ -53,14 +53,17 @@ def course_of(given: Options) -> Course:
 
 
 def weights(course: Course) -> np.ndarray:
-    return np.concatenate([each.detach().numpy().ravel() for each in course.network.parameters()])
+    return np.concatenate([parameter.detach().numpy().ravel() for parameter in course.network.parameters()])
 
 
 def test_a_network_overfits_eight_pictures(shapes, tmp_path):
     course = course_of(options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
     epochs = []
     course.run(epochs.append)
-    first, last = np.mean([each.losses for each in epochs[:5]], 0), np.mean([each.losses for each in epochs[-5:]], 0)
+    first, last = (
+        np.mean([epoch.losses for epoch in epochs[:5]], 0),
+        np.mean([epoch.losses for epoch in epochs[-5:]], 0),
+    )
     assert (last < first / 2).all()
     assert course.best_map > 0.5
     assert course.judge().map50 >= 0.9
@@ -79,7 +82,7 @@ def test_with_16_bits_it_learns_the_same_but_for_rounding(shapes, tmp_path):
     for precision in ("float32", "bfloat16"):
         course, told = course_of(options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)), []
         course.run(told.append)
-        assert all(each.dtype == torch.float32 for each in course.network.parameters())
+        assert all(parameter.dtype == torch.float32 for parameter in course.network.parameters())
         losses.append([each.losses for each in told])
     exact, rounded = np.array(losses)
     assert (exact != rounded).any()
@@ -124,8 +127,8 @@ def test_the_exported_network_says_what_the_network_says():
     torch.manual_seed(2)
     network = Network(Shape(3, 4)).eval()
     with torch.no_grad():  # the file's weights have 16 bits; with such ones here, too, only the export is compared
-        for each in network.parameters():
-            each.copy_(each.half().float())
+        for parameter in network.parameters():
+            parameter.copy_(parameter.half().float())
     picture = torch.rand(1, 3, 96, 64)
     with torch.no_grad():
         boxes, logits = network(picture)
@@ -147,8 +150,8 @@ def exported(tmp_path):
     network = Network(Shape(3, 4))
     with torch.no_grad():
         network(torch.rand(8, 3, 64, 64))
-        for each in network.parameters():
-            each.add_(0.1 * torch.randn_like(each)).copy_(each.half().float())
+        for parameter in network.parameters():
+            parameter.add_(0.1 * torch.randn_like(parameter)).copy_(parameter.half().float())
     file = tmp_path / "shapes.onnx"
     file.write_bytes(to_onnx(network.eval(), ("disc", "square", "bar"), 64, 64, {}))
     return network, file

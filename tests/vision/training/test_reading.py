@@ -29,7 +29,7 @@ def test_a_dataset_is_read(shapes):
     dataset = open_dataset(shapes)
     assert dataset.names == NAMES
     pictures = dataset.read("train")
-    assert [each.path.name for each in pictures] == ["000.png", "001.png", "002.png"]
+    assert [picture.path.name for picture in pictures] == ["000.png", "001.png", "002.png"]
     assert pictures[0].classes.tolist() == [0, 1]
     assert not pictures[0].ignored.any()
     assert (pictures[0].boxes >= 0).all()

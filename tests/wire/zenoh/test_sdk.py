@@ -94,7 +94,7 @@ def test_a_thousand_calls_of_several_clients_of_ours_are_answered_each_with_its_
     us = processes("ours")
     clients = [us.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENTS)]
     them = peer()
-    us.spin_until(lambda: all(each.service_is_ready() for each in clients))
+    us.spin_until(lambda: all(client.service_is_ready() for client in clients))
     answers = [[] for _ in clients]
     waiting = [None for _ in clients]
 
@@ -105,7 +105,7 @@ def test_a_thousand_calls_of_several_clients_of_ours_are_answered_each_with_its_
                 waiting[which] = None
             if waiting[which] is None and len(answers[which]) < CALLS // CLIENTS:
                 waiting[which] = client.call_async(SetBool.Request(data=len(answers[which]) % 2 == 1))
-        return all(len(each) == CALLS // CLIENTS for each in answers)
+        return all(len(answer) == CALLS // CLIENTS for answer in answers)
 
     us.spin_until(all_answered, 300)
     assert answers == [[number % 2 == 0 for number in range(CALLS // CLIENTS)]] * CLIENTS

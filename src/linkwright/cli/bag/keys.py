@@ -34,7 +34,7 @@ def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
     def read() -> None:
         text = os.read(descriptor, 64).decode(errors="replace")
         while text:  # those that are typed quickly come together
-            key = next((each for each in actions if text.startswith(each)), "")
+            key = next((action for action in actions if text.startswith(action)), "")
             if key:
                 actions[key]()
             text = text[len(key) or 1 :]

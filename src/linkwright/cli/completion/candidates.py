@@ -35,7 +35,7 @@ def complete(words: Sequence[str]) -> list[str]:
     *before, current = given or [""]
     current = current.lstrip("'\"")  # of a quote that is still open
     found = _candidates(Path(program).name, before, current, json.loads(TABLE.read_text(encoding="utf-8")))
-    return [each for each in dict.fromkeys(found) if each.startswith((current, ":"))]
+    return [fromkey for fromkey in dict.fromkeys(found) if fromkey.startswith((current, ":"))]
 
 
 def _candidates(program: str, before: list[str], current: str, table: dict[str, Any]) -> Iterable[str]:

@@ -53,7 +53,7 @@ def _executables(asked: Asked) -> Iterable[str]:
             programs = source_programs(share)
             found |= {*programs.entry_points, *programs.scripts}
         folder = install_prefix(share) / "lib" / package
-        found |= {each.name for each in folder.glob("*") if each.is_file() and each.suffix not in (".so", ".dylib")}
+        found |= {path.name for path in folder.glob("*") if path.is_file() and path.suffix not in (".so", ".dylib")}
     return sorted(found)
 
 
@@ -66,7 +66,7 @@ def _launch_files(asked: Asked) -> Iterable[str]:
     if named.is_file():
         return _arguments_in(named, _DECLARED)
     share = PackageFinder().find(asked[1][0])
-    return [] if share is None else sorted(each.name for each in launch_files_below(share))
+    return [] if share is None else sorted(path.name for path in launch_files_below(share))
 
 
 def _launch_arguments(asked: Asked) -> Iterable[str]:
@@ -74,7 +74,7 @@ def _launch_arguments(asked: Asked) -> Iterable[str]:
     if Path(package).is_file():
         return _arguments_in(Path(package), _DECLARED)
     share = PackageFinder().find(package)
-    found = next((each for each in launch_files_below(share) if each.name == file), None) if share else None
+    found = next((path for path in launch_files_below(share) if path.name == file), None) if share else None
     return [] if found is None else _arguments_in(found, _DECLARED)
 
 

@@ -49,7 +49,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
             raise fault(phrase("a filter cannot use '{attr}'", attr=node.attr), node.col_offset)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in (*_NAMES, "m"):
             bound = {
-                each.id for each in ast.walk(tree) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
+                node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
             }
             if node.id not in bound:
                 raise fault(

@@ -87,12 +87,12 @@ def run_info(arguments: argparse.Namespace) -> int:
         print(f"Type: {types[0] if len(types) == 1 else types}", end=end)
         print(f"Publisher count: {node.count_publishers(name)}", end=end)
         if arguments.verbose:
-            for each in node.get_publishers_info_by_topic(name):
-                print(endpoint_text(each), end=end)
+            for endpoint in node.get_publishers_info_by_topic(name):
+                print(endpoint_text(endpoint), end=end)
         print(f"Subscription count: {node.count_subscribers(name)}", end=end)
         if arguments.verbose:
-            for each in node.get_subscriptions_info_by_topic(name):
-                print(endpoint_text(each), end=end)
+            for endpoint in node.get_subscriptions_info_by_topic(name):
+                print(endpoint_text(endpoint), end=end)
         return 0
 
     return run_in_graph(arguments, job, only_looks=True)

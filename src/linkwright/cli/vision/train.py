@@ -103,9 +103,9 @@ def run(arguments: argparse.Namespace) -> int:
         command=shlex.join(["linkwright", *(word for word in sys.argv[1:] if word != "--resume")]),
     )
     taught = teach(options, lambda epoch: _tell(epoch, options.epochs))
-    for each in taught.examinations:
-        print(f"{each.title}: mAP50 {each.figures.map50:.3f}, mAP50-95 {each.figures.map:.3f}")
-        print("\n".join(table(each.figures)))
+    for examination in taught.examinations:
+        print(f"{examination.title}: mAP50 {examination.figures.map50:.3f}, mAP50-95 {examination.figures.map:.3f}")
+        print("\n".join(table(examination.figures)))
     print(taught.network)
     print(taught.card)
     return INTERRUPTED if taught.interrupted else FINE

@@ -97,9 +97,9 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         sizes = ("wheel_separation_x", "wheel_separation_y", "wheel_radius")
         wrong = [not_empty(name, getattr(said, name)) for name in names]
         wrong += [above(0.0)(name, getattr(said, name)) for name in sizes]
-        for each in wrong:
-            if each is not None:
-                raise ControllerError(each)
+        for phrase in wrong:
+            if phrase is not None:
+                raise ControllerError(phrase)
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the wheels, and publish the odometry."""

@@ -69,7 +69,7 @@ class JointStateBroadcaster(Controller[Parameters]):
             self._of.setdefault(state.component, {})[state.kind] = state
             if state.kind in fields and (known is None or state.component in known):
                 joints.setdefault(state.component, [None, None, None])[fields[state.kind]] = state
-        self._extra = [each for each in self.parameters.extra_joints if each not in joints]
+        self._extra = [extra_joint for extra_joint in self.parameters.extra_joints if extra_joint not in joints]
         self._names = [*joints, *self._extra]
         unknown, none = StateInterface("", ""), StateInterface("", "", 0.0)
         self._columns = [

@@ -217,7 +217,7 @@ class JointTrajectoryController(Controller[Parameters]):
     def _read(self) -> MotionState:
         states = self._state
         return MotionState(
-            *([each.value for each in states.get(kind, ())] for kind in (POSITION, VELOCITY, ACCELERATION))
+            *([state.value for state in states.get(kind, ())] for kind in (POSITION, VELOCITY, ACCELERATION))
         )
 
     def _as_commanded(self, state: MotionState) -> MotionState:
@@ -230,7 +230,7 @@ class JointTrajectoryController(Controller[Parameters]):
 
     @staticmethod
     def _finite_or(interfaces: Sequence[Interface] | None, values: Sequence[float]) -> list[float]:
-        given = [each.value for each in interfaces or ()]
+        given = [interface.value for interface in interfaces or ()]
         return given if given and all(map(isfinite, given)) else list(values)
 
     @property
@@ -364,7 +364,7 @@ class JointTrajectoryController(Controller[Parameters]):
         """Take over changed gains; the integral stays."""
         said = self.parameters
         if said is not self._tuned_by:
-            integrals = [each.integral for each in self._pids]
+            integrals = [pid.integral for pid in self._pids]
             self._tune(said)
             for pid, integral in zip(self._pids, integrals, strict=True):
                 pid.integral = integral
@@ -393,11 +393,11 @@ class JointTrajectoryController(Controller[Parameters]):
         if rate and time_ns < self._next_state_ns:
             return
         self._next_state_ns = time_ns + (round(_SECOND / rate) if rate else 0)
-        outputs = [each for each in self._outputs if each.is_wanted]
+        outputs = [output for output in self._outputs if output.is_wanted]
         if not outputs:
             return
         reference, feedback = self._message(desired), self._message(self._current)
-        commands = {kind: [each.value for each in given] for kind, given in self._command.items()}
+        commands = {kind: [interface.value for interface in given] for kind, given in self._command.items()}
         message = self._state_message(
             header=Header(stamp=Time(*divmod(time_ns, _SECOND))),
             joint_names=list(self.parameters.joints),

@@ -121,7 +121,7 @@ class Parameters:
         of_joints = [self.joint_constraints[joint] for joint in self.joints]
         stopped = self.constraints.stopped_velocity_tolerance
         return Tolerances(
-            tuple(StateTolerance(each.trajectory) for each in of_joints),
-            tuple(StateTolerance(each.goal, stopped) for each in of_joints),
+            tuple(StateTolerance(of_joint.trajectory) for of_joint in of_joints),
+            tuple(StateTolerance(of_joint.goal, stopped) for of_joint in of_joints),
             self.constraints.goal_time,
         )

@@ -118,9 +118,9 @@ class MecanumDriveController(Controller[Parameters]):
             above(0.0)(f"kinematics.{name}", getattr(sizes, name))
             for name in ("wheels_radius", "sum_of_robot_center_projection_on_X_Y_axis")
         ]
-        for each in wrong:
-            if each is not None:
-                raise ControllerError(each)
+        for phrase in wrong:
+            if phrase is not None:
+                raise ControllerError(phrase)
         self._drive = MecanumDrive(sizes.sum_of_robot_center_projection_on_X_Y_axis, sizes.wheels_radius)
         timeout = said.reference_timeout
         self._input = VelocityInput(node, "~/reference", timeout_s=timeout, qos=REFERENCE_QOS)

@@ -150,21 +150,21 @@ class ParameterTable(Generic[P]):
     def _table_values(self, table: Any, prefix: str) -> Any:
         kinds = _kinds(table)
         values: dict[str, Any] = {}
-        for each in fields(table):
-            kind, name = kinds[each.name], f"{prefix}{each.name}"
-            if _NAMES in each.metadata:
-                keys = dict.fromkeys(key for names in each.metadata[_NAMES] for key in _listed(values[names]))
-                inside = each.metadata[_TABLE]
-                name = f"{prefix}{each.metadata[_BELOW] or each.name}"
-                values[each.name] = {key: self._table_values(inside, f"{name}.{key}.") for key in keys}
+        for declared in fields(table):
+            kind, name = kinds[declared.name], f"{prefix}{declared.name}"
+            if _NAMES in declared.metadata:
+                keys = dict.fromkeys(key for names in declared.metadata[_NAMES] for key in _listed(values[names]))
+                inside = declared.metadata[_TABLE]
+                name = f"{prefix}{declared.metadata[_BELOW] or declared.name}"
+                values[declared.name] = {key: self._table_values(inside, f"{name}.{key}.") for key in keys}
             elif is_dataclass(kind):
-                values[each.name] = self._table_values(kind, f"{name}.")
+                values[declared.name] = self._table_values(kind, f"{name}.")
             else:
-                default = each.default if each.default is not MISSING else None
-                about = each.metadata.get(_ABOUT, _About())
+                default = declared.default if declared.default is not MISSING else None
+                about = declared.metadata.get(_ABOUT, _About())
                 if about.later is not _SAME and not is_before_iron():
                     default = about.later
-                values[each.name] = self._value(_Declaration(name, _TYPES[kind], default, about))
+                values[declared.name] = self._value(_Declaration(name, _TYPES[kind], default, about))
         return table(**values)
 
     def _value(self, wanted: _Declaration) -> Any:
@@ -191,11 +191,11 @@ class ParameterTable(Generic[P]):
         return tuple(value) if self._declared[name].kind.is_array and value is not None else value
 
     def _objection(self, parameters: list[Parameter]) -> SetParametersResult:
-        for each in parameters:
-            known = self._declared.get(each.name)
-            if known is None or known.about.check is None or each.value is None:
+        for parameter in parameters:
+            known = self._declared.get(parameter.name)
+            if known is None or known.about.check is None or parameter.value is None:
                 continue
-            wrong = known.about.check(each.name, each.value)
+            wrong = known.about.check(parameter.name, parameter.value)
             if wrong is not None:
                 return SetParametersResult(successful=False, reason=wrong)
         return SetParametersResult(successful=True)

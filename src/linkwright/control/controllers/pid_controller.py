@@ -65,7 +65,7 @@ class PidController(Controller[Parameters]):
 
     def command_interfaces(self) -> InterfaceNames:
         """One for each degree of freedom."""
-        return [f"{each}/{self.parameters.command_interface}" for each in self.parameters.dof_names]
+        return [f"{dof_name}/{self.parameters.command_interface}" for dof_name in self.parameters.dof_names]
 
     def state_interfaces(self) -> InterfaceNames:
         """Those of the first kind, then those of the second one."""
@@ -91,7 +91,7 @@ class PidController(Controller[Parameters]):
                 f"Size of 'dof_names' ({len(said.dof_names)}) and 'reference_and_state_dof_names' "
                 f"({len(said.measured)}) parameters has to be the same!"
             )
-        self._pids = [Pid(said.gains[each].pid) for each in said.dof_names]
+        self._pids = [Pid(said.gains[dof_name].pid) for dof_name in said.dof_names]
         self._feeds_forward = said.enable_feedforward
         self._output = self.node.publisher("control_msgs/msg/MultiDOFStateStamped", "~/controller_state")
         self._state_message = get_message("control_msgs/msg/SingleDOFState")
@@ -104,7 +104,7 @@ class PidController(Controller[Parameters]):
 
     def on_activate(self) -> None:
         """Wait for a reference."""
-        self._measured = [each.value for each in self.states] or [nan] * len(self._measured_names())
+        self._measured = [state.value for state in self.states] or [nan] * len(self._measured_names())
         self._export()
         for reference in self.references:
             reference.value = nan
@@ -121,7 +121,7 @@ class PidController(Controller[Parameters]):
     def update(self, time_ns: int, period_s: float) -> None:
         """Command where references and states are known."""
         if self.states:
-            self._measured = [each.value for each in self.states]
+            self._measured = [state.value for state in self.states]
         self._export()
         for number, (name, pid, command) in enumerate(
             zip(self.parameters.dof_names, self._pids, self.commands, strict=True)
@@ -189,9 +189,9 @@ class PidController(Controller[Parameters]):
                 self.node.logger.error(f"DoF name '{name}' is not in the message: it has {', '.join(names)}.")
                 return []
         places = [names.index(name) for name in known]
-        ordered = [float(values[each]) for each in places]
+        ordered = [float(values[place]) for place in places]
         if self._has_rates:
-            ordered += [float(rates[each]) if rates else nan for each in places]
+            ordered += [float(rates[place]) if rates else nan for place in places]
         return ordered
 
     def _set_feedforward(self, request: Any, response: Any) -> Any:

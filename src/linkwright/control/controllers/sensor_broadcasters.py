@@ -173,7 +173,7 @@ class SensorBroadcaster(Controller[P]):
     def update(self, time_ns: int, period_s: float) -> None:
         """Publish."""
         if self._output.is_wanted:
-            self._output.publish(self.message(self._kind, self.header(time_ns), [each.value for each in self.states]))
+            self._output.publish(self.message(self._kind, self.header(time_ns), [state.value for state in self.states]))
 
     def header(self, time_ns: int) -> Header:
         """The time, and the frame of the parameters."""
@@ -236,12 +236,12 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
                 "together."
             )
         kinds = [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
-        self._names = [f"{said.sensor_name}/{each}" for each in kinds] if said.sensor_name else named
+        self._names = [f"{said.sensor_name}/{kind}" for kind in kinds] if said.sensor_name else named
         super().on_configure()
 
     def state_interfaces(self) -> InterfaceNames:
         """Forces, then torques."""
-        return [each for each in self._names if each]
+        return [name for name in self._names if name]
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
         """A wrench."""
@@ -300,7 +300,7 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
                 "specified together."
             )
         kinds = [*(f"position.{axis}" for axis in "xyz"), *(f"orientation.{axis}" for axis in "xyzw")]
-        self._names = [f"{said.pose_name}/{each}" for each in kinds] if said.pose_name else named
+        self._names = [f"{said.pose_name}/{kind}" for kind in kinds] if said.pose_name else named
         self._next_transform_ns = 0
         self._child = said.tf.child_frame_id or said.pose_name
         self._transforms = self.node.publisher("tf2_msgs/msg/TFMessage", "/tf", 100) if said.tf.enable else None
@@ -321,7 +321,7 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
         super().update(time_ns, period_s)
         if self._transforms is None or not self._child or time_ns < self._next_transform_ns:
             return
-        values = [each.value for each in self.states]
+        values = [state.value for state in self.states]
         if not self._transforms.is_wanted or not all(map(isfinite, values)):
             return
         rate = self.parameters.tf.publish_rate

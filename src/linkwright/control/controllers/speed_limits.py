@@ -75,7 +75,7 @@ NO_LIMITS = SpeedLimits()
 
 def _given(*values: float) -> float:
     """The first value that was given."""
-    return next(each for each in values if not isnan(each))
+    return next(value for value in values if not isnan(value))
 
 
 def _bounds(axis: str, kind: str, least: float, greatest: float) -> Bounds:

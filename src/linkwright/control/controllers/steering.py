@@ -121,8 +121,8 @@ class SteeringController(Controller[P], Generic[P]):
         """The same of what is measured; positions of the driven joints where the parameters ask for them."""
         said = self.parameters
         kind = POSITION if said.position_feedback else VELOCITY
-        return [f"{each}/{kind}" for each in said.traction_states] + [
-            f"{each}/{POSITION}" for each in said.steering_states
+        return [f"{traction_state}/{kind}" for traction_state in said.traction_states] + [
+            f"{steering_state}/{POSITION}" for steering_state in said.steering_states
         ]
 
     def reference_interfaces(self) -> Sequence[str]:
@@ -248,7 +248,7 @@ class SteeringController(Controller[P], Generic[P]):
 
     def _tell_state(self, time_ns: int) -> None:
         driving = self.JOINTS[0]
-        states, commands = [each.value for each in self.states], [each.value for each in self.commands]
+        states, commands = [state.value for state in self.states], [command.value for command in self.commands]
         wheels: list[float] = states[:driving]
         by_position = self._said.position_feedback
         told = get_message("control_msgs/msg/SteeringControllerStatus")(

@@ -52,8 +52,8 @@ class Hardware:
         self.states: list[StateInterface] = []
         self.commands: list[CommandInterface] = []
         for component in description.components:
-            self.states += [self._state_interface(component, each) for each in component.states]
-            self.commands += [CommandInterface(component.name, each.name) for each in component.commands]
+            self.states += [self._state_interface(component, state) for state in component.states]
+            self.commands += [CommandInterface(component.name, command.name) for command in component.commands]
 
     def _state_interface(self, component: ComponentDescription, interface: InterfaceDescription) -> StateInterface:
         value = interface.initial_value

@@ -107,12 +107,12 @@ def hardware_of(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnosti
     not have, a value that is no number.
     """
     reader = _Reader(robot)
-    found = [reader.hardware(each) for each in robot.extensions if each.tag == "ros2_control"]
+    found = [reader.hardware(extension) for extension in robot.extensions if extension.tag == "ros2_control"]
     named: dict[str, HardwareDescription] = {}
-    for each in found:
-        if each is not None:
-            named.setdefault(each.name, each)
-    if not any(each.tag == "ros2_control" for each in robot.extensions):
+    for hardware in found:
+        if hardware is not None:
+            named.setdefault(hardware.name, hardware)
+    if not any(extension.tag == "ros2_control" for extension in robot.extensions):
         message = phrase("the description has no <ros2_control>")
         hint = phrase("it names the hardware, its joints and their interfaces")
         reader.findings.append(Diagnostic("CTL110", message, severity=Severity.WARNING, hint=hint))
@@ -137,7 +137,7 @@ class _Reader:
             self._tell("CTL112", message, element, phrase("write <hardware><plugin>mock_components/GenericSystem"))
             return None
         joints = [self._component(each, "joint") for each in element.elements("joint")]
-        names = [each.name for each in joints]
+        names = [joint.name for joint in joints]
         for each, written in zip(joints, element.elements("joint"), strict=True):
             if each.name not in self._robot.joints:
                 message = phrase("<ros2_control> has joint '{name}', which the robot does not have", name=each.name)
@@ -151,7 +151,7 @@ class _Reader:
             plugin.text().strip(),
             element.attributes.get("is_async", "").strip() in _TRUE,
             _parameters(hardware),
-            tuple(each for each in joints if each.name in self._robot.joints),
+            tuple(joint for joint in joints if joint.name in self._robot.joints),
             tuple(self._component(each, "sensor") for each in element.elements("sensor")),
             tuple(self._component(each, "gpio") for each in element.elements("gpio")),
         )

@@ -52,7 +52,7 @@ class JointLimits:
 
 def limits_of(joint: Joint, described: ComponentDescription) -> JointLimits:
     """The limits of a joint that hardware has."""
-    limit, interfaces = joint.limit, {each.name: each for each in described.commands}
+    limit, interfaces = joint.limit, {command.name: command for command in described.commands}
     position, velocity, effort, acceleration, deceleration = _UNLIMITED, inf, inf, inf, inf
     if limit is not None:
         if joint.type in ("revolute", "prismatic"):
@@ -69,7 +69,7 @@ def limits_of(joint: Joint, described: ComponentDescription) -> JointLimits:
         acceleration,
         deceleration if isfinite(deceleration) else acceleration,
         joint.safety,
-        frozenset(each.name for each in described.commands if each.limited),
+        frozenset(command.name for command in described.commands if command.limited),
     )
 
 

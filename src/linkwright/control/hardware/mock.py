@@ -32,12 +32,12 @@ class _Joint:
     def __init__(self, described: ComponentDescription, states: dict[str, StateInterface]) -> None:
         self.described = described
         self.mode = POSITION
-        self.shown = [states[each.name] for each in described.states if each.name in _STANDARD]
+        self.shown = [states[state.name] for state in described.states if state.name in _STANDARD]
         self.values = dict.fromkeys(_STANDARD, 0.0)
-        for each in self.shown:
-            if isnan(each.value):
-                each.value = 0.0
-            self.values[each.kind] = each.value
+        for interface in self.shown:
+            if isnan(interface.value):
+                interface.value = 0.0
+            self.values[interface.kind] = interface.value
         self.commands: dict[str, CommandInterface] = {}
 
 
@@ -51,12 +51,12 @@ class GenericSystem(Hardware):
         self._dynamic = given("calculate_dynamics")
         self._offset = float(description.parameters.get("position_state_following_offset") or 0.0)
         self._offset_interface = description.parameters.get("custom_interface_with_following_offset", "")
-        states = {each.name: each for each in self.states}
+        states = {state.name: state for state in self.states}
         self._add_mock_commands("sensor", wanted=given("mock_sensor_commands") or given("fake_sensor_commands"))
         self._add_mock_commands("gpio", wanted=given("mock_gpio_commands") or given("fake_gpio_commands"))
         self._joints = {
-            each.name: _Joint(each, {state.kind: state for state in self.states if state.component == each.name})
-            for each in description.joints
+            joint.name: _Joint(joint, {state.kind: state for state in self.states if state.component == joint.name})
+            for joint in description.joints
         }
         self._mirrored: list[tuple[CommandInterface, StateInterface]] = []
         for command in self.commands:
@@ -86,11 +86,11 @@ class GenericSystem(Hardware):
         self._read: Callable[[float], None] = self._integrate if self._dynamic else self._repeat
 
     def _add_mock_commands(self, kind: str, *, wanted: bool) -> None:
-        names = {each.name for each in self.commands}
+        names = {command.name for command in self.commands}
         for component in self.description.components:
             if wanted and component.kind == kind:
-                for each in component.states:
-                    command = CommandInterface(component.name, each.name)
+                for state in component.states:
+                    command = CommandInterface(component.name, state.name)
                     if command.name not in names:
                         self.commands.append(command)
 

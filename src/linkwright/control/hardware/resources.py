@@ -58,10 +58,10 @@ class Resources:
 
     def load(self, descriptions: Sequence[HardwareDescription], make: Maker) -> None:
         """Load the hardware; unknown types are replaced by a mock, with a warning."""
-        for each in descriptions:
-            self._logger.info(f"Loading hardware '{each.name}' ")
+        for description in descriptions:
+            self._logger.info(f"Loading hardware '{description.name}' ")
             try:
-                hardware = make(each, self._logger)
+                hardware = make(description, self._logger)
             except LinkwrightError as error:
                 self._logger.error(error.diagnostics[0].message)  # noqa: TRY400 - the message is for users
                 continue
@@ -70,38 +70,38 @@ class Resources:
                     phrase(
                         "hardware '{name}': '{plugin}' is not for Linkwright; mock_components/GenericSystem stands in "
                         "for it, whose states follow the commands",
-                        name=each.name,
-                        plugin=each.plugin,
+                        name=description.name,
+                        plugin=description.plugin,
                     )
                 )
-                hardware = GenericSystem(each, self._logger)
-            if each.is_async:
+                hardware = GenericSystem(description, self._logger)
+            if description.is_async:
                 self._logger.info(
                     phrase(
                         "hardware '{name}' asks for is_async: it is read and written in the loop, as all are",
-                        name=each.name,
+                        name=description.name,
                     )
                 )
-            self._logger.info(f"Initialize hardware '{each.name}' ")
-            self.components[each.name] = hardware
+            self._logger.info(f"Initialize hardware '{description.name}' ")
+            self.components[description.name] = hardware
             for state in hardware.states:
                 self._states.setdefault(state.name, state)
             for command in hardware.commands:
                 self._commands.setdefault(command.name, command)
             self._owners.update((state.name, hardware) for state in (*hardware.states, *hardware.commands))
-            self._logger.info(f"Successful initialization of hardware '{each.name}'")
+            self._logger.info(f"Successful initialization of hardware '{description.name}'")
 
     # --- interfaces ---------------------------------------------------------------------------------------------------
 
     @property
     def state_names(self) -> list[str]:
         """The names of all state interfaces."""
-        return [*self._states, *(each.name for exported in self._exported.values() for each in exported)]
+        return [*self._states, *(interface.name for exported in self._exported.values() for interface in exported)]
 
     @property
     def command_names(self) -> list[str]:
         """The names of all command interfaces, and of the references of chained controllers."""
-        return [*self._commands, *(each.name for given in self._references.values() for each in given)]
+        return [*self._commands, *(interface.name for given in self._references.values() for interface in given)]
 
     def is_available(self, name: str) -> bool:
         """Whether an interface is available: its hardware is configured, or its controller active."""
@@ -115,7 +115,7 @@ class Resources:
             KeyError: there is none of a name, or it is not available.
         """
         if names is Interfaces.ALL:
-            return [each for each in self._all_states() if self.is_available(each.name)]
+            return [all_state for all_state in self._all_states() if self.is_available(all_state.name)]
         return [self._one(name, self._all_states(), "State") for name in names]
 
     def commands(self, names: Sequence[str] | Interfaces) -> list[CommandInterface]:
@@ -125,7 +125,7 @@ class Resources:
             KeyError: there is none of a name, or it is not available.
         """
         if names is Interfaces.ALL:
-            return [each for each in self._all_commands() if self.is_available(each.name)]
+            return [all_command for all_command in self._all_commands() if self.is_available(all_command.name)]
         return [self._one(name, self._all_commands(), "Command") for name in names]
 
     def _all_states(self) -> Iterator[StateInterface]:
@@ -158,11 +158,13 @@ class Resources:
 
     def references_of(self, controller: str) -> list[str]:
         """The names of a controller's references."""
-        return [each.name for each in self._references.get(controller, ())]
+        return [reference.name for reference in self._references.get(controller, ())]
 
     def set_available(self, controller: str, *, available: bool) -> None:
         """Set whether a controller's references and states are available."""
-        names = {each.name for each in (*self._references.get(controller, ()), *self._exported.get(controller, ()))}
+        names = {
+            reference.name for reference in (*self._references.get(controller, ()), *self._exported.get(controller, ()))
+        }
         self._available = self._available | names if available else self._available - names
 
     # --- its life -----------------------------------------------------------------------------------------------------
@@ -251,7 +253,7 @@ class Resources:
 
     def names_of(self, hardware: Hardware) -> set[str]:
         """The names of a hardware's interfaces."""
-        return {each.name for each in (*hardware.states, *hardware.commands)}
+        return {state.name for state in (*hardware.states, *hardware.commands)}
 
 
 def _failure_of(callback: Callable[..., object], *arguments: object) -> str:

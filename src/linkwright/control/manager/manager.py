@@ -146,7 +146,7 @@ class ControllerManager:
 
     def reload(self, *, force: bool) -> bool:
         """Unload all controllers; whether that succeeded: active ones prevent it unless it is forced."""
-        active = [each.name for each in self._active]
+        active = [controller.name for controller in self._active]
         if active and not force:
             self._logger.error(
                 "Controller manager: Cannot reload controller libraries because there are still "
@@ -164,7 +164,7 @@ class ControllerManager:
     def kept(self) -> Kept:
         """The state that `resume` takes."""
         parameters = {name: each.value for name, each in self.node.get_parameters_by_prefix("").items()}
-        states = tuple((each.name, each.controller.state.label) for each in self.controllers.values())
+        states = tuple((controller.name, controller.controller.state.label) for controller in self.controllers.values())
         return Kept(parameters, states)
 
     def resume(self, kept: Kept) -> None:
@@ -211,8 +211,10 @@ class ControllerManager:
             return False
         controller.state = INACTIVE
         self._set_rate(loaded)
-        references = [CommandInterface(name, each) for each in controller.reference_interfaces()]
-        exported = [StateInterface(name, each) for each in controller.exported_states()]
+        references = [
+            CommandInterface(name, reference_interface) for reference_interface in controller.reference_interfaces()
+        ]
+        exported = [StateInterface(name, exported_state) for exported_state in controller.exported_states()]
         controller.references, controller.exported = references, exported
         self.resources.offer(name, references, exported)
         self._sort()
@@ -273,7 +275,7 @@ class ControllerManager:
         for loaded in self.controllers.values():
             add(loaded, ())
         self.controllers = order
-        self._active = [each for each in order.values() if each.is_active]
+        self._active = [controller for controller in order.values() if controller.is_active]
 
     # --- switching ----------------------------------------------------------------------------------------------------
 
@@ -316,7 +318,7 @@ class ControllerManager:
 
     def _interfaces(self, names: Sequence[str]) -> list[str]:
         known = self.resources.command_names
-        return [each for name in names for each in self.controllers[name].wanted_commands(known)]
+        return [wanted_command for name in names for wanted_command in self.controllers[name].wanted_commands(known)]
 
     def _perform(self, switch: Switch, start: list[str], stop: list[str]) -> list[str]:
         self.resources.perform_switch(start, stop)
@@ -326,7 +328,7 @@ class ControllerManager:
             self._set_chained(self.controllers[name], chained=False)
         for name in switch.to_chained:
             self._set_chained(self.controllers[name], chained=True)
-        followers = [each for each in reversed(self.controllers) if each in switch.activate]
+        followers = [controller for controller in reversed(self.controllers) if controller in switch.activate]
         return [told for name in followers if (told := self._activate(self.controllers[name]))]
 
     def _set_chained(self, loaded: Loaded, *, chained: bool) -> None:
@@ -336,7 +338,9 @@ class ControllerManager:
     def _activate(self, loaded: Loaded) -> str:
         """Activate a controller; the reason if that failed, or nothing."""
         controller, resources, name = loaded.controller, self.resources, loaded.name
-        wanted = loaded.wanted_commands([each for each in resources.command_names if resources.is_available(each)])
+        wanted = loaded.wanted_commands(
+            [command_name for command_name in resources.command_names if resources.is_available(command_name)]
+        )
         told = next(
             (
                 f"Resource conflict for controller '{name}'. Command interface '{each}' is already claimed."
@@ -365,7 +369,7 @@ class ControllerManager:
             return told
         controller.state = ACTIVE
         resources.set_available(name, available=True)
-        self._active = [each for each in self.controllers.values() if each.is_active]
+        self._active = [controller for controller in self.controllers.values() if controller.is_active]
         return ""
 
     def _deactivate(self, loaded: Loaded, *, halts: bool = False) -> None:
@@ -377,7 +381,7 @@ class ControllerManager:
         controller.state = INACTIVE
         self._release(loaded)
         self.resources.set_available(loaded.name, available=False)
-        self._active = [each for each in self._active if each is not loaded]
+        self._active = [controller for controller in self._active if controller is not loaded]
 
     def _release(self, loaded: Loaded) -> None:
         claims = self.resources.claims
@@ -467,7 +471,7 @@ class ControllerManager:
             told = error.diagnostics[0].message
         loaded.controller.node.logger.error(told)
         stopped = [loaded, *self._commanding(loaded)]
-        names = " ".join(each.name for each in stopped)
+        names = " ".join(controller.name for controller in stopped)
         self._logger.error(f"Deactivating controllers : [ {names} ] as their update resulted in an error!")
         self._stop(stopped)
         self._on_error(loaded)
@@ -478,16 +482,18 @@ class ControllerManager:
     def _commanding(self, loaded: Loaded) -> list[Loaded]:
         """The active controllers that command the references of one, directly or through others."""
         references = self.resources.references_of(loaded.name)
-        owners = dict.fromkeys(self.resources.claims[each] for each in references if each in self.resources.claims)
-        found = [self.controllers[each] for each in owners]
-        return [*found, *(more for each in found for more in self._commanding(each))]
+        owners = dict.fromkeys(
+            self.resources.claims[reference] for reference in references if reference in self.resources.claims
+        )
+        found = [self.controllers[owner] for owner in owners]
+        return [*found, *(more for controller in found for more in self._commanding(controller))]
 
     def _stop_those_of(self, failed: Sequence[Hardware]) -> None:
         stopped = self._users_of(failed)
         if stopped:
             self._logger.error(
-                f"Deactivating controllers : [ {' '.join(each.name for each in stopped)} ] as their hardware "
-                f"components failed: [ {' '.join(each.description.name for each in failed)} ]"
+                f"Deactivating controllers : [ {' '.join(controller.name for controller in stopped)} ] as their "
+                f"hardware components failed: [ {' '.join(hardware.description.name for hardware in failed)} ]"
             )
             self._stop(stopped)
         self.on_change()
@@ -498,28 +504,31 @@ class ControllerManager:
         found = [
             loaded
             for loaded in self._active
-            if any(each.name in names for each in (*loaded.controller.commands, *loaded.controller.states))
+            if any(command.name in names for command in (*loaded.controller.commands, *loaded.controller.states))
         ]
-        return [*found, *(each for loaded in found for each in self._commanding(loaded) if each not in found)]
+        return [
+            *found,
+            *(controller for loaded in found for controller in self._commanding(loaded) if controller not in found),
+        ]
 
     def _stop(self, stopped: Sequence[Loaded]) -> None:
-        for each in stopped:
-            if each.is_active:
-                following = {command.component for command in each.controller.commands}
-                self._deactivate(each, halts=True)
+        for controller in stopped:
+            if controller.is_active:
+                following = {command.component for command in controller.controller.commands}
+                self._deactivate(controller, halts=True)
                 for name in following & self.controllers.keys():
                     self._set_chained(self.controllers[name], chained=False)
         self.on_change()
 
     def _tell(self, error: LinkwrightError) -> None:
-        for each in error.diagnostics:
-            hint = f" ({each.hint})" if each.hint else ""
-            self._logger.error(f"{each.message}{hint}")
+        for diagnostic in error.diagnostics:
+            hint = f" ({diagnostic.hint})" if diagnostic.hint else ""
+            self._logger.error(f"{diagnostic.message}{hint}")
 
 
 def _owners(interfaces: Iterable[str]) -> set[str]:
     """The prefixes of interfaces' names: joints, or controllers."""
-    return {each.partition("/")[0] for each in interfaces}
+    return {interface.partition("/")[0] for interface in interfaces}
 
 
 def _traced(what: str, error: Exception) -> str:

@@ -61,7 +61,7 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
         name,
         namespace=namespace,
         parameters=values,
-        remappings=[each for each in remappings if each[0] not in _OF_THE_PROCESS],
+        remappings=[remapping for remapping in remappings if remapping[0] not in _OF_THE_PROCESS],
     )
     manager.graph.makers[node.get_logger().name] = manager.get_logger().name
     return node

@@ -62,7 +62,8 @@ class ManagerServices:
         message = get_message(f"{_PACKAGE}/msg/ControllerManagerActivity")()
         message.header.stamp = self._manager.node.get_clock().now().to_msg()
         message.controllers = [
-            _named_state(each.name, each.controller.state) for each in self._manager.controllers.values()
+            _named_state(controller.name, controller.controller.state)
+            for controller in self._manager.controllers.values()
         ]
         message.hardware_components = [
             _named_state(name, each.state) for name, each in self._manager.resources.components.items()
@@ -78,7 +79,9 @@ class ManagerServices:
         message = get_message("diagnostic_msgs/msg/DiagnosticArray")()
         message.header.stamp = self._manager.node.get_clock().now().to_msg()
         name = self._manager.node.get_name()
-        controllers = {each.name: each.controller.state for each in self._manager.controllers.values()}
+        controllers = {
+            controller.name: controller.controller.state for controller in self._manager.controllers.values()
+        }
         components = {name: each.state for name, each in self._manager.resources.components.items()}
         message.status = [
             _status(f"{name}: Controllers Activity", "controllers", controllers),
@@ -89,7 +92,7 @@ class ManagerServices:
     # --- controllers --------------------------------------------------------------------------------------------------
 
     def _list_controllers(self, _: Any, response: Any) -> Any:
-        response.controller = [self._controller(each) for each in self._manager.controllers.values()]
+        response.controller = [self._controller(controller) for controller in self._manager.controllers.values()]
         return response
 
     def _controller(self, loaded: Loaded) -> Any:
@@ -104,11 +107,11 @@ class ManagerServices:
             return message
         message.required_command_interfaces = loaded.wanted_commands(resources.command_names)
         message.required_state_interfaces = loaded.wanted_states(resources.state_names)
-        message.exported_state_interfaces = [each.kind for each in controller.exported]
-        message.reference_interfaces = [each.kind for each in controller.references]
+        message.exported_state_interfaces = [interface.kind for interface in controller.exported]
+        message.reference_interfaces = [reference.kind for reference in controller.references]
         chains: dict[str, list[str]] = {}
-        for each in message.required_command_interfaces:
-            name, _, kind = each.partition("/")
+        for required_command_interface in message.required_command_interfaces:
+            name, _, kind = required_command_interface.partition("/")
             if name in self._manager.controllers:
                 chains.setdefault(name, []).append(kind)
         connection = get_message(f"{_PACKAGE}/msg/ChainConnection")
@@ -124,7 +127,7 @@ class ManagerServices:
     # --- hardware -----------------------------------------------------------------------------------------------------
 
     def _list_components(self, _: Any, response: Any) -> Any:
-        response.component = [self._component(each) for each in self._manager.resources.components.values()]
+        response.component = [self._component(component) for component in self._manager.resources.components.values()]
         return response
 
     def _component(self, hardware: Hardware) -> Any:
@@ -133,8 +136,8 @@ class ManagerServices:
         message.plugin_name = message.class_type = described.plugin
         message.rw_rate = int(self._manager.update_rate)
         message.state.id, message.state.label = hardware.state.state_id, hardware.state.label
-        message.command_interfaces = [self._interface(each.name) for each in hardware.commands]
-        message.state_interfaces = [self._interface(each.name) for each in hardware.states]
+        message.command_interfaces = [self._interface(command.name) for command in hardware.commands]
+        message.state_interfaces = [self._interface(state.name) for state in hardware.states]
         return message
 
     def _interface(self, name: str) -> Any:
@@ -145,10 +148,10 @@ class ManagerServices:
 
     def _list_interfaces(self, _: Any, response: Any) -> Any:
         resources = self._manager.resources
-        response.command_interfaces = [self._interface(each) for each in resources.command_names]
-        response.state_interfaces = [self._interface(each) for each in resources.state_names]
-        for each in response.state_interfaces:
-            each.is_claimed = False
+        response.command_interfaces = [self._interface(command_name) for command_name in resources.command_names]
+        response.state_interfaces = [self._interface(state_name) for state_name in resources.state_names]
+        for state_interface in response.state_interfaces:
+            state_interface.is_claimed = False
         return response
 
     def _set_state(self, request: Any, response: Any) -> Any:
@@ -158,7 +161,9 @@ class ManagerServices:
             response.ok = False
             return response
         wanted = request.target_state
-        target = _STATES.get(wanted.id) or next((each for each in _STATES.values() if each.label == wanted.label), None)
+        target = _STATES.get(wanted.id) or next(
+            (state for state in _STATES.values() if state.label == wanted.label), None
+        )
         response.ok = target is not None and self._manager.set_hardware_state(request.name, target)
         state = resources.components[request.name].state
         response.state.id, response.state.label = state.state_id, state.label

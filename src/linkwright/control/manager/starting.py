@@ -36,7 +36,7 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
     reading = library.read(text)
     if reading.robot is None:
         logger.error("The published robot description file (urdf) seems not to be genuine.")
-        _tell(logger, [each for each in reading.diagnostics if each.severity is Severity.ERROR])
+        _tell(logger, [diagnostic for diagnostic in reading.diagnostics if diagnostic.severity is Severity.ERROR])
         return False
     descriptions, findings = hardware_of(reading.robot)
     _tell(logger, findings)
@@ -67,18 +67,18 @@ def _limits_of(robot: Robot, resources: Resources, logger: Logger) -> CommandLim
     """A limiter of the hardware's commands, by the limits of the robot's joints."""
     limiters = []
     for hardware in resources.components.values():
-        for each in hardware.description.joints:
-            commands = {command.kind: command for command in hardware.commands if command.component == each.name}
-            states = {state.kind: state for state in hardware.states if state.component == each.name}
-            limiters.append(JointLimiter(each.name, limits_of(robot.joints[each.name], each), commands, states))
+        for joint in hardware.description.joints:
+            commands = {command.kind: command for command in hardware.commands if command.component == joint.name}
+            states = {state.kind: state for state in hardware.states if state.component == joint.name}
+            limiters.append(JointLimiter(joint.name, limits_of(robot.joints[joint.name], joint), commands, states))
     return CommandLimits(limiters, logger)
 
 
 def _tell(logger: Logger, findings: list[Diagnostic]) -> None:
-    for each in findings:
-        hint = f" ({each.hint})" if each.hint else ""
-        told = f"{each.message}{hint}"
-        if each.severity is Severity.ERROR:
+    for finding in findings:
+        hint = f" ({finding.hint})" if finding.hint else ""
+        told = f"{finding.message}{hint}"
+        if finding.severity is Severity.ERROR:
             logger.error(told)
         else:
             logger.warning(told)

@@ -56,7 +56,7 @@ class StatisticsTopics:
         self._values.publish(values)
         if self._full.is_wanted:
             one = get_message(f"{_PACKAGE}/Statistic")
-            full = get_message(f"{_PACKAGE}/Statistics")(statistics=[one(*each) for each in told.items()])
+            full = get_message(f"{_PACKAGE}/Statistics")(statistics=[one(*item) for item in told.items()])
             full.header.stamp = stamp
             self._full.publish(full)
 

@@ -89,7 +89,7 @@ class Trajectory:
         none = [0.0] * len(last.positions)
         end = MotionState(last.positions, last.velocities or none, last.accelerations or none)
         self._segments: list[Segment | None] = [None] * len(self.points)
-        self._starts = [self._before_ns, first, *(self._start_ns + each.time_ns for each in self.points[1:])]
+        self._starts = [self._before_ns, first, *(self._start_ns + point.time_ns for point in self.points[1:])]
         self._index = 0
         self._end = Sample(end, len(self.points) - 1, self._starts[-1], ended=True)
 

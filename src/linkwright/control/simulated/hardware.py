@@ -100,23 +100,23 @@ class SimulatedSystem(Hardware):
 
     def _forget(self, component: str) -> None:
         """Remove a component that the model lacks, and its interfaces."""
-        self.states = [each for each in self.states if each.component != component]
-        self.commands = [each for each in self.commands if each.component != component]
+        self.states = [state for state in self.states if state.component != component]
+        self.commands = [command for command in self.commands if command.component != component]
 
     def _found_sensors(self, plugin: ControlledModel) -> list[SimulatedSensor]:
         found = []
         there = sensors_of(plugin.place)
-        for each in self.description.sensors:
-            placed = there.get(each.name)
+        for sensor in self.description.sensors:
+            placed = there.get(sensor.name)
             if placed is None:
                 told = phrase(
                     "sensor '{name}' of <ros2_control>: the model has no IMU and no force and torque sensor of this "
                     "name; its states stay as they are",
-                    name=each.name,
+                    name=sensor.name,
                 )
                 self.logger.warning(told)
                 continue
-            states = [state for state in self.states if state.component == each.name]
+            states = [state for state in self.states if state.component == sensor.name]
             found.append(simulated_sensor(plugin.simulation, placed, states, plugin.random_of(placed.name)))
         return found
 

@@ -71,9 +71,9 @@ class SimulatedJoint:
 
     def begin(self) -> None:
         """Set the initial position of the description, and hold it."""
-        for each in self._described.states:
-            if each.name == POSITION and not isnan(each.initial_value):
-                self._simulation.set_joint_position(self._name, each.initial_value)
+        for state in self._described.states:
+            if state.name == POSITION and not isnan(state.initial_value):
+                self._simulation.set_joint_position(self._name, state.initial_value)
         self.set_mode("")
 
     def set_mode(self, kind: str) -> None:

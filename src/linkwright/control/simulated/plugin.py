@@ -70,7 +70,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             name,
             namespace=namespace,
             parameters=values,
-            remappings=[each for each in described.remappings if not each[0].startswith("__")],
+            remappings=[remapping for remapping in described.remappings if not remapping[0].startswith("__")],
             allow_undeclared_parameters=True,
             automatically_declare_parameters_from_overrides=True,
         )
@@ -98,8 +98,8 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
     def reset(self) -> None:
         """Restart; controllers stay as active as they are."""
         self._last = self.simulation.time
-        for each in self._systems:
-            each.begin()
+        for system in self._systems:
+            system.begin()
         for loaded in self._manager.controllers.values():
             loaded.next_ns = 0
 

@@ -35,8 +35,8 @@ class SimulatedSensor:
     def read(self) -> None:
         """Update the states."""
         measured = self._measure()
-        for each in self._states:
-            each.value = measured.get(each.kind, each.value)
+        for state in self._states:
+            state.value = measured.get(state.kind, state.value)
 
 
 def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
@@ -44,9 +44,9 @@ def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
     assert place.model is not None
     places: Iterator[PluginPlace] = of_model(place.world, place.model, place.path)
     return {
-        each.sensor.sensor.name: each.sensor
-        for each in places
-        if each.sensor is not None and each.sensor.sensor.type in _TYPES
+        place.sensor.sensor.name: place.sensor
+        for place in places
+        if place.sensor is not None and place.sensor.sensor.type in _TYPES
     }
 
 

@@ -104,17 +104,20 @@ class ArgumentSets:
         if not sets:  # who forgets to declare what a launch file uses, still uses it
             sets = list(_Target(path, finder, [*near, *self._files.elsewhere(path, self._folders)]).sets())
         found: dict[object, ArgumentSet] = {}
-        for each in sets:
-            key = (tuple(sorted(each.values.items())), each.open)
+        for argument_set in sets:
+            key = (tuple(sorted(argument_set.values.items())), argument_set.open)
             known = found.get(key)
             if known is None:
-                found[key] = each
+                found[key] = argument_set
             else:
-                certain, offered = each.is_certain or known.is_certain, each.is_offered and known.is_offered
+                certain, offered = (
+                    argument_set.is_certain or known.is_certain,
+                    argument_set.is_offered and known.is_offered,
+                )
                 found[key] = replace(known, is_certain=certain, is_offered=offered)
-        best = sorted(found.values(), key=lambda each: (not each.is_complete, bool(each.open)))
-        complete = [each for each in best if each.is_complete][:MOST_SETS]
-        return (*complete, *[each for each in best if not each.is_complete][:MOST_SETS])
+        best = sorted(found.values(), key=lambda argument_set: (not argument_set.is_complete, bool(argument_set.open)))
+        complete = [argument_set for argument_set in best if argument_set.is_complete][:MOST_SETS]
+        return (*complete, *[argument_set for argument_set in best if not argument_set.is_complete][:MOST_SETS])
 
 
 @dataclass(eq=False)

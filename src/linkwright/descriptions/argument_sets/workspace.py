@@ -70,16 +70,23 @@ class CallingFiles:
         """What the files in and below a folder say, but not those of other packages."""
         if folder not in self._read:
             read = (_read(path, folder) for path in _files(folder))
-            self._read[folder] = tuple(each for each in read if each and (each.calls or each.inclusions))
+            self._read[folder] = tuple(
+                calling_file
+                for calling_file in read
+                if calling_file and (calling_file.calls or calling_file.inclusions)
+            )
         return self._read[folder]
 
     def _near(self, folder: Path, folders: tuple[Path, ...]) -> dict[str, Path]:
         """The packages of the workspace and those of more folders: name -> folder."""
-        return {**self._beside(folder), **{found[0]: each for each in folders if (found := enclosing_package(each))}}
+        return {
+            **self._beside(folder),
+            **{found[0]: folder for folder in folders if (found := enclosing_package(folder))},
+        }
 
     def _beside(self, folder: Path) -> dict[str, Path]:
         """The packages of the workspace, as far as they lie beside a package or below the same ``src``."""
-        above = next((each for each in folder.parents if each.name == "src"), folder.parent)
+        above = next((parent for parent in folder.parents if parent.name == "src"), folder.parent)
         if above not in self._packages:
             self._packages[above] = SourceScan(above).packages()
         return self._packages[above]

@@ -141,7 +141,7 @@ class _Comparer:
         return not any(self._in_link(old, new))
 
     def _same_joint(self, old: Joint, new: Joint) -> bool:
-        return all(each.property in ("parent", "child", "mimic joint") for each in self._in_joint(old, new))
+        return all(difference.property in ("parent", "child", "mimic joint") for difference in self._in_joint(old, new))
 
     # --- subjects -----------------------------------------------------------------------------------------------
 
@@ -157,7 +157,7 @@ class _Comparer:
 
     def _joints(self) -> Iterator[Difference]:
         def inside(old: Joint, new: Joint) -> Iterator[Difference]:
-            yield from (each for each in self._in_joint(old, new) if not self._follows_a_name(each))
+            yield from (difference for difference in self._in_joint(old, new) if not self._follows_a_name(difference))
 
         old, new = self.old.robot.joints, self.new.robot.joints
         yield from _named("joint", old, new, self.matches.joints, inside)
@@ -207,7 +207,7 @@ class _Comparer:
     def _blocks(
         self, subject: Subject, name: str, old: Sequence[Block], new: Sequence[Block], around: _Pair
     ) -> Iterator[Difference]:
-        before, after = {each.name: each for each in old}, {each.name: each for each in new}
+        before, after = {block.name: block for block in old}, {block.name: block for block in new}
         for block in dict.fromkeys([*after, *before]):
             yield from self._block(subject, name, block, before.get(block), after.get(block), around)
 
@@ -345,9 +345,9 @@ def _place(element: Element | None, attribute: str = "") -> Place | None:
 def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:
     """Addresses of meshes, and where they are written."""
     return {
-        each.geometry.filename: nearest(each.element, "geometry", "mesh")
-        for each in shapes
-        if isinstance(each.geometry, Mesh)
+        shape.geometry.filename: nearest(shape.element, "geometry", "mesh")
+        for shape in shapes
+        if isinstance(shape.geometry, Mesh)
     }
 
 

@@ -134,12 +134,12 @@ def blocks_of_link(link: Link) -> list[Block]:
 
 def visuals_of(link: Link) -> list[Block]:
     """The properties of each ``<visual>`` of a link."""
-    return [_visual(each) for each in link.visuals]
+    return [_visual(visual) for visual in link.visuals]
 
 
 def collisions_of(link: Link) -> list[Block]:
     """The properties of each ``<collision>`` of a link."""
-    return [_shape("collision", each) for each in link.collisions]
+    return [_shape("collision", collision) for collision in link.collisions]
 
 
 def blocks_of_joint(joint: Joint) -> list[Block]:
@@ -253,7 +253,7 @@ def pairs_of(
 
 def _angle(ours: Sequence[float], theirs: Sequence[float]) -> float:
     """The angle between two rotations in radians; exact where it is small."""
-    return 2.0 * min(_distance(ours, theirs), _distance(ours, [-each for each in theirs]))
+    return 2.0 * min(_distance(ours, theirs), _distance(ours, [-their for their in theirs]))
 
 
 def _unit(vector: Sequence[float]) -> tuple[float, ...]:

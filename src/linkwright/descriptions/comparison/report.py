@@ -24,9 +24,9 @@ def as_text(comparison: Comparison, label: Label) -> str:
     if not found:
         return localized(phrase("no differences")) + "\n"
     lines = []
-    for each in found:
-        places = [_where(place, label) for place in (each.old_place, each.new_place) if place is not None]
-        lines += [localized(sentence(each)), *(["  " + " -> ".join(places)] if places else [])]
+    for difference in found:
+        places = [_where(place, label) for place in (difference.old_place, difference.new_place) if place is not None]
+        lines += [localized(sentence(difference)), *(["  " + " -> ".join(places)] if places else [])]
     lines.append(localized(counted("{count} difference", "{count} differences", len(found))))
     return "\n".join(lines) + "\n"
 
@@ -54,17 +54,17 @@ def as_data(comparison: Comparison, label: Label) -> list[dict[str, Any]]:
     """The differences as JSON-ready data: places are 1-based, absent ones are None."""
     return [
         {
-            "subject": each.subject,
-            "name": each.name,
-            "kind": each.kind,
-            "property": each.property,
-            "old": each.old,
-            "new": each.new,
-            "unit": each.unit,
-            "old_place": _place_data(each.old_place, label),
-            "new_place": _place_data(each.new_place, label),
+            "subject": difference.subject,
+            "name": difference.name,
+            "kind": difference.kind,
+            "property": difference.property,
+            "old": difference.old,
+            "new": difference.new,
+            "unit": difference.unit,
+            "old_place": _place_data(difference.old_place, label),
+            "new_place": _place_data(difference.new_place, label),
         }
-        for each in comparison.differences
+        for difference in comparison.differences
     ]
 
 

@@ -93,7 +93,10 @@ class Definitions:
         if params is None:
             return None
         try:
-            found = next((each for each in parse_parameters(params.text) if each.name == name), None)
+            found = next(
+                (parse_parameter for parse_parameter in parse_parameters(params.text) if parse_parameter.name == name),
+                None,
+            )
         except Fault:
             return None
         if found is None or found.default is None or found.forward:

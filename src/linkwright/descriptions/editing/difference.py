@@ -84,7 +84,7 @@ def described(trail: tuple[Element, ...]) -> str:
         return term("robot")
     top = trail[0]
     name = top.attributes.get("name") or top.attributes.get("reference") or ""
-    inner = next((each.tag for each in trail[1:2] if top.tag == "link"), None)
+    inner = next((element.tag for element in trail[1:2] if top.tag == "link"), None)
     kind = term(top.tag)
     what = phrase("{kind} '{name}'", kind=kind, name=name) if named and name else kind
     return what if inner is None else phrase("{what} ({part})", what=what, part=term(inner))
@@ -97,7 +97,7 @@ def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:
 
 def _taken(elements: list[Element], tag: str) -> Element | None:
     """The first of a tag, taken out of the list."""
-    found = next((each for each in elements if each.tag == tag), None)
+    found = next((element for element in elements if element.tag == tag), None)
     if found is not None:
         elements.remove(found)
     return found

@@ -270,7 +270,7 @@ class _Planner:
         new = Element(target.tag, {target.attribute: text})
         after = None
         if target.tag == "axis":
-            after = next((each for tag in ("child", "parent", "origin") for each in written.elements(tag)), None)
+            after = next((element for tag in ("child", "parent", "origin") for element in written.elements(tag)), None)
         edit = inserted(written, [new], after=after, first=after is None)
         if edit is None or written.source is None:
             raise EditRefusedError(_not_written(owner))
@@ -311,7 +311,11 @@ class _Planner:
         if place is not None:
             return place
         provenance = self._now.description.provenance(element) if self._now is self._first else None
-        told = next((each for each in provenance.attributes if each.name == name), None) if provenance else None
+        told = (
+            next((attribute for attribute in provenance.attributes if attribute.name == name), None)
+            if provenance
+            else None
+        )
         if told is None or told.span is None or element.source is None or told.span.file != element.source.name:
             raise EditRefusedError(_not_written(element))
         source, span = element.source, told.span

@@ -71,7 +71,7 @@ def _reached(place: Place, index: int, frame: Frame | None, definitions: Definit
         for word in found:
             yield word
             if "$" in word.text and depth < _DEEPEST:
-                pending.extend((each, depth + 1) for each in definitions.of_names(word.text, frame))
+                pending.extend((of_name, depth + 1) for of_name in definitions.of_names(word.text, frame))
 
 
 def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:

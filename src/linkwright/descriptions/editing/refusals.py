@@ -42,14 +42,18 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
         tag: the element that would be written.
     """
     written = " ".join(place.text.split())
-    told = {each.place.span: each for each in attempts if each.place != place and (each.also or each.choice)}
+    told = {
+        attempt.place.span: attempt
+        for attempt in attempts
+        if attempt.place != place and (attempt.also or attempt.choice)
+    }
     notes = tuple(map(_note, told.values()))[:_MOST_NAMED]
     also = min(
-        (each for each in attempts if each.also),
-        key=lambda each: (len(each.also), each.doubtful),
+        (attempt for attempt in attempts if attempt.also),
+        key=lambda attempt: (len(attempt.also), attempt.doubtful),
         default=None,
     )
-    forbidden = next((each.forbidden for each in attempts if each.forbidden is not None), None)
+    forbidden = next((attempt.forbidden for attempt in attempts if attempt.forbidden is not None), None)
     if also is not None:
         what = _named(also.also)
         hint = phrase(

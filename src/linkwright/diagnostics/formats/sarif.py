@@ -46,7 +46,7 @@ def to_text(diagnostics: Iterable[Diagnostic]) -> str:
 
 def _rule(code: str, found: Iterable[Diagnostic]) -> dict[str, Any]:
     """A code with the messages it has here; a message's id is its template in English."""
-    messages = {each.message: as_phrase(each.message) for each in found if each.code == code}
+    messages = {diagnostic.message: as_phrase(diagnostic.message) for diagnostic in found if diagnostic.code == code}
     templates = {message.chosen_template: {"text": _numbered(message)[0]} for message in messages.values()}
     return {"id": code, "messageStrings": templates}
 

@@ -15,7 +15,7 @@ _LABELS = ("error", "warning", "info", "note", "hint", ": ")
 def labels(lang: str | None = None) -> Mapping[str, str]:
     """The labels of severities, notes and hints, and the colon after them; in the reader's language if not told."""
     lang = language() if lang is None else lang
-    return {each: each if lang == "en" else term(each).said_in(wording(lang)) for each in _LABELS}
+    return {label: label if lang == "en" else term(label).said_in(wording(lang)) for label in _LABELS}
 
 
 def translated(diagnostics: Iterable[Diagnostic], *, for_programs: bool = False) -> Iterable[Diagnostic]:
@@ -26,7 +26,7 @@ def translated(diagnostics: Iterable[Diagnostic], *, for_programs: bool = False)
         for_programs: a program reads them; it gets English unless another language was asked for by name.
     """
     lang = (asked_language() or "en") if for_programs else language()
-    return diagnostics if lang == "en" else [translate(each, lang) for each in diagnostics]
+    return diagnostics if lang == "en" else [translate(diagnostic, lang) for diagnostic in diagnostics]
 
 
 def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:

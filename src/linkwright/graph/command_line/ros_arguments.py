@@ -154,7 +154,7 @@ def _read_log_level(ros: RosArguments, rule: str) -> None:
     name, separator, word = rule.rpartition(":=")
     level = level_named(word)
     if level is None or (separator and not name):
-        levels = [each.name.lower() for each in LogLevel]
+        levels = [log_level.name.lower() for log_level in LogLevel]
         raise _error(
             phrase("unknown log level '{word}'", word=word),
             did_you_mean(word.lower(), levels) or phrase("the levels are {levels}", levels=joined(levels)),

@@ -77,7 +77,7 @@ class Bus:
         """Connect the two, or warn; not of a type that another subscription of the same node takes."""
         kind = publisher.type_name
         others = () if subscription.type_name == kind else self._subscriptions.of(subscription.name)
-        if not any(each.node is subscription.node and each.type_name == kind for each in others):
+        if not any(other.node is subscription.node and other.type_name == kind for other in others):
             match(publisher, subscription)
 
     def remove(self, endpoint: Endpoint) -> None:
@@ -113,7 +113,7 @@ class Bus:
     def _find_servers(self, name: str) -> None:
         servers = self._services.of(name)
         for client in self._clients.of(name):
-            client.set_server(next((each for each in servers if each.type_name == client.type_name), None))
+            client.set_server(next((server for server in servers if server.type_name == client.type_name), None))
 
 
 def match(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:

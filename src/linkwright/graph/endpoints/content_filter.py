@@ -141,13 +141,21 @@ class _Parser:
         conditions = [self._all_of()]
         while self._took("OR"):
             conditions.append(self._all_of())
-        return conditions[0] if len(conditions) == 1 else lambda message: any(each(message) for each in conditions)
+        return (
+            conditions[0]
+            if len(conditions) == 1
+            else lambda message: any(condition(message) for condition in conditions)
+        )
 
     def _all_of(self) -> Condition:
         conditions = [self._one()]
         while self._took("AND"):
             conditions.append(self._one())
-        return conditions[0] if len(conditions) == 1 else lambda message: all(each(message) for each in conditions)
+        return (
+            conditions[0]
+            if len(conditions) == 1
+            else lambda message: all(condition(message) for condition in conditions)
+        )
 
     def _one(self) -> Condition:
         if self._took("NOT"):

@@ -130,7 +130,7 @@ class DriverWatch:
         publishers = publishers_of(self._graph, self._dispute.parties)
         drivers = drivers_of(self._graph, publishers)
         if len(drivers) > 1:
-            topics = sorted({each.name for each in publishers})
+            topics = sorted({publisher.name for publisher in publishers})
             told = phrase(
                 "two drivers at once: {drivers} command by {topics}, and each message is obeyed in turn: what moves "
                 "jerks between them. End one of them, remap its topic (-r {topic}:=...), or let twist_mux choose by "
@@ -144,7 +144,9 @@ class DriverWatch:
 
 def publishers_of(graph: KnownEndpoints, gids: Collection[Hashable]) -> list[EndpointInfo]:
     """The publishers with these identifiers."""
-    return [each for each in graph.endpoints() if each.kind is EndpointKind.PUBLISHER and each.gid in gids]
+    return [
+        endpoint for endpoint in graph.endpoints() if endpoint.kind is EndpointKind.PUBLISHER and endpoint.gid in gids
+    ]
 
 
 def drivers_of(graph: KnownEndpoints, publishers: Iterable[EndpointInfo]) -> list[str]:
@@ -152,6 +154,6 @@ def drivers_of(graph: KnownEndpoints, publishers: Iterable[EndpointInfo]) -> lis
 
     Publishers of no node, and those whose node is not known yet, are left out.
     """
-    publishing = Counter(each.node.full_name for each in publishers if each.node is not None)
-    present = Counter(each.full_name for each in graph.identities())
+    publishing = Counter(publisher.node.full_name for publisher in publishers if publisher.node is not None)
+    present = Counter(identity.full_name for identity in graph.identities())
     return sorted((publishing & (present | Counter(set(publishing)))).elements())

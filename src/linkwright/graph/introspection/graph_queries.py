@@ -132,11 +132,11 @@ class GraphQueries:
 
     def get_publishers_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
         """The publishers of a topic; absolute name."""
-        return [TopicEndpointInfo.of(_hashed(each)) for each in self._of_name(topic, _PUBLISHER)]
+        return [TopicEndpointInfo.of(_hashed(endpoint)) for endpoint in self._of_name(topic, _PUBLISHER)]
 
     def get_subscriptions_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
         """The subscriptions to a topic; absolute name."""
-        return [TopicEndpointInfo.of(_hashed(each)) for each in self._of_name(topic, _SUBSCRIPTION)]
+        return [TopicEndpointInfo.of(_hashed(endpoint)) for endpoint in self._of_name(topic, _SUBSCRIPTION)]
 
     def count_publishers(self, topic: str) -> int:
         """How many publishers a topic has; absolute name."""
@@ -203,10 +203,10 @@ class GraphQueries:
             timeout: seconds to wait at most; None or a negative number for any time.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
-        return self.wait_until(lambda: any(each.full_name == wanted for each in self.identities()), timeout)
+        return self.wait_until(lambda: any(identity.full_name == wanted for identity in self.identities()), timeout)
 
     def _of_node(self, name: str, namespace: str) -> list[EndpointInfo]:
-        if not any((each.name, each.namespace) == (name, namespace) for each in self.identities()):
+        if not any((identity.name, identity.namespace) == (name, namespace) for identity in self.identities()):
             raise NodeNotFoundError(name, namespace)
         return [
             endpoint

@@ -29,7 +29,7 @@ class Namesakes:
         if not outside and not self._shared:
             return
         with self._lock:
-            there = {each.full_name for each in outside}
+            there = {node_identity.full_name for node_identity in outside}
             before = self._shared
             self._shared = frozenset(node.identity.full_name for node in ours) & there
             if self._shared == before:

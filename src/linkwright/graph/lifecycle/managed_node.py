@@ -248,7 +248,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return response
 
     def _on_get_transition_graph(self, _request: Any, response: Any) -> Any:
-        response.available_transitions = [_description(each) for each in TRANSITIONS]
+        response.available_transitions = [_description(transition) for transition in TRANSITIONS]
         return response
 
 

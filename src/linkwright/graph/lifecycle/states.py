@@ -121,7 +121,7 @@ class StateMachine:
 
     def available(self) -> list[Transition]:
         """The transitions that start from the current state."""
-        return [each for each in TRANSITIONS if each.start == self.state]
+        return [transition for transition in TRANSITIONS if transition.start == self.state]
 
     def by_id(self, transition_id: int) -> Transition | None:
         """The available transition of a number; None when there is none."""

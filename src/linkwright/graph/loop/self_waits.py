@@ -54,10 +54,10 @@ def tell_if_it_waits_for_itself(future: Waited) -> None:
     if not isinstance(group, MutuallyExclusiveCallbackGroup) or group.can_execute(client):
         return  # nothing of the group runs
     frames = list(_frames(sys._getframe(1)))
-    running = next((each for each in frames if _entity_of(each) is not None), None)
+    running = next((frame for frame in frames if _entity_of(frame) is not None), None)
     if running is None or _entity_of(running).callback_group is not group:
         return
-    own = [each for each in frames[: frames.index(running)] if not each.f_code.co_filename.startswith(_OURS)]
+    own = [frame for frame in frames[: frames.index(running)] if not frame.f_code.co_filename.startswith(_OURS)]
     if not own:
         return
     call, callback = own[0], own[-1].f_code

@@ -182,7 +182,7 @@ def parameter_dict_from_yaml_file(
 
 
 def _messages(parameters: Sequence[Any]) -> list[Any]:
-    return [each.to_parameter_msg() if isinstance(each, Parameter) else each for each in parameters]
+    return [parameter.to_parameter_msg() if isinstance(parameter, Parameter) else parameter for parameter in parameters]
 
 
 def _message_type(name: str) -> Any:

@@ -80,8 +80,8 @@ class _Callbacks:
             parameter = ParameterEventHandler.get_parameter_from_event(event, handle.parameter_name, handle.node_name)
             if parameter is not None:
                 handle.callback(parameter)
-        for each in of_events:
-            each.callback(event)
+        for of_event in of_events:
+            of_event.callback(event)
 
 
 def _remove(handle: H, handles: list[H]) -> None:

@@ -63,7 +63,7 @@ class ParameterRules:
     def without_node(self, full_names: Iterable[str]) -> list[str]:
         """The patterns that fit none of some nodes."""
         names = list(full_names)
-        return [each for each in self._values if not any(map(_expression(each).fullmatch, names))]
+        return [value for value in self._values if not any(map(_expression(value).fullmatch, names))]
 
     def for_node(self, full_name: str) -> dict[str, Any]:
         """The values for a node, by parameter name.

@@ -71,7 +71,7 @@ class ParameterServices:
         return response
 
     def _set(self, request: Any, response: Any) -> Any:
-        response.results = [self._set_together([each]) for each in request.parameters]
+        response.results = [self._set_together([parameter]) for parameter in request.parameters]
         return response
 
     def _set_atomically(self, request: Any, response: Any) -> Any:
@@ -80,7 +80,7 @@ class ParameterServices:
 
     def _set_together(self, messages: Any) -> Any:
         try:
-            return self._node.set_parameters_atomically([Parameter.from_parameter_msg(each) for each in messages])
+            return self._node.set_parameters_atomically([Parameter.from_parameter_msg(message) for message in messages])
         except (ParameterException, ValueError) as error:
             return interface("SetParametersResult")(successful=False, reason=str(error))
 
@@ -106,7 +106,7 @@ class ParameterEvents:
         event: Any = self._publisher.msg_type()
         event.stamp = self._clock.now().to_msg()
         event.node = self._node_name
-        event.new_parameters = [each.to_parameter_msg() for each in change.new]
-        event.changed_parameters = [each.to_parameter_msg() for each in change.changed]
-        event.deleted_parameters = [each.to_parameter_msg() for each in change.deleted]
+        event.new_parameters = [parameter.to_parameter_msg() for parameter in change.new]
+        event.changed_parameters = [parameter.to_parameter_msg() for parameter in change.changed]
+        event.deleted_parameters = [parameter.to_parameter_msg() for parameter in change.deleted]
         self._publisher.publish(event)

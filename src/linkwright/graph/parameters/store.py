@@ -178,15 +178,15 @@ class ParameterStore:
         """Set all of them or, if one cannot be set, none; see ``Node.set_parameters_atomically``."""
         chosen = list(parameters)
         if self.pre_set:
-            chosen = [each for callback in tuple(self.pre_set) for each in callback(list(parameters))]
+            chosen = [parameter for callback in tuple(self.pre_set) for parameter in callback(list(parameters))]
             if not chosen:
                 return SetParametersResult(successful=False, reason=_EMPTIED)
-        if not all(isinstance(each, Parameter) for each in chosen):
+        if not all(isinstance(parameter, Parameter) for parameter in chosen):
             raise TypeError(phrase("parameter must be instance of type '{parameter}'", parameter=repr(Parameter)))
-        undeclared = [each.name for each in chosen if each.name not in self._parameters]
+        undeclared = [parameter.name for parameter in chosen if parameter.name not in self._parameters]
         if undeclared and not self.allow_undeclared:
             raise ParameterNotDeclaredException(undeclared, self._parameters)
-        return self._set([self._as_declared(each) for each in chosen])
+        return self._set([self._as_declared(parameter) for parameter in chosen])
 
     def _as_declared(self, parameter: Parameter) -> Parameter:
         """An empty list in the array type that is declared: which of them it is cannot be seen from it."""

@@ -106,14 +106,14 @@ def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: 
     there = list(others)
     reliability, durability, liveliness = qos.reliability, qos.durability, qos.liveliness
     if reliability is ReliabilityPolicy.BEST_AVAILABLE:
-        strict = publisher or all(each.reliability is ReliabilityPolicy.RELIABLE for each in there)
+        strict = publisher or all(profile.reliability is ReliabilityPolicy.RELIABLE for profile in there)
         reliability = ReliabilityPolicy.RELIABLE if strict else ReliabilityPolicy.BEST_EFFORT
     if durability is DurabilityPolicy.BEST_AVAILABLE:
-        strict = publisher or all(_is_transient_local(each) for each in there)
+        strict = publisher or all(_is_transient_local(profile) for profile in there)
         durability = DurabilityPolicy.TRANSIENT_LOCAL if strict else DurabilityPolicy.VOLATILE
     by_hand = LivelinessPolicy.MANUAL_BY_TOPIC
     if liveliness is LivelinessPolicy.BEST_AVAILABLE:
-        kinds = [each.liveliness is by_hand for each in there]
+        kinds = [profile.liveliness is by_hand for profile in there]
         strict = any(kinds) if publisher else bool(kinds) and all(kinds)
         liveliness = by_hand if strict else LivelinessPolicy.AUTOMATIC
     choose = min if publisher else max
@@ -121,7 +121,7 @@ def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: 
     def chosen(mine: Duration, theirs: Iterable[Duration]) -> Duration:
         if mine != BEST_AVAILABLE_DURATION:
             return mine
-        limited = [each for each in theirs if limit_ns(each) is not None]
+        limited = [their for their in theirs if limit_ns(their) is not None]
         return choose(limited) if limited else UNSPECIFIED
 
     return QoSProfile(
@@ -130,10 +130,10 @@ def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: 
         reliability=reliability,
         durability=durability,
         lifespan=qos.lifespan,
-        deadline=chosen(qos.deadline, (each.deadline for each in there)),
+        deadline=chosen(qos.deadline, (profile.deadline for profile in there)),
         liveliness=liveliness,
         liveliness_lease_duration=chosen(
-            qos.liveliness_lease_duration, (each.liveliness_lease_duration for each in there)
+            qos.liveliness_lease_duration, (profile.liveliness_lease_duration for profile in there)
         ),
         avoid_ros_namespace_conventions=qos.avoid_ros_namespace_conventions,
     )

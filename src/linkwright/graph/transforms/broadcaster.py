@@ -39,8 +39,8 @@ class StaticTransformBroadcaster:
 
     def sendTransform(self, transform: TransformStamped | Sequence[TransformStamped]) -> None:  # noqa: N802
         """Publish transforms; one that was sent before for the same child frame is replaced."""
-        for each in _listed(transform):
-            self._sent[each.child_frame_id] = each
+        for transform_stamped in _listed(transform):
+            self._sent[transform_stamped.child_frame_id] = transform_stamped
         self.pub_tf.publish(TFMessage(transforms=list(self._sent.values())))
 
 

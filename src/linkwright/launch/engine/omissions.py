@@ -38,11 +38,11 @@ class Omissions:
 
     def take(self, error: LinkwrightError) -> bool:
         """Leave out what an error kept from running, if something is missing and may be left out; whether it was."""
-        consequence = self.any and any(each.code in _CONSEQUENCES for each in error.diagnostics)
+        consequence = self.any and any(diagnostic.code in _CONSEQUENCES for diagnostic in error.diagnostics)
         if not (consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
             return False
         self.any = True
-        self._untold += [Note(each.message, each.span) for each in error.diagnostics]
+        self._untold += [Note(diagnostic.message, diagnostic.span) for diagnostic in error.diagnostics]
         return True
 
     def tell(self) -> None:
@@ -77,4 +77,4 @@ def note_that_nothing_is_left(error: LinkwrightError) -> None:
 def _is_missing(error: LinkwrightError) -> bool:
     if isinstance(error, (ModuleNotFoundError, FileNotFoundError)) or getattr(error, "missing", False):
         return True
-    return any(each.code in _MISSING for each in error.diagnostics)
+    return any(diagnostic.code in _MISSING for diagnostic in error.diagnostics)

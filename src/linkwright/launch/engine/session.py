@@ -286,8 +286,8 @@ class LaunchSession:
         if future is not None:
             self.hold(future)
         try:
-            for each in following or ():
-                self._visit(each, context, depth + 1)
+            for launch_description_entity in following or ():
+                self._visit(launch_description_entity, context, depth + 1)
         except LinkwrightError as error:
             raise located(entity.explain_inside(error), entity.place) from error
 

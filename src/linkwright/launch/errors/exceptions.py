@@ -65,12 +65,12 @@ def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> Linkw
 def _base_of(kind: type[Exception]) -> type[Exception]:
     """The nearest class that can be made from a text alone."""
     bases: list[type[Any]] = [each for each in kind.__mro__ if not issubclass(each, LinkwrightError)]
-    for each in bases:
+    for base in bases:
         try:
-            each("")
+            base("")
         except TypeError:
             continue
-        return each
+        return base
     return Exception
 
 

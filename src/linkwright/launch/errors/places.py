@@ -194,7 +194,7 @@ def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
         return error
     source = place.source()
     span = place.span(source)
-    error.diagnostics = tuple(each.but(span=span, source=source) for each in error.diagnostics)
+    error.diagnostics = tuple(diagnostic.but(span=span, source=source) for diagnostic in error.diagnostics)
     return error
 
 

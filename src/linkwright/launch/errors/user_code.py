@@ -65,7 +65,7 @@ def explain(error: BaseException, where: str, fallback: Place | None = None) -> 
     source = place.source() if place else None
     span = place.span(source) if place else None
     callers = dict.fromkeys(reversed(trail[:-1]))  # a function that calls itself is told of once
-    notes = tuple(Note(phrase("called from here"), each.span(read_source(each.file))) for each in callers)
+    notes = tuple(Note(phrase("called from here"), caller.span(read_source(caller.file))) for caller in callers)
     diagnostic = Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
 
@@ -139,7 +139,9 @@ def _import_hint(error: ImportError) -> Phrase | None:
     if parent in sys.modules:
         import pkgutil
 
-        siblings = [each.name for each in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))]
+        siblings = [
+            iter_module.name for iter_module in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))
+        ]
         return did_you_mean(name, siblings)
     known = did_you_mean(missing, ("launch", "launch_ros", "ament_index_python"))
     if known or not missing:
@@ -190,10 +192,10 @@ def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
     """Classes that the frame knows and that are, or derive from, the one whose constructor complained."""
     known = [*frame.f_globals.values(), *frame.f_locals.values()]
     return [
-        each
-        for each in known
-        if (inspect.isclass(each) and any(base.__name__ == class_name for base in each.__mro__))
-        or (inspect.isfunction(each) and each.__name__ == class_name)
+        function_type
+        for function_type in known
+        if (inspect.isclass(function_type) and any(base.__name__ == class_name for base in function_type.__mro__))
+        or (inspect.isfunction(function_type) and function_type.__name__ == class_name)
     ]
 
 

@@ -153,7 +153,8 @@ class IncludeLaunchDescription(Action):
         if self.place is not None and self._source.location_path is not None:
             note = Note(phrase("included from here"), self.place.span(self.place.source()))
             error.diagnostics = tuple(
-                each if note in each.notes else each.but(notes=(*each.notes, note)) for each in error.diagnostics
+                diagnostic if note in diagnostic.notes else diagnostic.but(notes=(*diagnostic.notes, note))
+                for diagnostic in error.diagnostics
             )
         return error
 

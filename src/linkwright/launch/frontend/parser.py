@@ -94,7 +94,7 @@ class Parser:
         if len(problems) == 1:
             raise problems[0]
         if problems:
-            problems[0].diagnostics = tuple(each for problem in problems for each in problem.diagnostics)
+            problems[0].diagnostics = tuple(diagnostic for problem in problems for diagnostic in problem.diagnostics)
             raise problems[0]
         entity.assert_entity_completely_parsed()
         return LaunchDescription(actions, deprecated_reason=deprecated)

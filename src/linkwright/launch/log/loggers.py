@@ -276,7 +276,7 @@ def reset() -> None:
     """Take the handlers and levels away from all loggers that were made here, and go back to the beginning."""
     for logger in list(logging.root.manager.loggerDict.values()):
         handlers = getattr(logger, "handlers", ())
-        kept = [each for each in handlers if not isinstance(each, ForEachLogger)]
+        kept = [handler for handler in handlers if not isinstance(handler, ForEachLogger)]
         if len(kept) < len(handlers) and isinstance(logger, logging.Logger):
             logger.handlers = kept
             logger.setLevel(logging.NOTSET)

@@ -154,7 +154,7 @@ class DeclaredSubstitution(Substitution):
 
     def __init_subclass__(cls, *, tag: str = "", shown: str | None = None, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
-        declared = tuple(each for each in vars(cls).values() if isinstance(each, Texts))
+        declared = tuple(texts for texts in vars(cls).values() if isinstance(texts, Texts))
         if declared:
             cls._arguments = declared
             if "__init__" not in vars(cls):
@@ -177,11 +177,11 @@ class DeclaredSubstitution(Substitution):
             Exception: there are too many or too few, see `wrong_count`.
         """
         arguments = cls._arguments
-        least, most = sum(each.is_required for each in arguments), len(arguments)
+        least, most = sum(argument.is_required for argument in arguments), len(arguments)
         if not least <= len(data) <= most:
             expected = str(most) if least == most else f"{least} or {most}"
             raise cls.wrong_count(f"{expected} argument{'' if most == 1 else 's'}", len(data))
-        return cls, dict(zip((each.name for each in arguments), data, strict=False))
+        return cls, dict(zip((argument.name for argument in arguments), data, strict=False))
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - for classes that tell
@@ -190,7 +190,7 @@ class DeclaredSubstitution(Substitution):
 
     def describe(self) -> str:
         """Its class and its arguments."""
-        texts = {each.name: each.describe(vars(self)[each.name]) for each in self._arguments}
+        texts = {argument.name: argument.describe(vars(self)[argument.name]) for argument in self._arguments}
         if self._shown is None:
             return f"{type(self).__name__}({', '.join(texts.values())})"
         return self._shown.format(kind=type(self).__name__, **texts)
@@ -205,7 +205,7 @@ def _constructor(cls: type[DeclaredSubstitution]) -> Callable[..., None]:
             parameters.append("*")
         parameters.append(argument.name if argument.is_required else f"{argument.name}=_default_{argument.name}")
         names[f"_default_{argument.name}"] = argument.default
-    lines = [f"    self.{each.name} = {each.name}" for each in cls._arguments]
+    lines = [f"    self.{argument.name} = {argument.name}" for argument in cls._arguments]
     code = f"def __init__({', '.join(parameters)}):\n" + "\n".join(lines)
     exec(compile(code, __file__, "exec"), names)  # noqa: S102 - made of the names of the class's own attributes
     made: Callable[..., None] = names["__init__"]

@@ -31,7 +31,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         *,
         deprecated_reason: str | None = None,
     ) -> None:
-        self._entities = [_checked(each) for each in initial_entities or ()]
+        self._entities = [_checked(initial_entity) for initial_entity in initial_entities or ()]
         self._deprecated_reason = deprecated_reason
 
     @property

@@ -217,7 +217,7 @@ class OnExecutionComplete(OnActionEventBase):
         return following
 
     def _is_of_another(self, action: Action) -> bool:
-        return not any(action is each for each in self._given)
+        return not any(action is launch_description_entity for launch_description_entity in self._given)
 
 
 class OnIncludeLaunchDescription(BaseEventHandler):

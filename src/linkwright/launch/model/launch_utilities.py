@@ -81,8 +81,8 @@ def visit_all_entities_and_collect_futures(
     following = entity.visit(context)
     future = entity.get_asyncio_future()
     collected = [] if future is None else [(entity, future)]
-    for each in following or ():
-        collected += visit_all_entities_and_collect_futures(each, context)
+    for launch_description_entity in following or ():
+        collected += visit_all_entities_and_collect_futures(launch_description_entity, context)
     return collected
 
 

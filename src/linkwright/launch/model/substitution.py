@@ -67,12 +67,12 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
 
 def perform_substitutions(context: LaunchContext, substitutions: Iterable[Substitution]) -> str:
     """The texts of several substitutions, joined."""
-    return "".join(context.perform_substitution(each) for each in substitutions)
+    return "".join(context.perform_substitution(substitution) for substitution in substitutions)
 
 
 def describe(substitutions: Iterable[Substitution]) -> str:
     """Several substitutions as listings show them."""
-    return " + ".join(each.describe() for each in substitutions)
+    return " + ".join(substitution.describe() for substitution in substitutions)
 
 
 def _single(value: Any) -> Substitution:

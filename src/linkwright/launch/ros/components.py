@@ -215,7 +215,7 @@ def to_parameters_list(
 
 
 def _messages(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
-    return [each.to_parameter_msg() for each in _parameters(context, full_name, sources)]
+    return [parameter.to_parameter_msg() for parameter in _parameters(context, full_name, sources)]
 
 
 def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:

@@ -205,8 +205,11 @@ class ComposableNodeContainer(Node):
 
         self.__real = None
         wanted = [
-            tuple(perform_substitutions(context, part) for part in (each.package, each.node_plugin))
-            for each in self.__composable_node_descriptions or ()
+            tuple(
+                perform_substitutions(context, part)
+                for part in (composable_node_description.package, composable_node_description.node_plugin)
+            )
+            for composable_node_description in self.__composable_node_descriptions or ()
         ]
         if not all(each in COMPONENTS for each in wanted):
             package, executable = (

@@ -121,14 +121,18 @@ def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]
         }
         for name, path in programs.scripts.items():
             found[name] = Executable(package, name, Origin.SOURCE, path)
-    found.update((each.name, each) for each in _installed(package, share))
+    found.update((executable.name, executable) for executable in _installed(package, share))
     return dict(sorted({**found, **ours}.items()))
 
 
 def installed_executable(finder: PackageFinder, package: str, name: str) -> Executable | None:
     """A program of a package that was built, even if one of ours has its name; None where there is none."""
     share = finder.find(package)
-    return None if share is None else next((each for each in _installed(package, share) if each.name == name), None)
+    return (
+        None
+        if share is None
+        else next((executable for executable in _installed(package, share) if executable.name == name), None)
+    )
 
 
 def find_executable(finder: PackageFinder, package: str, name: str) -> Executable:
@@ -154,7 +158,7 @@ def find_executable(finder: PackageFinder, package: str, name: str) -> Executabl
 def _installed(package: str, share: Path) -> Iterable[Executable]:
     folder = install_prefix(share) / "lib" / package
     for base, folders, files in os.walk(folder):
-        folders[:] = sorted(each for each in folders if not each.startswith(".") and each != "__pycache__")
+        folders[:] = sorted(folder for folder in folders if not folder.startswith(".") and folder != "__pycache__")
         for name in sorted(files):
             path = Path(base, name)
             if os.access(path, os.X_OK) and path.suffix not in (".so", ".dylib"):
@@ -171,7 +175,7 @@ def _script(finder: PackageFinder, executable: Executable) -> Path:
     assert entry is not None
     _check_module(executable, entry, root)
     others = (python_root(folder, name) for name, folder in finder.packages().items() if not is_installed(folder))
-    roots = dict.fromkeys([root, *(each for each in others if each is not None)])
+    roots = dict.fromkeys([root, *(other for other in others if other is not None)])
     try:
         return script_for(executable.package, executable.name, entry, list(roots))
     except OSError as error:

@@ -97,32 +97,32 @@ def managed(
     """
     sim_time = {"use_sim_time": is_true(context, "use_sim_time")}
     file = configured_parameters(context)
-    names = [each.node_name for each in servers if each.is_here]
+    names = [server.node_name for server in servers if server.is_here]
     own: Mapping[str, Any] = {**sim_time, "autostart": is_true(context, "autostart"), "node_names": names}
     started = [*servers, replace(_MANAGER, name=manager)]
     given: dict[str, list[Any]] = {
-        each.node_name: [file, {**sim_time, **(parameters or {}).get(each.node_name, {})}] for each in servers
+        server.node_name: [file, {**sim_time, **(parameters or {}).get(server.node_name, {})}] for server in servers
     }
     given[manager] = [own]
     if is_true(context, "use_composition"):
         container = f"{context.launch_configurations['namespace']}/{context.launch_configurations['container_name']}"
-        nodes = [_composed(each, given[each.node_name]) for each in started]
+        nodes = [_composed(server, given[server.node_name]) for server in started]
         return [LoadComposableNodes(target_container=container, composable_node_descriptions=nodes)]
     respawn = is_true(context, "use_respawn")
     level = ["--ros-args", "--log-level", context.launch_configurations["log_level"]]
     return [
         Node(
-            package=each.package,
-            executable=each.executable,
-            name=each.node_name,
+            package=server.package,
+            executable=server.executable,
+            name=server.node_name,
             output="screen",
-            parameters=given[each.node_name],
-            remappings=[*_TF, *each.remappings],
+            parameters=given[server.node_name],
+            remappings=[*_TF, *server.remappings],
             arguments=level,
-            respawn=respawn and each.node_name != manager,
+            respawn=respawn and server.node_name != manager,
             respawn_delay=_RESPAWN_SECONDS,
         )
-        for each in started
+        for server in started
     ]
 
 

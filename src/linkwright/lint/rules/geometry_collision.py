@@ -82,7 +82,7 @@ def _is_between(body: Body, bodies: Bodies, lacking: list[Body]) -> bool:
     """Whether what holds a body and something that it holds have collision shapes."""
     above = bodies.of(body.joint.parent) if body.joint is not None else None
     below = [each for each in bodies.all if each.joint is not None and each.joint.parent in body.links]
-    return above not in (None, *lacking) and any(each not in lacking for each in below)
+    return above not in (None, *lacking) and any(body not in lacking for body in below)
 
 
 class MissingVisual(Rule):
@@ -230,7 +230,7 @@ def _is_moved_to_a_child(subject: Subject, link: Link, felt: Bounds) -> bool:
     if not all(any(shape.origin.xyz) for shape in link.collisions) or link.name not in subject.frames:
         return False
     below = {joint.child for joint in subject.joints if joint.parent == link.name}
-    for child in (each for each in subject.links if each.name in below):
+    for child in (link for link in subject.links if link.name in below):
         seen = _bounds(subject, child.visuals) if child.visuals else None
         if seen is not None:
             placed = seen.moved(subject.frames[child.name].seen_from(subject.frames[link.name]))

@@ -21,7 +21,7 @@ class _FlawRule(Rule):
 
     def flawed(self, subject: Subject) -> Iterator[tuple[Link, Inertial, Flaw]]:
         """The links whose tensor has the flaw first of all."""
-        return (each for each in subject.tensor_flaws if each[2].kind == self.kind)
+        return (tensor_flaw for tensor_flaw in subject.tensor_flaws if tensor_flaw[2].kind == self.kind)
 
 
 class _TensorRule(_FlawRule, ABC):

@@ -173,7 +173,7 @@ class UndeclaredLaunchDependency(Rule):
         manifest = None if package is None else package.manifest
         if package is None or manifest is None or manifest.root.tag != "package":
             return
-        if any("$" in each.name for each in manifest.dependencies):
+        if any("$" in dependency.name for dependency in manifest.dependencies):
             return
         missing = {
             name: note
@@ -225,7 +225,9 @@ def _declare(manifest: Manifest, names: list[str]) -> Fix | None:
     source = manifest.document.source
     if source is None or not manifest.dependencies:
         return None
-    run_time = [each for each in manifest.dependencies if each.tag not in ("test_depend", "doc_depend")]
+    run_time = [
+        dependency for dependency in manifest.dependencies if dependency.tag not in ("test_depend", "doc_depend")
+    ]
     last = (run_time or manifest.dependencies)[-1].element
     found = element_range(last)
     if found is None:

@@ -219,7 +219,7 @@ class FixedFrameUnknown(PackageRule):
             if source is None or match is None:
                 continue
             frame = match["name"].strip("'\"")
-            if frame in names or frame in _USUAL_FRAMES or any(_fits(frame, each) for each in patterns):
+            if frame in names or frame in _USUAL_FRAMES or any(_fits(frame, pattern) for pattern in patterns):
                 continue
             like = misspelling_of(frame, names)
             if like is not None:

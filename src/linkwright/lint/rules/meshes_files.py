@@ -24,7 +24,7 @@ def case_twin(path: Path) -> Path | None:
     for name in path.relative_to(path.anchor).parts:
         if not (current / name).exists() or not _is_listed(current, name):
             try:
-                twin = next((each for each in current.iterdir() if each.name.casefold() == name.casefold()), None)
+                twin = next((path for path in current.iterdir() if path.name.casefold() == name.casefold()), None)
             except OSError:
                 return None
             if twin is None:
@@ -39,7 +39,7 @@ def _is_listed(folder: Path, name: str) -> bool:
     """Whether a folder has an entry of exactly this name; a disk that ignores case finds others too."""
     if (folder / name.swapcase()).exists() and name.swapcase() != name:
         try:
-            return any(each.name == name for each in folder.iterdir())
+            return any(path.name == name for path in folder.iterdir())
         except OSError:
             return True
     return True

@@ -198,7 +198,7 @@ class FootprintHasBody(Rule):
         for link in subject.links:
             if not link.name.endswith("base_footprint") or link.element is None:
                 continue
-            solid = next((each for each in link.collisions if not _is_tiny(each.geometry)), None)
+            solid = next((collision for collision in link.collisions if not _is_tiny(collision.geometry)), None)
             part = None if solid is None else solid.element
             is_root = subject.robot is None or subject.robot.root == link.name
             # The mass of a root has a rule of its own.

@@ -56,7 +56,7 @@ def wheels(subject: Subject, type_of_joint: str = "continuous") -> Iterator[Whee
 
 def joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
     """The joints between a joint and the root, from below."""
-    moving = {each.child: each for each in robot.joints.values()}
+    moving = {joint.child: joint for joint in robot.joints.values()}
     while (above := moving.get(joint.parent)) is not None:
         yield above
         joint = above
@@ -362,12 +362,12 @@ def _is_driven(subject: Subject, joint: Joint) -> bool:
     """Whether a plugin of a simulator or `<ros2_control>` commands the joint."""
     for gazebo in subject.elements("gazebo"):
         for plugin in gazebo.elements("plugin"):
-            if any(joint.name in each.text().split() for each in plugin.walk()):
+            if any(joint.name in element.text().split() for element in plugin.walk()):
                 return True
     return any(
-        each.attributes.get("name") == joint.name and each.first("command_interface") is not None
+        element.attributes.get("name") == joint.name and element.first("command_interface") is not None
         for system in subject.elements("ros2_control")
-        for each in system.elements("joint")
+        for element in system.elements("joint")
     )
 
 

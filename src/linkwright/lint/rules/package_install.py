@@ -258,14 +258,14 @@ class InstalledFileMissing(PackageRule):
                 hint = checkout_hint(package, item.text) or near_file(package, item.text)
                 yield self.report(message, span=item.span, source=setup.source, hint=hint)
         if cmake is not None:
-            for each in cmake.required:
-                text = each.text.rstrip("/")
+            for argument in cmake.required:
+                text = argument.text.rstrip("/")
                 if text and not text.startswith("/") and "<" not in text and not _is_there(package, text):
-                    message = phrase("CMakeLists.txt installs '{text}', which does not exist", text=each.text)
+                    message = phrase("CMakeLists.txt installs '{text}', which does not exist", text=argument.text)
                     like = near_folder(package, text)
                     near = phrase("did you mean {names}?", names=quoted(like)) if like else near_file(package, text)
                     hint = checkout_hint(package, text) or near
-                    yield self.report(message, span=cmake.span(each), source=each.source, hint=hint)
+                    yield self.report(message, span=cmake.span(argument), source=argument.source, hint=hint)
 
 
 def _is_there(package: PackageContext, path: str) -> bool:
@@ -304,7 +304,7 @@ def near_folder(package: PackageContext, folder: str) -> str | None:
     if not folder or package.has(folder):
         return None
     parent = folder.rpartition("/")[0]
-    beside = [each for each in package.folders if each.rpartition("/")[0] == parent]
+    beside = [folder for folder in package.folders if folder.rpartition("/")[0] == parent]
     return next(iter(nearest(folder, beside, 1)), None)
 
 

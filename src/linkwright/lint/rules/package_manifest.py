@@ -209,19 +209,21 @@ class DependencyRepeated(ManifestRule):
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
         """The findings in a manifest."""
-        generic = {each.name: each for each in reversed(manifest.dependencies) if each.tag == "depend"}
+        generic = {
+            dependency.name: dependency for dependency in reversed(manifest.dependencies) if dependency.tag == "depend"
+        }
         seen: dict[tuple[str, str], Dependency] = {}
-        for each in manifest.dependencies:
-            first = seen.setdefault((each.name, each.tag), each)
-            if each.tag in _DOUBLED_BY_DEPEND and first is each:
-                first = generic.get(each.name, each)
-            if first is not each and _same_condition(first.element.attributes, each.element.attributes):
+        for dependency in manifest.dependencies:
+            first = seen.setdefault((dependency.name, dependency.tag), dependency)
+            if dependency.tag in _DOUBLED_BY_DEPEND and first is dependency:
+                first = generic.get(dependency.name, dependency)
+            if first is not dependency and _same_condition(first.element.attributes, dependency.element.attributes):
                 note = Note(phrase("<{tag}> is here", tag=first.tag), first.element.span())
-                message = phrase("the dependency on '{name}' is named again", name=each.name)
-                fix = remove_element(each.element)
-                harmless = Severity.INFO if first.tag == each.tag else None
+                message = phrase("the dependency on '{name}' is named again", name=dependency.name)
+                fix = remove_element(dependency.element)
+                harmless = Severity.INFO if first.tag == dependency.tag else None
                 yield self.report(
-                    message, each.element, notes=[note], hint=phrase("remove it"), fix=fix, severity=harmless
+                    message, dependency.element, notes=[note], hint=phrase("remove it"), fix=fix, severity=harmless
                 )
 
 
@@ -250,10 +252,12 @@ class DependencyOnItself(ManifestRule):
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
         """The findings in a manifest."""
-        for each in manifest.dependencies:
-            if each.name == manifest.name:
-                message = phrase("the package '{name}' depends on itself", name=each.name)
-                yield self.report(message, each.element, hint=phrase("remove it"), fix=remove_element(each.element))
+        for dependency in manifest.dependencies:
+            if dependency.name == manifest.name:
+                message = phrase("the package '{name}' depends on itself", name=dependency.name)
+                yield self.report(
+                    message, dependency.element, hint=phrase("remove it"), fix=remove_element(dependency.element)
+                )
 
 
 class BuildTypeDiffers(PackageRule):

@@ -116,7 +116,7 @@ class MisplacedElement(Rule):
 
 def _is_no_offset(origin: Element) -> bool:
     """Whether an origin would move nothing where it is read either."""
-    return not any(float(each) for name in ("xyz", "rpy") for each in values(origin, name))
+    return not any(float(value) for name in ("xyz", "rpy") for value in values(origin, name))
 
 
 def _nearest_homes(homes: Sequence[str], place: Place) -> Sequence[str]:

@@ -269,7 +269,7 @@ class UnusedMacroParameter(XacroRule):
             if parameter.forward:
                 continue  # no call has to give it
             if parameter.is_block:
-                is_used = name in blocks or (calls_others and any(name in each.blocks for each in facts.files.values()))
+                is_used = name in blocks or (calls_others and any(name in file.blocks for file in facts.files.values()))
             else:
                 # What a macro calls sees the properties of the macro, so a name that is used elsewhere may be this one.
                 is_used = name in used or is_open or (calls_others and (name in facts.names or facts.is_open))
@@ -325,7 +325,9 @@ def _is_of_table(definition: Definition, file: FileFacts, used: frozenset[str]) 
     table, _, _ = definition.name.rpartition("_")
     if "_" not in table or misspelling_of(definition.name, used) is not None:
         return False
-    others = {each.name for each in file.properties if each.name.rpartition("_")[0] == table} - {definition.name}
+    others = {definition.name for definition in file.properties if definition.name.rpartition("_")[0] == table} - {
+        definition.name
+    }
     return len(others & used) >= max(2, len(others - used) + 1)
 
 
@@ -337,7 +339,7 @@ def _is_mathematics(value: str) -> bool:
         number = abs(float(value))
     except ValueError:
         return False
-    return any(isclose(number, each, rel_tol=_ROUNDED) for each in _CONSTANTS)
+    return any(isclose(number, constant, rel_tol=_ROUNDED) for constant in _CONSTANTS)
 
 
 def _is_remove(element: Element) -> bool:
@@ -345,7 +347,7 @@ def _is_remove(element: Element) -> bool:
 
 
 def _is_first(definition: Definition, file: FileFacts) -> bool:
-    first = next(each for each in file.arguments if each.name == definition.name)
+    first = next(argument for argument in file.arguments if argument.name == definition.name)
     return first is definition
 
 

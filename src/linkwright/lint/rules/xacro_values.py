@@ -145,7 +145,7 @@ class PropertyDefinedTwice(XacroRule):
             if first.order < use.order <= second.order and (name in use.found.names or use.found.is_open):
                 return False
         between = [
-            each for each in (*file.calls, *file.includes) if first.order < each.order < second.order
+            call for call in (*file.calls, *file.includes) if first.order < call.order < second.order
         ]  # what they hold may use it
         return not between or not (facts.is_open or name in facts.names)
 
@@ -267,7 +267,7 @@ def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[E
             if f"${{{name}}}" not in use.element.attributes[use.attribute].replace(" ", ""):
                 continue
             around = [parent for parent in use.parents if parent.tag == "xacro:macro"]
-            hidden = any(name in {each.name for each in file.parameters(each_macro)} for each_macro in around)
+            hidden = any(name in {parameter.name for parameter in file.parameters(each_macro)} for each_macro in around)
             if (macro is not None and macro in around) or (macro is None and not hidden):
                 return use.element, use.attribute
     return None

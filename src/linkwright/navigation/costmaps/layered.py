@@ -89,7 +89,7 @@ class LayeredCostmap:
         grid = self.costmap.grid
         footprint = placed(self._footprint, x, y, yaw)
         moment = Moment(x, y, footprint, self.inscribed_radius, time_ns)
-        active = [each for each in self.layers if each.enabled]
+        active = [layer for layer in self.layers if layer.enabled]
         window = Window() if self._updated and not self.rolling else Window.of(grid)
         for layer in active:
             window = layer.changed(window, moment, grid)
@@ -108,7 +108,7 @@ class LayeredCostmap:
 
     def is_current(self, time_ns: int) -> bool:
         """Whether it was updated, and the data of all layers are recent enough."""
-        return self._updated and all(each.is_current(time_ns) for each in self.layers if each.enabled)
+        return self._updated and all(layer.is_current(time_ns) for layer in self.layers if layer.enabled)
 
     def clear_entirely(self) -> None:
         """Clear all layers."""

@@ -63,13 +63,17 @@ class ObstacleLayer(SeenLayer):
 
     def is_current(self, time_ns: int) -> bool:
         """Whether all sensors published within the expected time."""
-        return not self._forgotten and all(each.is_current(time_ns) for each in self.buffers)
+        return not self._forgotten and all(buffer.is_current(time_ns) for buffer in self.buffers)
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
         """The window that rays and points of the new observations touch."""
         self._forgotten = False
         window = window.joined(self.take_extra())
-        seen = [(each, buffer.source) for buffer in self.buffers for each in buffer.observations(moment.time_ns)]
+        seen = [
+            (observation, buffer.source)
+            for buffer in self.buffers
+            for observation in buffer.observations(moment.time_ns)
+        ]
         for observation, source in seen:
             if source.clearing:
                 window = window.joined(self.clear_rays(observation, grid))

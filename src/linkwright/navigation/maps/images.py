@@ -88,7 +88,7 @@ def _grey_with_opacity(pixels: NDArray[np.uint8]) -> Any:
 
 
 def _pgm(path: Path, data: bytes, header: re.Match[bytes]) -> Picture:
-    columns, rows, most = (int(each) for each in header.groups()[1:])
+    columns, rows, most = (int(group) for group in header.groups()[1:])
     if not 0 < rows * columns <= MOST_PIXELS or not 0 < most < 1 << 16:
         raise _unreadable(path, phrase("its header says {size}", size=f"{columns} x {rows}, {most}"))
     rest = data[header.end() :]

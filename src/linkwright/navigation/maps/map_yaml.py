@@ -158,7 +158,7 @@ class _Reader:
         if node is None:
             return MapMode.TRINARY
         text = str(node.value) if isinstance(node, yaml.ScalarNode) else ""
-        known = [each.value for each in MapMode]
+        known = [map_mode.value for map_mode in MapMode]
         if text not in known:
             message = phrase("'mode' must be one of {known}", known=", ".join(known))
             raise self._error(message, node, did_you_mean(text, known))

@@ -234,7 +234,7 @@ class Mapper:
 
     def _match(self, nodes: list[int], scan: PlanarScan, guess: Floats, search: Search) -> Steps[Match | None]:
         """Match against the scans of some nodes; None where that constrains nothing."""
-        reference = Reference([self.scans[each] for each in nodes], self.graph.poses[nodes])
+        reference = Reference([self.scans[node] for node in nodes], self.graph.poses[nodes])
         yield
         found = yield from match(reference, scan, guess, search, expand=self.settings.use_response_expansion)
         if found is None or found.response < self.settings.link_match_minimum_response_fine:

@@ -95,7 +95,7 @@ class _Window:
         level = max(0, (side // _BLOCKS).bit_length() - 1)
         offsets = np.arange(-self.half, self.half + 1, 1 << level)
         angle, row, column = (
-            each.ravel() for each in np.meshgrid(np.arange(len(self.angles)), offsets, offsets, indexing="ij")
+            array.ravel() for array in np.meshgrid(np.arange(len(self.angles)), offsets, offsets, indexing="ij")
         )
         return level, _Blocks(angle, row, column, np.zeros(len(angle)))
 
@@ -128,7 +128,7 @@ class _Window:
     def children(self, blocks: _Blocks, level: int) -> _Blocks:
         """The quarters of blocks, as far as they are in the window; `level` is that of the quarters."""
         side = 1 << level
-        angle, row, column = (np.repeat(each, 4) for each in (blocks.angle, blocks.row, blocks.column))
+        angle, row, column = (np.repeat(array, 4) for array in (blocks.angle, blocks.row, blocks.column))
         row += np.tile((0, 0, side, side), len(blocks.angle))
         column += np.tile((0, side, 0, side), len(blocks.angle))
         inside = (row <= self.half) & (column <= self.half)

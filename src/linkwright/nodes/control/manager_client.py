@@ -54,7 +54,7 @@ class ManagerClient:
         """Set a parameter of the manager; whether it accepted it."""
         parameter = Parameter(name, value=value).to_parameter_msg()
         answer = await self._call("rcl_interfaces/srv/SetParameters", "set_parameters", {"parameters": [parameter]})
-        return all(each.successful for each in answer.results)
+        return all(result.successful for result in answer.results)
 
     async def switch(self, activate: Sequence[str], deactivate: Sequence[str], timeout: float, *, asap: bool) -> Any:
         """Switch controllers, strictly."""

@@ -111,7 +111,9 @@ class Spawner(ManagerProgram):
         if wanted.controller_type:
             found["type"] = wanted.controller_type
         if wanted.controller_ros_args:
-            found["node_options_args"] = [word for each in wanted.controller_ros_args for word in each.split()]
+            found["node_options_args"] = [
+                word for controller_ros_arg in wanted.controller_ros_args for word in controller_ros_arg.split()
+            ]
         if wanted.fallback_controllers:
             found["fallback_controllers"] = wanted.fallback_controllers
         if self._files:

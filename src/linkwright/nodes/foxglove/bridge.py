@@ -127,11 +127,11 @@ class FoxgloveBridge(SingleNode):
         if gone:
             messages.append({"op": "unadvertise", "channelIds": gone})
         if channels:
-            messages.append({"op": "advertise", "channels": [each.told() for each in channels]})
+            messages.append({"op": "advertise", "channels": [channel.told() for channel in channels]})
         if ended:
             messages.append({"op": "unadvertiseServices", "serviceIds": ended})
         if services:
-            messages.append({"op": "advertiseServices", "services": [each.told() for each in services]})
+            messages.append({"op": "advertiseServices", "services": [service.told() for service in services]})
         for session in self._sessions:
             for message in messages:
                 session.client.send(message)
@@ -144,8 +144,8 @@ class FoxgloveBridge(SingleNode):
         if not watching:
             return
         changed = [
-            told(f"{event.node}.{each.name}", plain_value(each.value))
-            for each in (*event.new_parameters, *event.changed_parameters)
+            told(f"{event.node}.{new_parameter.name}", plain_value(new_parameter.value))
+            for new_parameter in (*event.new_parameters, *event.changed_parameters)
         ]
         for session in watching:
             wanted = [each for each in changed if not session.parameters or each["name"] in session.parameters]
@@ -216,8 +216,13 @@ class FoxgloveBridge(SingleNode):
                 "sessionId": self._identity,
             }
         )
-        client.send({"op": "advertise", "channels": [each.told() for each in self._offer.channels.all()]})
-        client.send({"op": "advertiseServices", "services": [each.told() for each in self._offer.services.all()]})
+        client.send({"op": "advertise", "channels": [channel.told() for channel in self._offer.channels.all()]})
+        client.send(
+            {
+                "op": "advertiseServices",
+                "services": [offered_service.told() for offered_service in self._offer.services.all()],
+            }
+        )
 
 
 def _listen(address: str, port: int) -> socket.socket:

@@ -40,15 +40,17 @@ class Parameters:
             by_node = dict.fromkeys(self._nodes())
         self._forget_the_gone()
         found = await asyncio.gather(*(self._of(node, wanted) for node, wanted in by_node.items()))
-        return [each for parameters in found for each in parameters if self._wanted.accepts(each["name"])]
+        return [
+            parameter for parameters in found for parameter in parameters if self._wanted.accepts(parameter["name"])
+        ]
 
     async def set(self, told: Sequence[Mapping[str, Any]]) -> None:
         """Set parameters; those that nodes refuse keep their values."""
-        for each in told:
-            name = str(each.get("name", ""))
+        for mapping in told:
+            name = str(mapping.get("name", ""))
             node, _, parameter = name.partition(".")
             if parameter and node in self._nodes() and self._wanted.accepts(name):
-                value = _value(each)
+                value = _value(mapping)
                 await self._answer(self._client(node).set_parameters([Parameter(parameter, value=value)]))
 
     def close(self) -> None:

@@ -92,7 +92,14 @@ class Services:
         Raises:
             CallFailedError: there is none.
         """
-        service = next((each for each in self._offered.values() if each.number == request.service), None)
+        service = next(
+            (
+                offered_service
+                for offered_service in self._offered.values()
+                if offered_service.number == request.service
+            ),
+            None,
+        )
         if service is None:
             raise CallFailedError("there is no such service any more")
         if request.encoding != ENCODING:

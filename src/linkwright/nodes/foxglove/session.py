@@ -157,7 +157,7 @@ class Session:
             self._complain(f"there is no channel {channel_number}")
         elif number in self._forwardings:
             self._complain(f"subscription {number} is there already")
-        elif any(each.channel is channel for each in self._forwardings.values()):
+        elif any(forwarding.channel is channel for forwarding in self._forwardings.values()):
             self._complain(f"'{channel.topic}' is subscribed to already", StatusLevel.WARNING)
         else:
             self._forwardings[number] = Forwarding(self.offer.node, channel, self.client, number)
@@ -204,7 +204,7 @@ class Session:
         except (ValueError, TypeError, AttributeError, LinkwrightError) as error:
             self._complain(f"a parameter was not set: {str(error)[:200]}")
         if identity is not None:
-            await self._tell_parameters([str(each.get("name", "")) for each in parameters], identity)
+            await self._tell_parameters([str(parameter.get("name", "")) for parameter in parameters], identity)
 
     async def _fetch(self, uri: str, request: int) -> None:
         try:

@@ -61,7 +61,7 @@ class Channels:
 
     def get(self, number: int) -> Channel | None:
         """The channel with a number."""
-        return next((each for each in self._channels.values() if each.number == number), None)
+        return next((channel for channel in self._channels.values() if channel.number == number), None)
 
     def look(self) -> tuple[list[Channel], list[int]]:
         """The channels that came since the last call, and the numbers of those that went."""

@@ -154,7 +154,7 @@ class _Bridge(SingleNode):
 
         def take(message: Any, info: MessageInfo) -> None:
             # What was sent by the bridge comes back where messages go both ways.
-            if all(info.publisher_gid != each.gid for each in self._publishers):
+            if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
                 if commander is not None and drivers is not None:
                     commander.obey(info)
                     drivers.hear(message, info)

@@ -53,7 +53,7 @@ def _pose_stamped(transform: Any) -> Any:
 
 
 def _poses(message: Any) -> Any:
-    poses = get_message("geometry_msgs/msg/PoseArray")(poses=[_pose(each) for each in message.transforms])
+    poses = get_message("geometry_msgs/msg/PoseArray")(poses=[_pose(transform) for transform in message.transforms])
     if message.transforms:
         poses.header = message.transforms[0].header
     return poses

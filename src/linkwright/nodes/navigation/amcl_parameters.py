@@ -41,7 +41,7 @@ _DEFAULTS: dict[str, Any] = {
     "map_topic": "map",
     "first_map_only": False,
     "freespace_downsampling": False,
-    **{each.name: each.default for kind in (LaserSettings, FilterSettings) for each in fields(kind)},
+    **{field.name: field.default for kind in (LaserSettings, FilterSettings) for field in fields(kind)},
 }
 _MOTIONS: dict[str, MotionModel] = {
     "differential": differential,
@@ -143,9 +143,9 @@ def read_parameters(node: Node) -> AmclSettings:
         # alpha1 turn of turn, alpha2 turn of drive, alpha3 drive of drive, alpha4 drive of turn
         noise=Noise(*(value(f"alpha{number}") for number in range(1, 6))),
         model=model,
-        laser=LaserSettings(**{each.name: value(each.name) for each in fields(LaserSettings)}),
+        laser=LaserSettings(**{field.name: value(field.name) for field in fields(LaserSettings)}),
         skipping=skipping,
-        filter=FilterSettings(**{each.name: value(each.name) for each in fields(FilterSettings)}),
+        filter=FilterSettings(**{field.name: value(field.name) for field in fields(FilterSettings)}),
         max_beams=value("max_beams"),
         range_max=value("laser_max_range"),
         range_min=value("laser_min_range"),

@@ -277,7 +277,7 @@ class BehaviorNode(ManagedNode):
         if found is None:
             return
         yaw = rpy_from_quaternion(found[3:])[2]
-        corners = np.array([(each.x, each.y) for each in message.polygon.points], np.float64).reshape(-1, 2)
+        corners = np.array([(point.x, point.y) for point in message.polygon.points], np.float64).reshape(-1, 2)
         c, s = np.cos(yaw), np.sin(yaw)
         footprint: Footprint = (corners - found[:2]) @ np.array([[c, -s], [s, c]])
         self._footprint = footprint

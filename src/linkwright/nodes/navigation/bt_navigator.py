@@ -334,13 +334,13 @@ def _is_usual(path: str) -> bool:
 
 
 def _length(path: Any) -> float:
-    places = [each.pose.position for each in path.poses]
+    places = [pose.pose.position for pose in path.poses]
     return sum(hypot(b.x - a.x, b.y - a.y) for a, b in pairwise(places))
 
 
 def _left_on(path: Any, x: float, y: float) -> float:
     """The distance along a path from its pose closest to a place to its end, in metres."""
-    places = [each.pose.position for each in path.poses]
+    places = [pose.pose.position for pose in path.poses]
     nearest = min(range(len(places)), key=lambda index: hypot(places[index].x - x, places[index].y - y))
     rest = places[nearest:]
     along = sum(hypot(b.x - a.x, b.y - a.y) for a, b in pairwise(rest))

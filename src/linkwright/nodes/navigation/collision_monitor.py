@@ -136,8 +136,8 @@ class MonitorNode(ManagedNode):
             if points is None:
                 return Verdict(STILL, Action.STOP, _NO_SOURCE)
             seen[source.name] = points
-        zones = [each.judging(velocity, seen) for each in self._zones]
-        return judged(velocity, [each for each in zones if each is not None])
+        zones = [zone.judging(velocity, seen) for zone in self._zones]
+        return judged(velocity, [zone for zone in zones if zone is not None])
 
     def _publish(self, velocity: Velocity) -> None:
         """Publish a velocity; zeros only for ``stop_pub_timeout``, so that others can drive then."""

@@ -73,9 +73,9 @@ class Zone:
         """Its name, rule, shape at a velocity and points; None if it is switched off or has no shape."""
         if not self._value("enabled", True):
             return None
-        for each in self._ranges:
-            if each.covers(velocity):
-                self._shape = each.shape
+        for speed_range in self._ranges:
+            if speed_range.covers(velocity):
+                self._shape = speed_range.shape
                 break
         self._place()
         if self._shape is None:
@@ -203,7 +203,7 @@ class Zone:
             pose = self._transforms.lookup(self._base, header.frame_id or self._base, stamp_ns)[0]
         except TransformException:
             return
-        corners = np.array([(each.x, each.y, 0.0) for each in self._told.polygon.points])
+        corners = np.array([(point.x, point.y, 0.0) for point in self._told.polygon.points])
         self._shape = Outline((corners @ rotation_matrix(pose[3:]).T + np.array(pose[:3]))[:, :2])
         if header.frame_id in ("", self._base) or stamp_ns:
             self._told = None

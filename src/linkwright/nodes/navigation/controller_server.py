@@ -84,9 +84,9 @@ class ControllerNode(ManagedNode):
             for each in progress or texts_of(self, "progress_checker_plugins", ["progress_checker"])
         }
         names = texts_of(self, "goal_checker_plugins", ["goal_checker"])
-        self._checkers = {each: make_goal_checker(self, each) for each in names}
+        self._checkers = {name: make_goal_checker(self, name) for name in names}
         names = texts_of(self, "controller_plugins", ["FollowPath"])
-        self._followers = {each: make_follower(self, each) for each in names}
+        self._followers = {name: make_follower(self, name) for name in names}
         self.costmap.trigger_configure()
         odometry, limit = get_message("nav_msgs/msg/Odometry"), get_message("nav2_msgs/msg/SpeedLimit")
         self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))

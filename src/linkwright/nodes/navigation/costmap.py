@@ -297,7 +297,7 @@ class CostmapNode(ManagedNode):
             layered.resize(wanted)
 
     def _on_footprint(self, message: Any) -> None:
-        corners = np.array([(each.x, each.y) for each in message.points], np.float64).reshape(-1, 2)
+        corners = np.array([(point.x, point.y) for point in message.points], np.float64).reshape(-1, 2)
         if len(corners) < _LEAST_CORNERS or not np.isfinite(corners).all():
             self.get_logger().error(f"a footprint has three corners or more, and one came with {len(corners)}")
             return
@@ -308,7 +308,7 @@ class CostmapNode(ManagedNode):
         layered = self._layered
         if layered is None or self._shared is None:
             return
-        names = {each.name for each in changed}
+        names = {parameter.name for parameter in changed}
         if names & {"footprint", "robot_radius", "footprint_padding"}:
             try:
                 layered.padding = self._value("footprint_padding")
@@ -394,7 +394,7 @@ def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) ->
         name,
         namespace=namespace,
         parameters=parameters,
-        remappings=[_for_tf(server, each) for each in remappings if not each[0].startswith("__")],
+        remappings=[_for_tf(server, remapping) for remapping in remappings if not remapping[0].startswith("__")],
         enclave=ros.enclave or "/",
     )
 

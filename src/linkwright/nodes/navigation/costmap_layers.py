@@ -91,7 +91,11 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
         layer = maker(shared, name)
         layer.enabled = shared.value(f"{name}.enabled", True)
         shared.layers[name] = layer
-    given = [each.removesuffix(".plugin") for each in node.undeclared_overrides() if each.endswith(".plugin")]
+    given = [
+        undeclared_override.removesuffix(".plugin")
+        for undeclared_override in node.undeclared_overrides()
+        if undeclared_override.endswith(".plugin")
+    ]
     for name in given:
         take_unread(node, name)
     if given:

@@ -218,8 +218,8 @@ class MapTopic:
 
     def destroy(self) -> None:
         """Remove the subscriptions."""
-        for each in self._subscriptions:
-            each.destroy()
+        for subscription in self._subscriptions:
+            subscription.destroy()
 
     def _take(self, message: Any) -> None:
         try:

@@ -171,7 +171,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
 
     def tell(self, error: LinkwrightError) -> None:
         """Log a finding, with its place and hint."""
-        self.get_logger().error("\n".join(render(each) for each in error.diagnostics))
+        self.get_logger().error("\n".join(render(diagnostic) for diagnostic in error.diagnostics))
 
 
 class ManagedServer(SingleNode):

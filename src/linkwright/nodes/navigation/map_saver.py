@@ -96,7 +96,7 @@ class _Saving:
         except BadGridError as error:
             return f"what came is no map: {error}"
         except LinkwrightError as error:
-            return "\n".join(render(each) for each in error.diagnostics)
+            return "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
         return None
 
     async def _map_of(self, topic: str) -> Any:

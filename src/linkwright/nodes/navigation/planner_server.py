@@ -102,7 +102,7 @@ class PlannerNode(ManagedNode):
     def _planner(self, name: str) -> Settings:
         kind = type_of(self, name, _USUAL)
         usual = _OTHERS.get(kind, Settings())
-        settings = declared(self, name, Settings, **{each.name: getattr(usual, each.name) for each in fields(usual)})
+        settings = declared(self, name, Settings, **{field.name: getattr(usual, field.name) for field in fields(usual)})
         if kind != _NAVFN:
             take_unread(self, name)
             self.get_logger().warning(
@@ -119,7 +119,7 @@ class PlannerNode(ManagedNode):
             known = " ".join(self._planners)
             self.get_logger().error(f"planner {name} is not a valid planner. Planner names are: {known}")
             raise GoalError("INVALID_PLANNER", f"Planner id {name} is invalid")
-        names = [each.name for each in fields(Settings)]
+        names = [field.name for field in fields(Settings)]
         now = {each: self.get_parameter(f"{name}.{each}").value for each in names}
         return name, replace(self._planners[name], **now)
 
@@ -185,8 +185,8 @@ class PlannerNode(ManagedNode):
             raise GoalError("NO_VIAPOINTS_GIVEN", "No viapoints given")
         start = self._start_of(request)
         parts = []
-        for each in goals:
-            part = yield from self._planned(start, self._placed(each), request.planner_id)
+        for goal in goals:
+            part = yield from self._planned(start, self._placed(goal), request.planner_id)
             parts.append(part)
             start = (float(part[-1, 0]), float(part[-1, 1]), float(part[-1, 2]))
         return np.concatenate(parts)

@@ -25,8 +25,8 @@ def declared(node: Node, prefix: str, table: type[T], **defaults: Any) -> T:
         LinkwrightError: a parameter has another type.
     """
     values = {
-        each.name: value_of(node, f"{prefix}.{each.name}", defaults.get(each.name, each.default))
-        for each in fields(table)  # type: ignore[arg-type]  # it is a dataclass
+        field.name: value_of(node, f"{prefix}.{field.name}", defaults.get(field.name, field.default))
+        for field in fields(table)  # type: ignore[arg-type]  # it is a dataclass
     }
     return table(**values)
 
@@ -71,7 +71,11 @@ def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
 
 def take_unread(node: Node, plugin: str) -> list[str]:
     """Declare the unknown parameters of a plugin; their names without the plugin's."""
-    names = [each for each in node.undeclared_overrides() if each.startswith(f"{plugin}.")]
+    names = [
+        undeclared_override
+        for undeclared_override in node.undeclared_overrides()
+        if undeclared_override.startswith(f"{plugin}.")
+    ]
     for name in names:
         node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True))
-    return [each.removeprefix(f"{plugin}.") for each in names]
+    return [name.removeprefix(f"{plugin}.") for name in names]

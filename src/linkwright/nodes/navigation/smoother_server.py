@@ -80,7 +80,7 @@ class SmootherNode(ManagedNode):
         elif self._costmap is None:
             self._fail("FAILED_TO_SMOOTH_PATH", "Costmap is not available")
         else:
-            values = {each.name: self.get_parameter(f"{name}.{each.name}").value for each in fields(Smoothing)}
+            values = {field.name: self.get_parameter(f"{name}.{field.name}").value for field in fields(Smoothing)}
             poses = poses_of(request.path.poses)
             points, _ = smoothed(poses[:, :2], Smoothing(**values), self._costmap)
             poses = np.column_stack((points, directions(points, poses[-1, 2])))

@@ -277,7 +277,7 @@ def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
         LinkwrightError: NODE441, it has not.
     """
     if length not in lengths:
-        known = " / ".join(str(each) for each in lengths)
+        known = " / ".join(str(length) for length in lengths)
         told = phrase(
             "parameter '{name}' must have {known} values and has {length}", name=name, known=known, length=length
         )

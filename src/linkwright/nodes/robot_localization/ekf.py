@@ -56,7 +56,7 @@ class EkfNode(SingleNode):
         self._published_ns = -1
         self._clock = self._node.get_clock()
         self._around = Surroundings(self._node, self._configuration, self._estimator, self._message_from_the_past)
-        self._sources = [Source(each, self._around) for each in self._configuration.sensors]
+        self._sources = [Source(sensor, self._around) for sensor in self._configuration.sensors]
         self._open()
 
     def _make_filter(self) -> KalmanFilter:

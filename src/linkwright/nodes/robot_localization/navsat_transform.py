@@ -279,7 +279,7 @@ class NavsatTransformNode(SingleNode):
         return response
 
     def _on_from_ll_array(self, request: Any, response: Any) -> Any:
-        response.map_points = [self._point(each) for each in request.ll_points]
+        response.map_points = [self._point(ll_point) for ll_point in request.ll_points]
         return response
 
     def _point(self, place: Any) -> Any:

@@ -124,7 +124,8 @@ class TeleopTwistJoy(SingleNode):
     def _review(self) -> None:
         self._topic.review(may_change=not self._drives)
         if self._drives and not any(
-            each.name == self._joy and each.kind is EndpointKind.PUBLISHER for each in self._node.graph.endpoints()
+            endpoint.name == self._joy and endpoint.kind is EndpointKind.PUBLISHER
+            for endpoint in self._node.graph.endpoints()
         ):
             self._stop()
             self._node.get_logger().warning(

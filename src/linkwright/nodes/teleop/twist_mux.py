@@ -108,8 +108,8 @@ class TwistMux(SingleNode):
         now = self._now_ns()
         source.hear(now)
         lock = self._lock_priority(now)
-        open_ones = [each for each in self._topics if each.priority and not self._masked(each, lock, now)]
-        if open_ones and max(open_ones, key=lambda each: each.priority) is source:
+        open_ones = [topic for topic in self._topics if topic.priority and not self._masked(topic, lock, now)]
+        if open_ones and max(open_ones, key=lambda open_one: open_one.priority) is source:
             self._commander.obey(info)
             self._publisher.publish(message)
 
@@ -118,7 +118,7 @@ class TwistMux(SingleNode):
         source.locked = message.data
 
     def _lock_priority(self, now_ns: int) -> int:
-        return max((each.priority for each in self._locks if each.locked or each.expired(now_ns)), default=0)
+        return max((lock.priority for lock in self._locks if lock.locked or lock.expired(now_ns)), default=0)
 
     def _masked(self, source: _Source, lock: int, now_ns: int) -> bool:
         return source.silent or source.expired(now_ns) or source.priority < lock
@@ -127,12 +127,12 @@ class TwistMux(SingleNode):
         now = self._now_ns()
         lock = self._lock_priority(now)
         said = {
-            f"velocity {each.name}": each.described("masked" if self._masked(each, lock, now) else "unmasked")
-            for each in self._topics
+            f"velocity {topic.name}": topic.described("masked" if self._masked(topic, lock, now) else "unmasked")
+            for topic in self._topics
         }
         said |= {
-            f"lock {each.name}": each.described("locked" if each.locked or each.expired(now) else "free")
-            for each in self._locks
+            f"lock {lock.name}": lock.described("locked" if lock.locked or lock.expired(now) else "free")
+            for lock in self._locks
         }
         said["current priority"] = str(lock)
         return Health(Level.OK, "ok", said)

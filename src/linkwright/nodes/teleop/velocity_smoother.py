@@ -115,7 +115,7 @@ class _ManagedSmoother(ManagedNode):
         self._limits = [Limits(least, most, *rest) for most, least, *rest in zip(*columns, strict=True)]
 
     def _check(self, parameters: list[Parameter]) -> SetParametersResult:
-        problem = self._problem({each.name: each.value for each in parameters})
+        problem = self._problem({parameter.name: parameter.value for parameter in parameters})
         return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
 
     def _follow(self) -> None:

@@ -95,7 +95,7 @@ class _ExpressionTool(SingleNode, ABC):
     def _look(self) -> None:
         sources = self._node.get_publishers_info_by_topic(self._words.input)
         if self._subscription is None and sources:
-            qos = self._profile([each.qos_profile for each in sources])
+            qos = self._profile([source.qos_profile for source in sources])
             self._publisher = self._node.create_publisher(self._output_class, self._words.output_topic, qos)
             self._subscription = self._node.create_subscription(
                 sources[0].topic_type, self._words.input, self._hear, qos
@@ -207,7 +207,7 @@ class _Messages:
 
 def _imported(name: str) -> Any:
     package = name.partition(".")[0]
-    if any(each.startswith(f"{package}/msg/") for each in interface_names("msg")):
+    if any(interface_name.startswith(f"{package}/msg/") for interface_name in interface_names("msg")):
         return _Types(package)
     try:
         module = import_module(name)

@@ -122,7 +122,7 @@ class _Switch(TopicTool):
     def _select(self, request: Any, response: Any) -> Any:
         name, topic, logger = self.DEFAULT_NAME, request.topic, self._node.get_logger()
         before = self._selected
-        response.prev_topic = before if any(self._same(each, before) for each in self._topics) else ""
+        response.prev_topic = before if any(self._same(topic, before) for topic in self._topics) else ""
         response.success = True
         if topic == NO_TOPIC:
             logger.info(f"{name} selected to no {'input' if name == 'mux' else 'output'}.")

@@ -80,7 +80,7 @@ class TopicTool(SingleNode, ABC):
             self._stop()
             return
         kind = sources[0].topic_type
-        qos = self._fitting([each.qos_profile for each in sources])
+        qos = self._fitting([source.qos_profile for source in sources])
         if not self._is_like(self._publisher, self._output, kind, qos):
             self._stop()
             self._publisher = self._node.create_publisher(kind, self._output, qos)

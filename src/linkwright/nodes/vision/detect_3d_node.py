@@ -129,7 +129,7 @@ class Detect3DNode(SingleNode):
     def _depths_at(self, message: Any) -> NDArray[np.float64] | None:
         """The depth image for detections, metres; None without one."""
         time_ns = message.header.stamp.nanoseconds
-        image = min(self._depths, key=lambda each: abs(each.header.stamp.nanoseconds - time_ns), default=None)
+        image = min(self._depths, key=lambda depth: abs(depth.header.stamp.nanoseconds - time_ns), default=None)
         if image is None or abs(image.header.stamp.nanoseconds - time_ns) > _SLOP_NS:
             if not self._ground:
                 self._complain("no depth image has come that is as old as the detections")

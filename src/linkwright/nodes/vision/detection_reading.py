@@ -27,10 +27,10 @@ class DetectionForm(ABC):
 
     def read(self, message: Any) -> Detections:
         """The detections of a message, in its order, each by its best hypothesis."""
-        best = [self.best(each) for each in message.detections]
+        best = [self.best(detection) for detection in message.detections]
         names = tuple(dict.fromkeys(name for name, _ in best))
         return Detections(
-            np.array([self.box(each) for each in message.detections], np.float32).reshape(-1, 4),
+            np.array([self.box(detection) for detection in message.detections], np.float32).reshape(-1, 4),
             np.array([score for _, score in best], np.float32),
             np.array([names.index(name) for name, _ in best], np.int32),
             names,
@@ -65,7 +65,7 @@ class _Vision(DetectionForm):
     def best(self, detection: Any) -> tuple[str, float]:
         if not detection.results:
             return "", 0.0
-        best = max((each.hypothesis for each in detection.results), key=lambda each: float(each.score))
+        best = max((result.hypothesis for result in detection.results), key=lambda each: float(each.score))
         return best.class_id, float(best.score)
 
     def box(self, detection: Any) -> NDArray[np.float64]:

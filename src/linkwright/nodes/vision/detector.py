@@ -230,7 +230,7 @@ class DetectorNode(SingleNode):
         return frozenset(wanted) if wanted else None
 
     def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
-        changed = {each.name: each.value for each in parameters}
+        changed = {parameter.name: parameter.value for parameter in parameters}
         if self._names is None and _CLASSES in changed:
             return SetParametersResult(
                 False, str(phrase("the detector is being loaded: its classes are not known yet"))

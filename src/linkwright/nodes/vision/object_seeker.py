@@ -68,7 +68,7 @@ class ObjectSeeker(SingleNode):
         self._commander = Commander(self._commander_lost)
         node.create_subscription("std_msgs/msg/Empty", "vision/stop", lambda _: self._stop(), _DEPTH)
         node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._feel, SENSOR_DATA_QOS)
-        for name, language in (("", None), *((f"/{each}", each) for each in LANGUAGES)):
+        for name, language in (("", None), *((f"/{language}", language) for language in LANGUAGES)):
             for topic, follow in (("vision/go_to", False), ("vision/follow", True)):
                 take = self._commander.taking(partial(self._begin, language, follow))
                 self._commander.watch(node.create_subscription(text, topic + name, take, _DEPTH))
@@ -144,7 +144,7 @@ class ObjectSeeker(SingleNode):
         if pose is None or self._seen.heard_ns is None or self._seen.heard_ns < since:
             things = []
         else:
-            things = [Sighting(each.name, each.colour, *_within(pose, each)) for each in self._seen.things]
+            things = [Sighting(thing.name, thing.colour, *_within(pose, thing)) for thing in self._seen.things]
         response.success, response.message = True, described(things, language)
         self._node.get_logger().info(response.message)
         return response
@@ -205,7 +205,9 @@ class ObjectSeeker(SingleNode):
         """The seen object to drive to: the same as before, or else the nearest."""
         assert self._wanted is not None, "it is asked for while it seeks"
         fitting = [
-            each for each in self._seen.things if self._wanted.is_it(each.name, each.colour, each.shape, each.score)
+            thing
+            for thing in self._seen.things
+            if self._wanted.is_it(thing.name, thing.colour, thing.shape, thing.score)
         ]
         before = self._target
         if before is not None:

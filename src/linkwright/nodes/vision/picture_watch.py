@@ -68,13 +68,13 @@ class PictureWatch:
         publishers = self._node.get_publishers_info_by_topic(topic)
         if not publishers:
             return phrase("no pictures come: nobody publishes '{topic}'", topic=topic), self._others()
-        fitting = [each for each in publishers if each.topic_type == wanted]
+        fitting = [publisher for publisher in publishers if publisher.topic_type == wanted]
         if not fitting:
-            types = quoted_names(sorted({each.topic_type for each in publishers}))
+            types = quoted_names(sorted({publisher.topic_type for publisher in publishers}))
             return phrase(
                 "no pictures come: '{topic}' has {types}, and not '{wanted}'", topic=topic, types=types, wanted=wanted
             ), self._others()
-        offered = {each.qos_profile.reliability for each in fitting}
+        offered = {endpoint.qos_profile.reliability for endpoint in fitting}
         if self._qos.reliability is ReliabilityPolicy.RELIABLE and offered == {ReliabilityPolicy.BEST_EFFORT}:
             return phrase(
                 "no pictures come: '{topic}' is published with best effort, and asked for reliably", topic=topic
@@ -84,7 +84,7 @@ class PictureWatch:
 
     def _others(self) -> Phrase | None:
         """The topics that have pictures."""
-        passed = {self._source.topic, *(each.name for each in self._node.publishers)}
+        passed = {self._source.topic, *(publisher.name for publisher in self._node.publishers)}
         topics = [
             name
             for name, types in self._node.get_topic_names_and_types()

@@ -77,8 +77,8 @@ class SeenThings:
     def _look(self, message: Any) -> None:
         """Record the colours of objects with ids."""
         time_ns = message.header.stamp.nanoseconds
-        image = next((each for each in self._pictures if each.header.stamp.nanoseconds == time_ns), None)
-        if image is None or not any(each.id for each in message.detections):
+        image = next((picture for picture in self._pictures if picture.header.stamp.nanoseconds == time_ns), None)
+        if image is None or not any(detection.id for detection in message.detections):
             return
         try:
             pixels = picture_of(image, self._ranges).pixels
@@ -104,12 +104,12 @@ class SeenThings:
         pose = self._poses.pose(self._frame, message.header.frame_id, time_ns) if message.detections else None
         if pose is None:
             return
-        for each in message.detections:
-            at = each.bbox.center.position
+        for detection in message.detections:
+            at = detection.bbox.center.position
             x, y, *_ = compose(pose, (at.x, at.y, at.z, 0.0, 0.0, 0.0, 1.0))
-            colours = self._votes.get(each.id)
+            colours = self._votes.get(detection.id)
             colour = colours.most_common(1)[0][0] if colours else None
-            name, score = VISION_FORM.best(each)
-            size = each.bbox.size
+            name, score = VISION_FORM.best(detection)
+            size = detection.bbox.size
             shape = size.y / size.z if size.z > 0 else 1.0
-            self.things.append(Thing(name, each.id, colour, x, y, size.y / 2, shape, score, time_ns))
+            self.things.append(Thing(name, detection.id, colour, x, y, size.y / 2, shape, score, time_ns))

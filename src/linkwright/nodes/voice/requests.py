@@ -215,7 +215,9 @@ class Requests:
 
     def _is_served(self, action: CallService) -> bool:
         wanted = (EndpointKind.SERVICE, self._node.resolve_service_name(action.name), action.type_name)
-        return any((each.kind, each.name, each.type_name) == wanted for each in self._node.graph.endpoints())
+        return any(
+            (endpoint.kind, endpoint.name, endpoint.type_name) == wanted for endpoint in self._node.graph.endpoints()
+        )
 
     def _answered(self, client: Client[Any, Any], future: Any) -> None:
         self._node.destroy_client(client)

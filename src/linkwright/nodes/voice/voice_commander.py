@@ -135,7 +135,7 @@ class VoiceCommander(SingleNode):
             where = words if engine == "enrolled" and words else model
             # Who enrols words may say them in any language.
             languages = [language, *commands.languages] if engine == "enrolled" else [language]
-            phrases = tuple(dict.fromkeys(text for each in languages for text in commands.phrases(each)))
+            phrases = tuple(dict.fromkeys(text for language in languages for text in commands.phrases(language)))
             given = EngineOptions(phrases, language, Path(where) if where else None)
             self._listen(lambda: make_engine(engine, given), clock)
 

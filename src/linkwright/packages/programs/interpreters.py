@@ -65,4 +65,6 @@ def _has_ros_for_python() -> bool:
     """Whether a real rclpy lies in one of the prefixes that are in force."""
     prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     patterns = ("lib/python*/site-packages/rclpy", "local/lib/python*/dist-packages/rclpy")
-    return any(next(Path(prefix).glob(each), None) is not None for prefix in prefixes if prefix for each in patterns)
+    return any(
+        next(Path(prefix).glob(pattern), None) is not None for prefix in prefixes if prefix for pattern in patterns
+    )

@@ -103,7 +103,7 @@ def module_file(root: Path, module: str) -> Path | None:
 
 def _modules(folder: Path) -> Iterator[Path]:
     """The modules and packages in a folder that a program could import; not those for building and testing."""
-    for path in (*folder.glob("*.py"), *(each.parent for each in folder.glob("*/__init__.py"))):
+    for path in (*folder.glob("*.py"), *(path.parent for path in folder.glob("*/__init__.py"))):
         if path.stem not in NOT_FOR_PROGRAMS:
             yield path
 
@@ -145,7 +145,7 @@ def _asked(folder: Path) -> tuple[list[str], list[str]]:
         entries, scripts = json.loads(done.stdout.splitlines()[-1])
     except (OSError, subprocess.SubprocessError, ValueError, IndexError):
         return [], []
-    return [str(each) for each in entries], [str(each) for each in scripts]
+    return [str(entry) for entry in entries], [str(script) for script in scripts]
 
 
 def _read_cmake(found: SourcePrograms) -> None:

@@ -162,7 +162,7 @@ def matched(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
 
     try:
         found = regex.finditer(pattern, text, timeout=_LONGEST_SEARCH)
-        return [(each[0], [group or "" for group in each.groups()]) for each in found]
+        return [(match[0], [group or "" for group in match.groups()]) for match in found]
     except (regex.error, TimeoutError, RecursionError):
         return None
 

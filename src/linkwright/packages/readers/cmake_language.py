@@ -80,7 +80,7 @@ class Command:
     @property
     def words(self) -> list[str]:
         """The texts of its arguments."""
-        return [each.text for each in self.arguments]
+        return [argument.text for argument in self.arguments]
 
 
 class _TooMuchError(Exception):
@@ -170,7 +170,7 @@ class CMakeProgram:
                 yield from self._run_command(statement)
 
     def _run_compound(self, opening: Statement, body: list[Statement]) -> Iterator[Command]:
-        words = [each.text for each in self._arguments(opening)]
+        words = [argument.text for argument in self._arguments(opening)]
         if opening.name == "if":
             yield from self._run_branches(opening, body)
         elif opening.name == "while":

@@ -40,8 +40,8 @@ def in_setup_py(text: str, group: str) -> list[str]:
             for key, value in zip(node.keys, node.values, strict=True) if isinstance(node, ast.Dict) else ():
                 if isinstance(key, ast.Constant) and key.value == group:
                     items = value.elts if isinstance(value, (ast.List, ast.Tuple)) else [value]
-                    texts = [each.value for each in items if isinstance(each, ast.Constant)]
-                    return [line for each in texts if isinstance(each, str) for line in each.splitlines()]
+                    texts = [item.value for item in items if isinstance(item, ast.Constant)]
+                    return [line for text in texts if isinstance(text, str) for line in text.splitlines()]
     return []
 
 

@@ -101,7 +101,9 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
         if place is not None:
             facts.shares.append(place)
     written = (python.value(node) for node in _written(python))
-    facts.made = frozenset((each.package, each.rest.strip("/")) for each in written if isinstance(each, SharePath))
+    facts.made = frozenset(
+        (share_path.package, share_path.rest.strip("/")) for share_path in written if isinstance(share_path, SharePath)
+    )
     with suppress(RecursionError):  # a sum of a thousand terms; the paths in it are not looked at
         _PathReader(python, facts).visit(python.tree)
     return facts

@@ -423,7 +423,7 @@ class _Run:
             raise NotKnownError from None
 
     def _function(self, parameters: ast.arguments, body: list[ast.stmt]) -> Callable[..., Any]:
-        names = [each.arg for each in (*parameters.posonlyargs, *parameters.args)]
+        names = [posonlyarg.arg for posonlyarg in (*parameters.posonlyargs, *parameters.args)]
         defaults = dict(zip(reversed(names), reversed(self._elements(parameters.defaults)), strict=False))
         only = {
             each.arg: _UNKNOWN if default is None else self._value(default)

@@ -78,7 +78,7 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
         if each.pose is not None:
             poses[each.name] = pose_in_world(each.pose)
     world = _with_poses(world, poses, values)
-    names = {each.name: each.new_name for each in changes if each.new_name not in (None, each.name)}
+    names = {change.name: change.new_name for change in changes if change.new_name not in (None, change.name)}
     return _with_names(world, {old: new for old, new in names.items() if new is not None})
 
 

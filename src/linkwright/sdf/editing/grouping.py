@@ -38,7 +38,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     Raises:
         EditError: they cannot be one model.
     """
-    things = [world.thing(each) for each in dict.fromkeys(names)]
+    things = [world.thing(fromkey) for fromkey in dict.fromkeys(names)]
     _check_group(things)
     name = world.free_name(name.strip() or "group")
     world.check_name(name)
@@ -63,9 +63,11 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     parts = []
     for thing in sorted(things, key=lambda thing: thing.element.offset):
         begin, end = writing.range_of(thing.element)
-        own = [each for each in edits if begin <= each.start and each.end <= end]
-        edits = [each for each in edits if each not in own]
-        moved = [Replacement(each.start - begin, each.end - begin, each.text) for each in own]
+        own = [edit for edit in edits if begin <= edit.start and edit.end <= end]
+        edits = [edit for edit in edits if edit not in own]
+        moved = [
+            Replacement(replacement.start - begin, replacement.end - begin, replacement.text) for replacement in own
+        ]
         parts.append(inner + _shifted(apply(text[begin:end], moved), _STEP))
     whole = newline.join([head, *parts, f"{blanks}</model>"])
     begin, end = writing.range_of(first.element)
@@ -89,7 +91,7 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
         raise EditError(phrase("'{name}' is not a group that is written in this file", name=name))
     if not thing.parts or model.joints or model.frames or model.plugins or model.links:
         raise EditError(phrase("'{name}' is more than the models in it, and cannot be taken apart", name=name))
-    parts = [each for each in thing.element.elements() if each.tag in ("model", "include")]
+    parts = [element for element in thing.element.elements() if element.tag in ("model", "include")]
     if len(parts) != len(thing.parts):
         raise EditError(phrase("'{name}' includes what is not there, and cannot be taken apart", name=name))
     names = _names_of(world, thing, parts)
@@ -106,11 +108,11 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
             raise EditError(phrase("'{name}' cannot be taken apart: something refers to it", name=name))
         written = f"{names[part]}{more}{rest}"
         edits += writing.set_reference(element, attribute, written)
-    edits += [writing.removed(each) for tag in ("pose", "static") for each in thing.element.elements(tag)]
+    edits += [writing.removed(element) for tag in ("pose", "static") for element in thing.element.elements(tag)]
     begin, end = writing.range_of(thing.element)
     first, last = writing.content_of(thing.element)
     own = [Replacement(e.start - first, e.end - first, e.text) for e in edits if begin <= e.start and e.end <= end]
-    edits = [each for each in edits if not (begin <= each.start and each.end <= end)]
+    edits = [edit for edit in edits if not (begin <= edit.start and edit.end <= end)]
     blanks = indentation(world.text, begin)
     inner = apply(world.text[first:last], own).strip()
     step = (indentation(world.text, parts[0].offset) or "").removeprefix(blanks or "")
@@ -123,9 +125,9 @@ def renamed_references_outside(world: WorldText, inside: frozenset[str], group_n
     names = {each: f"{group_name}{SEPARATOR}{each}" for each in inside}
     ranges = [writing.range_of(world.thing(each).element) for each in inside]
     return [
-        each
-        for each in renamed_references(world, names)
-        if not any(start <= each.start and each.end <= end for start, end in ranges)
+        renamed_reference
+        for renamed_reference in renamed_references(world, names)
+        if not any(start <= renamed_reference.start and renamed_reference.end <= end for start, end in ranges)
     ]
 
 
@@ -165,10 +167,10 @@ def _old_names(thing: Thing, parts: Sequence[Element]) -> list[str]:
     """The names of parts within their group, in document order: models first, then includes."""
     assert isinstance(thing.written, Model), "groups are models"
     assert thing.model is not None, "groups are models"
-    models = [id(each.element) for each in thing.written.models]
-    includes = [id(each.element) for each in thing.written.includes]
+    models = [id(model.element) for model in thing.written.models]
+    includes = [id(include.element) for include in thing.written.includes]
     order = {each: thing.model.models[index].name for index, each in enumerate((*models, *includes))}
-    return [order[id(each)] for each in parts]
+    return [order[id(part)] for part in parts]
 
 
 def _names_of(world: WorldText, thing: Thing, parts: Sequence[Element]) -> dict[str, str]:
@@ -185,7 +187,7 @@ def _let_out(
 ) -> list[Replacement]:
     """The edits in a part of a group that is taken out of it."""
     assert thing.model is not None, "groups are models"
-    model = next(each for each in thing.model.models if each.name == old)
+    model = next(model for model in thing.model.models if model.name == old)
     edits: list[Replacement] = []
     if names[old] != old:
         edits += (

@@ -74,7 +74,7 @@ class Thing:
         """The names of the models in it, if it contains nothing else."""
         if not isinstance(self.written, Model) or self.model is None or self.written.links:
             return ()
-        return tuple(each.name for each in self.model.models)
+        return tuple(model.name for model in self.model.models)
 
 
 class WorldText:
@@ -113,14 +113,14 @@ class WorldText:
         self._findings = (*reading.diagnostics, *self._included.diagnostics)
         self.world: World = as_saved(resolved)
         self.frames = Frames(self.world)
-        self._models = {each.name: each for each in reversed(self.world.models)}
-        self._lights = {each.name: each for each in reversed(self.world.lights)}
+        self._models = {model.name: model for model in reversed(self.world.models)}
+        self._lights = {light.name: light for light in reversed(self.world.lights)}
         self.things: Mapping[str, Thing] = dict(self._things())
 
     @property
     def errors(self) -> list[Diagnostic]:
         """The findings for which simulators refuse it."""
-        return [each for each in self._findings if has_errors([each])]
+        return [finding for finding in self._findings if has_errors([finding])]
 
     @cached_property
     def taken(self) -> frozenset[str]:

@@ -163,7 +163,7 @@ def exchanged(element: Element, new: list[Element]) -> Replacement:
     text, (start, end) = text_of(element), range_of(element)
     indent = indentation(text, start)
     between = "" if indent is None else f"{newline_of(text)}{indent}"
-    return Replacement(start, end, between.join(block(each) for each in new))
+    return Replacement(start, end, between.join(block(element) for element in new))
 
 
 def set_pose(element: Element, pose: Pose) -> list[Replacement]:
@@ -216,7 +216,7 @@ def references(world: Element) -> Iterator[tuple[Element, str | None]]:
         if child.tag == "frame" and "attached_to" in child.attributes:
             yield child, "attached_to"
         if child.tag == "joint":
-            yield from ((each, None) for tag in ("parent", "child") for each in child.elements(tag))
+            yield from ((element, None) for tag in ("parent", "child") for element in child.elements(tag))
             for axis in (*child.elements("axis"), *child.elements("axis2")):
                 xyz = axis.first("xyz")
                 if xyz is not None and "expressed_in" in xyz.attributes:

@@ -68,5 +68,9 @@ class BridgedTopics:
 
     def _bridged(self, topics: list[str]) -> list[str]:
         """The topics whose hidden names have publishers."""
-        outside = {each.name for each in self._graph.remote_endpoints() if each.kind is EndpointKind.PUBLISHER}
-        return [each for each in topics if gz_side(each) in outside or self._graph.bus.publishers(gz_side(each))]
+        outside = {
+            remote_endpoint.name
+            for remote_endpoint in self._graph.remote_endpoints()
+            if remote_endpoint.kind is EndpointKind.PUBLISHER
+        }
+        return [topic for topic in topics if gz_side(topic) in outside or self._graph.bus.publishers(gz_side(topic))]

@@ -106,7 +106,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         model = self.place.path if said.child_model == _OWN else said.child_model
         link = f"{model}{SEPARATOR}{said.child_link}"
         ways = (link, f"{self.place.path}{SEPARATOR}{link}")
-        self._child = next((each for each in ways if each in bodies and each != self._parent), "")
+        self._child = next((way for way in ways if way in bodies and way != self._parent), "")
         return bool(self._child)
 
     def _attach(self) -> None:

@@ -189,7 +189,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
 
     def _publish_wheels(self, output: Output) -> None:
         """Publish the poses of the wheels in the links that carry them."""
-        for joint in [each for pair in self._pairs for each in pair.joints]:
+        for joint in [joint for pair in self._pairs for joint in pair.joints]:
             placed = self.simulation.scene.joints[joint]
             pose = compose(invert(self.simulation.link_pose(placed.parent)), self.simulation.link_pose(placed.child))
             parent, child = (link.rpartition(SEPARATOR)[2] for link in (placed.parent, placed.child))

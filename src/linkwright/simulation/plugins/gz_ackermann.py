@@ -121,7 +121,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._begin()
         self._commands.restart()
         self._limiter.restart()
-        for servo in (each for side in self._servos for each in side):
+        for servo in (servo for side in self._servos for servo in side):
             servo.restart()
         self._turn_wheels(0.0, 0.0)
 

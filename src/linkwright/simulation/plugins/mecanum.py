@@ -58,7 +58,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self.be_free()
         corners = (said.front_left_joint, said.front_right_joint, said.back_left_joint, said.back_right_joint)
         wheels = [[self.joint(name) for name in names] for names in corners]
-        for joint in (each for joints in wheels for each in joints):
+        for joint in (joint for joints in wheels for joint in joints):
             simulation.let_slide(joint)
         self._motors = [
             [simulation.add_velocity_motor(joint, MOTOR_GAIN, inf) for joint in joints] for joints in wheels

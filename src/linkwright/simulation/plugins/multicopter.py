@@ -178,11 +178,11 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         turn = rotation_matrix(place[3:])
         columns = []
         self._joints = []
-        for each in rotors:
-            joint = self.joint(_text(each, "jointName"))
+        for rotor in rotors:
+            joint = self.joint(_text(rotor, "jointName"))
             at = turn.T @ (np.array(simulation.link_pose(simulation.scene.joints[joint].child)[:3]) - place[:3])
-            force, moment = self._number(each, "forceConstant"), self._number(each, "momentConstant")
-            direction = self._number(each, "direction")
+            force, moment = self._number(rotor, "forceConstant"), self._number(rotor, "momentConstant")
+            direction = self._number(rotor, "direction")
             arm = hypot(at[0], at[1])
             across = (at[1], -at[0]) if arm else (0.0, 0.0)
             columns.append((force * across[0], force * across[1], -direction * force * moment, force))
@@ -215,10 +215,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         masses = model.body_mass[parts]
         centre = masses @ data.xipos[parts] / masses.sum()
         total = np.zeros((3, 3))
-        for each in parts:
-            axes, offset = data.ximat[each].reshape(3, 3), data.xipos[each] - centre
-            total += axes @ np.diag(model.body_inertia[each]) @ axes.T
-            total += model.body_mass[each] * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+        for part in parts:
+            axes, offset = data.ximat[part].reshape(3, 3), data.xipos[part] - centre
+            total += axes @ np.diag(model.body_inertia[part]) @ axes.T
+            total += model.body_mass[part] * (offset @ offset * np.eye(3) - np.outer(offset, offset))
         turn = data.xmat[body].reshape(3, 3)
         return float(masses.sum()), turn.T @ total @ turn
 
@@ -253,8 +253,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         """The rotors of the model, by joint."""
         if len(self._rotors) < len(self._joints):  # plugins of a model come one after the other
             found = self._environment.plugins(self.place.path.partition(SEPARATOR)[0])
-            motors = [each for each in found if isinstance(each, GzMulticopterMotor)]
-            self._rotors = {self.joint(each.parameters.joint_name): each for each in motors}
+            motors = [
+                simulated_plugin for simulated_plugin in found if isinstance(simulated_plugin, GzMulticopterMotor)
+            ]
+            self._rotors = {self.joint(motor.parameters.joint_name): motor for motor in motors}
         return self._rotors
 
     def _speeds(self, linear: Array, turning: float) -> Array:

@@ -85,8 +85,8 @@ class Output:
         return self._is_wanted
 
     def _has_readers(self) -> bool:
-        for each in self.publishers:  # noqa: SIM110 - `any` takes twice as long, and this is asked all the time
-            if each.get_subscription_count():
+        for publisher in self.publishers:  # noqa: SIM110 - `any` takes twice as long, and this is asked all the time
+            if publisher.get_subscription_count():
                 return True
         return False
 

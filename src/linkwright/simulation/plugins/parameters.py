@@ -69,15 +69,15 @@ def parameters_from(
     values: dict[str, Any] = {}
     names: dict[str, None] = {}
     kinds = _types(table)  # type: ignore[arg-type]  # a class is hashable
-    for each in fields(table):  # type: ignore[arg-type]  # a dataclass is asked for
-        spellings = (each.name, *each.metadata.get(_ALIASES, ()))
+    for declared in fields(table):  # type: ignore[arg-type]  # a dataclass is asked for
+        spellings = (declared.name, *declared.metadata.get(_ALIASES, ()))
         names |= dict.fromkeys(spellings)
         written = next((given[name] for name in spellings if name in given), [])
-        value = _read(each, kinds[each.name], written, findings)
+        value = _read(declared, kinds[declared.name], written, findings)
         if value is not None:
-            values[each.name] = value
-        elif each.default is MISSING:
-            raise LinkwrightError(_missing(each, element))
+            values[declared.name] = value
+        elif declared.default is MISSING:
+            raise LinkwrightError(_missing(declared, element))
     for name, children in given.items():
         if name not in names and name not in _COMMON and name not in ignored and ":" not in name:
             findings.append(

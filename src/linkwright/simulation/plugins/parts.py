@@ -91,7 +91,7 @@ def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, plac
                 yield Part(kind, f"{name}{SEPARATOR}{each.name}", name, partial(_same, pose))
     for inner in model.models:
         name, inside = f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name)
-        first = next((each.name for each in inner.links), "")
+        first = next((link.name for link in inner.links), "")
         if not first:
             continue
         deeper = _moving_with(simulation, f"{name}{SEPARATOR}{first}", inside.pose(first))

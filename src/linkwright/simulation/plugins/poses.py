@@ -49,7 +49,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         if model is None:
             return
         kinds = self._kinds()
-        parts = [each for each in parts_of(self.simulation, model, path) if each.kind in kinds]
+        parts = [part for part in parts_of(self.simulation, model, path) if part.kind in kinds]
         topic = f"/model/{path.replace(SEPARATOR, '/model/')}/pose"
         if said.static_publisher:
             moving = self._moved_by_joints(model)

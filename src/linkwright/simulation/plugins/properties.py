@@ -51,11 +51,11 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             scene_model = self.simulation.scene.models[self._entities.model(request.model_name)]
             model, begin = scene_model.model, f"{scene_model.name}{SEPARATOR}"
             response.canonical_link_name = begin + (
-                model.canonical_link or next((each.name for each in model.links), "")
+                model.canonical_link or next((link.name for link in model.links), "")
             )
-            response.link_names = [begin + each.name for each in model.links]
-            response.collision_names = [each.name for link in model.links for each in link.collisions]
-            response.joint_names = [each.name for each in model.joints]
+            response.link_names = [begin + link.name for link in model.links]
+            response.collision_names = [collision.name for link in model.links for collision in link.collisions]
+            response.joint_names = [joint.name for joint in model.joints]
             response.child_model_names = [each.name for each in model.models]
             response.is_static = model.static
             return "GetModelProperties: got properties"

@@ -68,9 +68,9 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
         given += ["-r", rule.text().strip()]
     read = parse(given)
     node.remappings = read.remappings_for(node.name)
-    node.parameters = {each.attributes.get("name", ""): _value(each) for each in ros.elements("parameter")}
+    node.parameters = {element.attributes.get("name", ""): _value(element) for element in ros.elements("parameter")}
     node.parameters |= read.parameters_for(node.full_name)
-    for topic in (each for qos in ros.elements("qos") for each in qos.elements("topic")):
+    for topic in (element for qos in ros.elements("qos") for element in qos.elements("topic")):
         for side in ("publisher", "subscriber", "subscription"):
             override = topic.first(side)
             if override is not None:
@@ -106,7 +106,7 @@ def _namespaces(element: Element | None) -> Iterator[str]:
     if element is None:
         return
     for inside in element.elements("ros"):
-        yield from (each.text() for each in inside.elements("namespace"))
+        yield from (element.text() for element in inside.elements("namespace"))
     for tag in ("robotNamespace", "robot_namespace"):
         yield from (each.text() for each in element.elements(tag))
 

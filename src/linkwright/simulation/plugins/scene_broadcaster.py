@@ -81,11 +81,13 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         self._revision = self.simulation.revision
         models = self.simulation.scene.models.values()
         parts = [
-            (part, each.model.static) for each in models for part in parts_of(self.simulation, each.model, each.name)
+            (part, model.model.static)
+            for model in models
+            for part in parts_of(self.simulation, model.model, model.name)
         ]
         ordered = [(part, static) for kinds in _ORDER for part, static in parts if part.kind in kinds]
         world = self.simulation.world
-        lights = [(each.name, Frames(world).placed(each.pose)) for each in world.lights]
+        lights = [(light.name, Frames(world).placed(light.pose)) for light in world.lights]
         self._all = _Entities(
             (*(_own_name(part.name) for part, _ in ordered), *(name for name, _ in lights)),
             (

@@ -50,7 +50,7 @@ class ClassicState(SimulatedPlugin[StateParameters]):
 
     def _told(self, kind: str, names: list[str]) -> Any:
         states = [self._entities.state(name) for name in names]
-        return get_message(kind)(names, [each.pose for each in states], [each.twist for each in states])
+        return get_message(kind)(names, [state.pose for state in states], [state.twist for state in states])
 
     def _get(self, request: Any, response: Any) -> Any:
         return self._entities.answer_get("get_entity_state", request, response, self.node.logger.error)

@@ -318,7 +318,7 @@ def _beside(simulation: Simulation, hole: Optics, origin: Array, axes: Array) ->
 
 
 def _is_the_same_everywhere(lights: list[PlacedLight]) -> bool:
-    return all(each.light.type == "directional" for each in lights)
+    return all(light.light.type == "directional" for light in lights)
 
 
 def _is_textured(model: Any, geom: int) -> bool:

@@ -60,15 +60,15 @@ class RayRenderer:
         paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a dataset has others for each picture
         if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._paints)):
             self._colours = geom_colours(simulation.model)
-            self._paints = tuple(each.copy() for each in paints)
+            self._paints = tuple(paint.copy() for paint in paints)
             self._revision = simulation.revision
         scene = simulation.world.scene
         turned = np.where(np.einsum("ij,ij->i", hits.normals, rays) > 0, np.float32(-1), np.float32(1))
         light = np.empty_like(hits.normals)
         light[:] = scene.ambient[:3]
-        for each in lights_of(simulation, forwards):
-            share = _share(each, hits, turned, origin, rays)
-            for channel, strength in enumerate(each.colour.astype(np.float32)):
+        for placed_light in lights_of(simulation, forwards):
+            share = _share(placed_light, hits, turned, origin, rays)
+            for channel, strength in enumerate(placed_light.colour.astype(np.float32)):
                 light[:, channel] += share * strength
         light *= self._colours.take(hits.geoms, axis=0, mode="wrap")
         np.minimum(light, 1.0, out=light)

@@ -56,7 +56,7 @@ def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, 
     """
     mujoco = load_mujoco()
     scene.settle()
-    count = count_links(each.model for each in scene.models.values())
+    count = count_links(model.model for model in scene.models.values())
     if count > _MANY_LINKS:
         scene.spec.memory = _BYTES_A_PAIR * count * count + _BYTES
     try:

@@ -43,13 +43,15 @@ class Connections:
             return Connected(structure, (), frozenset())
         there = {WORLD, name, *others}
         joints = (*self.hanging.values(), *self.loops)
-        own = [each for each in joints if name in _models(each) and _models(each) <= there]
+        own = [joint for joint in joints if name in _models(joint) and _models(joint) <= there]
         hung = {
-            each.child: each for each in own if self.hanging.get(each.child) is each and model_of(each.child) == name
+            joint.child: joint
+            for joint in own
+            if self.hanging.get(joint.child) is joint and model_of(joint.child) == name
         }
         links = tuple(HeldLink(held.link, hung.get(held.link.name, held.joint)) for held in structure.links)
-        loops = tuple(each for each in own if hung.get(each.child) is not each)
-        hangs_on = frozenset(each for joint in own for each in _models(joint)) - {WORLD, name}
+        loops = tuple(joint for joint in own if hung.get(joint.child) is not joint)
+        hangs_on = frozenset(model for joint in own for model in _models(joint)) - {WORLD, name}
         return Connected(replace(structure, links=links), loops, hangs_on)
 
     def in_order(self, names: Sequence[str]) -> list[str]:
@@ -109,7 +111,7 @@ def connections_of(world: World) -> Connections:
             except FrameError:
                 continue  # the scene tells of it
             poses[model.name] = frames.pose(model.name)
-            held |= {each.link.name: each for each in structure.links}
+            held |= {link.link.name: link for link in structure.links}
 
     holding = {name: each.joint for name, each in held.items() if each.joint is not None}
     moving = {name for name, each in held.items() if not each.link.static}
@@ -122,7 +124,7 @@ def connections_of(world: World) -> Connections:
             continue
         can_hang = len(_models(joint)) > 1 and joint.joint.type != "gearbox"  # links of one model have their own order
         ways = (joint, _turned_round(joint)) if can_hang else ()
-        fit = (each for each in ways if each.child in free and not is_below(holding, each.child, each.parent))
+        fit = (way for way in ways if way.child in free and not is_below(holding, way.child, way.parent))
         hung = next(fit, None)
         if hung is None:
             loops.append(joint)

@@ -32,7 +32,7 @@ def geared(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]) -> Itera
         gear: the gearbox.
         joints: those that move; both links turn about such a joint.
     """
-    holding = {each.child: each for each in joints if each.axes}
+    holding = {joint.child: joint for joint in joints if joint.axes}
     parent, child = holding.get(gear.parent), holding.get(gear.child)
     if parent is None or child is None or not gear.axes:
         return

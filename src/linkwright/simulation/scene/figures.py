@@ -154,11 +154,11 @@ def skeleton_begins(path: Path) -> Vector3:
         root = parse_file(path).root
     except LinkwrightError:
         return (0.0, 0.0, 0.0)
-    skin = next((each for each in root.walk() if each.tag == "skin"), None)
+    skin = next((element for element in root.walk() if element.tag == "skin"), None)
     matrix = None if skin is None else _first_matrix(skin)
     if matrix is None:
         return (0.0, 0.0, 0.0)
-    unit = next((each for each in root.walk() if each.tag == "unit"), None)
+    unit = next((element for element in root.walk() if element.tag == "unit"), None)
     scale = float(unit.attributes.get("meter", "1")) if unit is not None else 1.0
     x, y, z = (np.linalg.inv(matrix)[:3, 3] * scale).tolist()
     return x, y, z
@@ -166,9 +166,13 @@ def skeleton_begins(path: Path) -> Vector3:
 
 def _first_matrix(skin: Element) -> Any:
     """The first bind matrix of a skeleton that can be inverted; None without one."""
-    named = (each.attributes.get("source", "") for each in skin.walk() if each.attributes.get("semantic") == _INVERSE)
+    named = (
+        element.attributes.get("source", "")
+        for element in skin.walk()
+        if element.attributes.get("semantic") == _INVERSE
+    )
     wanted = next(named, "").removeprefix("#")
-    source = next((each for each in skin.elements("source") if each.attributes.get("id") == wanted), None)
+    source = next((element for element in skin.elements("source") if element.attributes.get("id") == wanted), None)
     array = None if source is None else source.first("float_array")
     try:
         numbers = [float(each) for each in array.text().split()[:_NUMBERS_OF_A_MATRIX]] if array is not None else []

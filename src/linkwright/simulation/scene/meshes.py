@@ -111,7 +111,7 @@ class MeshLibrary:
         if isinstance(shape, Polyline):
             return list(_prisms(shape))
         if isinstance(shape, tuple):
-            return [corners for each in shape for corners in _prisms(each)]
+            return [corners for polyline in shape for corners in _prisms(polyline)]
         path = self._path(shape, element)
         if not isinstance(shape, Mesh) or path is None:
             return []

@@ -138,7 +138,7 @@ class Scene:
     def _in_order(self, models: Iterable[Model]) -> list[Model]:
         """Models, each after those to which joints of the world connect it."""
         models = list(models)
-        place = {name: number for number, name in enumerate(self.in_order([each.name for each in models]))}
+        place = {name: number for number, name in enumerate(self.in_order([model.name for model in models]))}
         return sorted(models, key=lambda model: place[model.name])
 
     def in_order(self, names: Sequence[str]) -> list[str]:
@@ -284,10 +284,10 @@ class Scene:
     def hanging_on(self, name: str) -> list[str]:
         """The models that joints of the world connect below one, directly or not; as they were added."""
         found = {name}
-        for each in self.models.values():  # those that hang come later
-            if each.hangs_on & found:
-                found.add(each.name)
-        return [each for each in self.models if each in found - {name}]
+        for model in self.models.values():  # those that hang come later
+            if model.hangs_on & found:
+                found.add(model.name)
+        return [model for model in self.models if model in found - {name}]
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> str:
         """Add a motor that holds the velocity of a joint; the wheel that it turns rolls without slipping.
@@ -358,7 +358,7 @@ class Scene:
         equality.data[:10] = [0.0, 0.0, 0.0, x, y, z, qw, qx, qy, qz]
         models = {model_of(parent), model_of(child)}
         if len(models) > 1:
-            links = ([held.link for held in self.models[each].structure.links] for each in sorted(models))
+            links = ([held.link for held in self.models[model].structure.links] for model in sorted(models))
             touching = ([link.name for link in each if link.link.collisions] for each in links)
             for number, (one, other) in enumerate(product(*touching)):
                 self.spec.add_exclude(name=f"{name}{number}", bodyname1=one, bodyname2=other)
@@ -367,7 +367,7 @@ class Scene:
         """Remove what `weld` has added."""
         name = _weld_name(parent, child)
         parts = (*self.spec.equalities, *self.spec.excludes)
-        for part in [each for each in parts if each.name.startswith(name)]:
+        for part in [part for part in parts if part.name.startswith(name)]:
             self.spec.delete(part)
 
     def is_welded(self, parent: str, child: str) -> bool:
@@ -441,8 +441,8 @@ class Scene:
 
     def _moving(self, models: Iterable[str]) -> list[PlacedJoint]:
         """The joints of models that move."""
-        held = (each for name in models for each in self.models[name].structure.links)
-        return [each.joint for each in held if each.joint is not None and each.joint.name in self.joints]
+        held = (link for name in models for link in self.models[name].structure.links)
+        return [link.joint for link in held if link.joint is not None and link.joint.name in self.joints]
 
     def _mimicry(self, joint: PlacedJoint | None) -> Iterator[Any]:
         """Add equality constraints for mimic axes of a joint."""
@@ -497,8 +497,8 @@ class Scene:
         """Exclude contacts between links that joints of the world connect, as within a model."""
         own = {held.link.name for held in connected.structure.links}
         hung = (held.joint for held in connected.structure.links if held.joint is not None)
-        joints = (*(each for each in hung if each.parent not in own), *connected.loops)
-        for one, other in {tuple(sorted((each.parent, each.child))): None for each in joints}:
+        joints = (*(joint for joint in hung if joint.parent not in own), *connected.loops)
+        for one, other in {tuple(sorted((joint.parent, joint.child))): None for joint in joints}:
             if WORLD not in (one, other):
                 yield self.spec.add_exclude(bodyname1=one, bodyname2=other)
 

@@ -70,7 +70,7 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
         FrameError: a link cannot be placed.
     """
     frames = Frames(model)
-    links = {each.name: each for each in links_of(model, frames, pose, name)}
+    links = {placed_link.name: placed_link for placed_link in links_of(model, frames, pose, name)}
     joints: dict[str, PlacedJoint] = {}
     for owner, inner, place, path in _models(model, frames, pose, name):
         for joint in owner.joints:

@@ -68,7 +68,7 @@ def _sheet(side: Array, count: int) -> Triangles:
         count: into how many squares it is cut each way.
     """
     share = np.linspace(0.0, 1.0, count + 1)
-    down, right = (each.reshape(-1, 1) for each in np.meshgrid(share, share, indexing="ij"))
+    down, right = (array.reshape(-1, 1) for array in np.meshgrid(share, share, indexing="ij"))
     middle, to_right, upwards = side
     positions = middle + (2 * right - 1) * to_right + (1 - 2 * down) * upwards
     return _woven(positions, np.hstack([right, down]), count)

@@ -49,7 +49,7 @@ class ContactSensor:
     def __init__(self, mount: Mount, collisions: Sequence[str] = ()) -> None:
         self._mount = mount
         self._simulation = mount.simulation
-        self._wanted = {f"{mount.link}{SEPARATOR}{each.rpartition(SEPARATOR)[2]}" for each in collisions}
+        self._wanted = {f"{mount.link}{SEPARATOR}{collision.rpartition(SEPARATOR)[2]}" for collision in collisions}
         self._mine = GeomTable(self._simulation, self._listened)
 
     def _listened(self, names: list[str]) -> list[float]:

@@ -90,14 +90,14 @@ class VectorNoise:
 
     def __init__(self, noise: NoiseXyz, generator: np.random.Generator) -> None:
         self._sources = [NoiseSource(each, generator) for each in (noise.x, noise.y, noise.z)]
-        self.variances: Array = np.array([each.variance for each in self._sources])
+        self.variances: Array = np.array([source.variance for source in self._sources])
         """The squares of the standard deviations: shape (3,)."""
         self.covariance: Array = np.diag(self.variances).ravel()
         """The matrix of covariances, row by row: shape (9,)."""
         self._generator = generator
-        self._white = all(each.white for each in self._sources)
-        self._silent = all(each.silent for each in self._sources)
-        self._offsets = [each.offset for each in self._sources]
+        self._white = all(source.white for source in self._sources)
+        self._silent = all(source.silent for source in self._sources)
+        self._offsets = [source.offset for source in self._sources]
         self._deviations: list[float] = np.sqrt(self.variances).tolist()
         self._drawn: list[list[float]] = []
 

@@ -68,7 +68,7 @@ class Changes:
 
     def with_connected(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
         """These changes, with models that moved and that joints of the world connect replaced at their new poses."""
-        connected = {name for each in running.values() if each.hangs_on for name in (each.name, *each.hangs_on)}
+        connected = {name for model in running.values() if model.hangs_on for name in (model.name, *model.hangs_on)}
         again = {name: pose for name, pose in self.moved.items() if name in connected}
         moved = {name: pose for name, pose in self.moved.items() if name not in connected}
         coming = (Coming(running[name].model, name, pose, namespaces.get(name, "")) for name, pose in again.items())
@@ -130,7 +130,7 @@ def check(world: World, simulation: Simulation, coming: Sequence[Coming], finder
     Raises:
         LinkwrightError: SIM104, SIM105, SIM140 they cannot.
     """
-    models = {each.name: each.model for each in simulation.scene.models.values()}
+    models = {model.name: model.model for model in simulation.scene.models.values()}
     count_links((models | {each.name: each.model for each in coming}).values())
     trial = simulation.beside(replace(world, models=(), states=()), finder)
     come_into(trial, coming)

@@ -77,7 +77,7 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
 def _lacks_shapes(robot: Robot) -> bool:
     """Whether what is written as a shape of a link is none, or not as it has to be; urdfdom refuses such robots."""
     return any(
-        len(link.visuals) + len(link.collisions) < sum(each.tag in _SHAPED for each in link.element.elements())
+        len(link.visuals) + len(link.collisions) < sum(element.tag in _SHAPED for element in link.element.elements())
         for link in robot.links.values()
         if link.element is not None
     )
@@ -103,7 +103,7 @@ def _unknown_shapes(root: Element) -> Iterator[Diagnostic]:
 def _errors(findings: tuple[Diagnostic, ...] | list[Diagnostic]) -> list[Diagnostic]:
     """The findings that are errors, or all of them if none is."""
     return (
-        [each for each in findings if has_errors([each])]
+        [finding for finding in findings if has_errors([finding])]
         or list(findings)
         or [Diagnostic("SIM142", phrase("there is no model in it"))]
     )

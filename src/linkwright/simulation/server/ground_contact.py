@@ -40,7 +40,7 @@ def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
         KeyError: there is no such model.
     """
     held = simulation.scene.models[name].structure.links
-    links = [each.link.link for each in held]
+    links = [link.link.link for link in held]
     if any(link.collisions for link in links) or not any(link.gravity for link in links):
         return []
     if not simulation.free_links(name):

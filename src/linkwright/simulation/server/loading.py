@@ -83,13 +83,16 @@ class WorldLoader:
             hint = phrase("give the file of a world, or its text")
             raise LinkwrightError(Diagnostic("SIM152", phrase("no world is given"), hint=hint))
         loaded = load_world(uri or str(Path.cwd() / _TEXT), text or None)
-        known = {_essence(each) for each in (*self.loaded.diagnostics, *self._server.simulation.scene.diagnostics)}
+        known = {
+            _essence(diagnostic)
+            for diagnostic in (*self.loaded.diagnostics, *self._server.simulation.scene.diagnostics)
+        }
 
         def allow(findings: Sequence[Diagnostic]) -> None:
             wrong = [
-                each
-                for each in findings
-                if (each.severity is Severity.ERROR or each.code in refused) and _essence(each) not in known
+                finding
+                for finding in findings
+                if (finding.severity is Severity.ERROR or finding.code in refused) and _essence(finding) not in known
             ]
             if wrong:
                 raise LinkwrightError(*wrong)

@@ -37,7 +37,7 @@ def overlaps(simulation: Simulation, names: Container[str] | None = None) -> lis
                     else (model_of(pair[0]), model_of(pair[1]))
                 )
                 depths[key] = max(depths.get(key, 0.0), -float(contact.dist))
-    deepest = sorted(depths.items(), key=lambda each: -each[1])
+    deepest = sorted(depths.items(), key=lambda item: -item[1])
     told = [_told(simulation, *pair, depth) for pair, depth in deepest[:_MOST]]
     rest = len(deepest) - len(told)
     if rest:

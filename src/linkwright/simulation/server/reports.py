@@ -74,8 +74,8 @@ class Reports:
         simulation = self._server.simulation
         if self._finder is not simulation.finder:
             self._finder, self._written = simulation.finder, {}
-        figures = ((each.model, each.model.name, each.pose) for each in simulation.scene.figures)
-        models = [*((each.model, each.name, each.pose) for each in simulation.scene.models.values()), *figures]
+        figures = ((figure.model, figure.model.name, figure.pose) for figure in simulation.scene.figures)
+        models = [*((model.model, model.name, model.pose) for model in simulation.scene.models.values()), *figures]
         self._written = {(id(model), name, pose): self._saved(model, name, pose) for model, name, pose in models}
         world = replace(simulation.world, models=(), actors=(), roads=())
         text = save_world(self._addressed(world), [written for _, written in self._written.values()])
@@ -114,7 +114,7 @@ class Reports:
             self._revision = simulation.revision
             model = simulation.model
             self._bodies = np.flatnonzero(model.body_weldid)
-            self._names = tuple(model.body(int(each)).name for each in self._bodies)
+            self._names = tuple(model.body(int(body)).name for body in self._bodies)
         data, bodies = simulation.data, self._bodies
         poses = np.hstack([data.xpos[bodies], data.xquat[bodies][:, [1, 2, 3, 0]]])
         batch = TransformBatch((WORLD,) * len(bodies), self._names, simulation.time, poses)

@@ -118,7 +118,7 @@ class SimulationServer:
     @property
     def findings(self) -> list[Diagnostic]:
         """The findings on the models that are in the world; safe to call from any thread."""
-        return [each for found in tuple(self._findings.values()) for each in tuple(found)]
+        return [diagnostic for found in tuple(self._findings.values()) for diagnostic in tuple(found)]
 
     @property
     def gazebo_mistakes(self) -> bool:
@@ -194,7 +194,7 @@ class SimulationServer:
         simulation.place(changes.moved)
         self._exchange(changes.gone, (*renewed, *changes.new))
         self.tell(overlaps(simulation, {*changes.moved, *(each.name for each in changes.new)}))
-        self._of_world = {each.name for each in wanted.models}
+        self._of_world = {model.name for model in wanted.models}
         if not alike(before.plugins, wanted.plugins):
             self._end(self._plugins.pop(_WORLD, []))
             self._load(_WORLD, of_world(wanted, self._options.systems), "")
@@ -358,7 +358,7 @@ class SimulationServer:
             made.append(plugin)
             self._plugins[owner].append(plugin)
             plugin.start()
-            same = next((each for each in before if plugin.is_like(each)), None)
+            same = next((simulated_plugin for simulated_plugin in before if plugin.is_like(simulated_plugin)), None)
             if same is not None:
                 plugin.go_on(same)
 
@@ -371,8 +371,8 @@ class SimulationServer:
         """End a plugin or sensor that raised an error; everything else goes on."""
         self._tell_failure(place, error)
         running = self._plugins.get(owner, [])
-        ended = [each for each in running if each.place is place]
-        running[:] = [each for each in running if each.place is not place]
+        ended = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is place]
+        running[:] = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is not place]
         self._end(ended)
 
     def _tell_failure(self, place: PluginPlace, error: Exception) -> None:
@@ -420,7 +420,7 @@ class SimulationServer:
         return self.simulation.time
 
     def _tell_unsimulated(self, elements: Iterable[str]) -> None:
-        new = [each for each in elements if each not in self._told]
+        new = [element for element in elements if element not in self._told]
         self._told.update(new)
         if new:
             self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(new)))
@@ -439,14 +439,14 @@ class SimulationServer:
         if found and model != _WORLD:
             self._findings.setdefault(model, []).extend(found)
             self._findings_changed()
-        for each in found:
-            text = f"{each.span}: {each.message}" if each.span else str(each.message)
+        for diagnostic in found:
+            text = f"{diagnostic.span}: {diagnostic.message}" if diagnostic.span else str(diagnostic.message)
             if text in self._told:
                 continue
             self._told.add(text)
             logger = self.node.get_logger()
-            line = f"{text} ({each.hint})" if each.hint else text
-            if each.severity is Severity.ERROR:  # two lines, as a logger knows its calls by their lines
+            line = f"{text} ({diagnostic.hint})" if diagnostic.hint else text
+            if diagnostic.severity is Severity.ERROR:  # two lines, as a logger knows its calls by their lines
                 logger.error(line)
             else:
                 logger.warning(line)

@@ -24,7 +24,7 @@ def unsimulated(world: World) -> list[str]:
 def unsimulated_in(model: Model) -> list[str]:
     """The elements of a model that are not simulated."""
     elements = (each.element for each in (model, *_inside(model)))
-    return _named(each for each in elements if each is not None)
+    return _named(element for element in elements if element is not None)
 
 
 def _named(roots: Iterable[Element]) -> list[str]:

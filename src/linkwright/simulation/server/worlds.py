@@ -64,7 +64,7 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
     if description.sdf is None:
         raise LinkwrightError(*description.diagnostics)
     if not description.sdf.worlds:
-        wrong = [each for each in description.diagnostics if has_errors([each])]
+        wrong = [diagnostic for diagnostic in description.diagnostics if has_errors([diagnostic])]
         message = phrase("there is no world in '{path}'", path=str(path))
         hint = phrase("models are put into one: linkwright sim empty {path}", path=str(path))
         raise LinkwrightError(*wrong or [Diagnostic("SIM151", message, hint=hint)])

@@ -58,14 +58,14 @@ class Wrenches:
     def _act(self) -> None:
         now, simulation = self._simulation.time, self._simulation
         for link, wrenches in tuple(self._acting.items()):
-            left = [each for each in wrenches if each.end is None or now < each.end]
+            left = [wrench for wrench in wrenches if wrench.end is None or now < wrench.end]
             self._acting[link] = left
             if not left or link not in simulation.scene.bodies:
                 del self._acting[link]
                 if link in simulation.scene.bodies:
                     simulation.push(link, (0.0, 0.0, 0.0))
                 continue
-            force, torque = self._sum(link, [each for each in left if each.begin <= now])
+            force, torque = self._sum(link, [wrench for wrench in left if wrench.begin <= now])
             simulation.push(link, force.tolist(), torque.tolist())
 
     def _sum(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
@@ -73,8 +73,8 @@ class Wrenches:
         pose = self._simulation.link_pose(link)
         turn, centre = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
         force, torque = np.zeros(3), np.zeros(3)
-        for each in wrenches:
-            arm = turn @ np.asarray(each.point) + np.asarray(pose[:3]) - centre
-            force += each.force
-            torque += np.asarray(each.torque) + np.cross(arm, each.force)
+        for wrench in wrenches:
+            arm = turn @ np.asarray(wrench.point) + np.asarray(pose[:3]) - centre
+            force += wrench.force
+            torque += np.asarray(wrench.torque) + np.cross(arm, wrench.force)
         return force, torque

@@ -119,7 +119,7 @@ class _Reader:
         if keys.node("phrases") is None:
             raise keys.error(phrase("{what} has no 'phrases': nobody can say it", what=what))
         phrases = self._phrases(keys.node("phrases"), tuple(self._names), intent)
-        every = [set(template.slots) for each in phrases.values() for template in each]
+        every = [set(template.slots) for phrase in phrases.values() for template in phrase]
         slots = set.intersection(*every) if every else set()
         samples = {slot: next(iter(self._names[slot].values()), "") if slot in self._names else 1.0 for slot in slots}
         action = ActionReader(self._document, keys, places, samples).read()

@@ -105,12 +105,12 @@ class CommandSet:
     @property
     def languages(self) -> tuple[str, ...]:
         """The languages of the commands."""
-        return tuple(dict.fromkeys(name for each in self.commands for name in each.phrases))
+        return tuple(dict.fromkeys(name for command in self.commands for name in command.phrases))
 
     @property
     def stops(self) -> tuple[Command, ...]:
         """The commands that stop the robot."""
-        return tuple(each for each in self.commands if isinstance(each.action, Stop))
+        return tuple(command for command in self.commands if isinstance(command.action, Stop))
 
     def is_stop(self, text: str) -> bool:
         """Whether a text contains a phrase that stops."""
@@ -133,12 +133,12 @@ class CommandSet:
     def phrases(self, language: str) -> tuple[str, ...]:
         """All phrases of a language, for `EngineOptions`."""
         said = self._said(language)
-        return tuple(dict.fromkeys(text for each in self._templates(language) for text in each.spoken(said)))
+        return tuple(dict.fromkeys(text for template in self._templates(language) for text in template.spoken(said)))
 
     def phrase_count(self, language: str) -> int:
         """The number of phrases in a language, without making them."""
         said = self._said(language)
-        return sum(prod(len(said[slot]) for slot in each.slots) for each in self._templates(language))
+        return sum(prod(len(said[slot]) for slot in template.slots) for template in self._templates(language))
 
     def _said(self, language: str) -> dict[str, tuple[str, ...]]:
         """The values of each slot, as they are said."""
@@ -148,7 +148,7 @@ class CommandSet:
         }
 
     def _templates(self, language: str) -> list[Template]:
-        every = [*(each.phrases for each in self.commands), *self.answers.values()]
+        every = [*(command.phrases for command in self.commands), *self.answers.values()]
         return [template for phrases in every for name in (language, ANY) for template in phrases.get(name, ())]
 
 
@@ -161,4 +161,4 @@ def chosen(texts: ByLanguage, language: str) -> str:
 
 
 def _all(phrases: Mapping[str, tuple[Template, ...]]) -> list[Template]:
-    return [template for each in phrases.values() for template in each]
+    return [template for phrase in phrases.values() for template in phrase]

@@ -47,7 +47,7 @@ class OnnxEngine(SpeechEngine):
             )
         self._session = _session(options.model)
         self._input, self._length, self._names = _form(self._session, options.model)
-        self._phrases = {_plain(each): each for each in options.phrases}
+        self._phrases = {_plain(phrase): phrase for phrase in options.phrases}
         self._frames, self._activity = MelFrames(), VoiceActivity()
         self._kept: Samples = np.zeros(0, np.int16)
         self._heard = 0  # samples

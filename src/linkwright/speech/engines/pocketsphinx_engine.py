@@ -139,7 +139,7 @@ def _jsgf(phrasing: Phrasing) -> str:
 def _decoder(pocketsphinx: Any, folder: Path | None) -> Any:
     settings: dict[str, Any] = {"lm": None, "loglevel": "FATAL", "samprate": RATE, "compallsen": True}
     if folder is not None:
-        dictionaries = sorted(each for each in folder.glob("*.dic*") if each.is_file()) if folder.is_dir() else []
+        dictionaries = sorted(path for path in folder.glob("*.dic*") if path.is_file()) if folder.is_dir() else []
         if not dictionaries or not all((folder / name).is_file() for name in _MODEL_FILES):
             message = phrase("'{path}' holds no model of pocketsphinx", path=folder)
             hint = phrase("it is a folder with 'mdef', what belongs to it, and a dictionary such as 'words.dict'")

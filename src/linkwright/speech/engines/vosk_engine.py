@@ -75,8 +75,8 @@ class VoskEngine(SpeechEngine):
         words = json.loads(result).get("result", [])
         if not words:
             return []
-        confidence = min(each["conf"] for each in words)
-        divided = self._phrasing.divided([each["word"] for each in words])
+        confidence = min(word["conf"] for word in words)
+        divided = self._phrasing.divided([word["word"] for word in words])
         if divided is None or confidence < LEAST_CONFIDENCE:
             is_near = divided is not None and len(divided) == 1 and confidence >= _NEAR
             nearest = divided[0][0] if divided and is_near else ""
@@ -84,7 +84,7 @@ class VoskEngine(SpeechEngine):
         return [
             Heard(
                 text,
-                min(each["conf"] for each in words[first:end]),
+                min(word["conf"] for word in words[first:end]),
                 True,
                 words[first]["start"],
                 words[end - 1]["end"],

@@ -44,10 +44,10 @@ def assertExitCodes(
     """
     for code in allowable_exit_codes:
         _check(isinstance(code, int), f"Provided exit code {code} is not an int")
-    for each in resolveProcesses(
+    for execute_local in resolveProcesses(
         proc_info, process=process, cmd_args=cmd_args, strict_proc_matching=strict_proc_matching
     ):
-        info = proc_info[each]
+        info = proc_info[execute_local]
         _check(info.returncode in allowable_exit_codes, f"Proc {info.process_name} exited with code {info.returncode}")
 
 
@@ -84,8 +84,8 @@ def assertInStream(
     if stream not in _STREAMS:
         raise ValueError("Invalid value for stream; must be 'stdout' or 'stderr'")
     match = build_text_match(expected_output)
-    for each in found:
-        written = text_of(proc_output[each], stream)
+    for execute_local in found:
+        written = text_of(proc_output[execute_local], stream)
         if strip_ansi_escape_sequences:
             written = remove_ansi_escape_sequences(written)
         if match(written if output_filter is None else output_filter(written)) is not None:

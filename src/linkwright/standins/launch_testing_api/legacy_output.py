@@ -27,12 +27,16 @@ def create_output_lines_filter(
 ) -> Callable[[bytes], bytes]:
     """What takes lines that begin so, or match a pattern, out of an output."""
     prefixes = tuple(filtered_prefixes or get_default_filtered_prefixes())
-    patterns = [re.compile(each) for each in filtered_patterns or get_default_filtered_patterns()]
+    patterns = [
+        re.compile(filtered_pattern) for filtered_pattern in filtered_patterns or get_default_filtered_patterns()
+    ]
 
     def filtered(output: bytes) -> bytes:
         lines = output.splitlines(keepends=True)
         return b"".join(
-            line for line in lines if not line.startswith(prefixes) and not any(each.match(line) for each in patterns)
+            line
+            for line in lines
+            if not line.startswith(prefixes) and not any(pattern.match(line) for pattern in patterns)
         )
 
     return filtered
@@ -65,7 +69,7 @@ def create_output_test_from_file(output_file: str) -> _OutputTest:
 
 
 def _of_patterns(texts: Sequence[bytes]) -> _OutputTest:
-    return create_output_regex_test([re.compile(each) for each in texts])
+    return create_output_regex_test([re.compile(text) for text in texts])
 
 
 def _joined(output: bytes, more: bytes) -> bytes:

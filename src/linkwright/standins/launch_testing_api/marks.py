@@ -27,13 +27,13 @@ def parametrize(argnames: str, argvalues: Iterable[Any]) -> Callable[[Callable[.
         argvalues: a value for each launch; a tuple of them for several arguments.
     """
     names = [name.strip() for name in argnames.split(",") if name.strip()]
-    values = [each if isinstance(each, tuple) else (each,) for each in argvalues]
+    values = [argvalue if isinstance(argvalue, tuple) else (argvalue,) for argvalue in argvalues]
 
     def decorate(function: Callable[..., Any]) -> Callable[[], Any]:
         @functools.wraps(function)
         def descriptions() -> Iterator[tuple[Callable[..., Any], dict[str, Any]]]:
-            for each in values:
-                given = dict(zip(names, each, strict=False))
+            for value in values:
+                given = dict(zip(names, value, strict=False))
                 made = functools.partial(function, **given)
                 functools.update_wrapper(made, function)
                 yield made, given

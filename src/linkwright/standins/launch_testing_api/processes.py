@@ -66,7 +66,11 @@ def resolveProcesses(
     if not isinstance(process, str):
         raise TypeError(f"proc argument must be 'ExecuteProcess' or 'str' not {type(process)}")
     words = [cmd_args] if isinstance(cmd_args, str) else cmd_args
-    found = [each for each in known if process in name_of(each) and _has_words(each, words)]
+    found = [
+        execute_local
+        for execute_local in known
+        if process in name_of(execute_local) and _has_words(execute_local, words)
+    ]
     if found and not (strict_proc_matching and len(found) > 1):
         return found
     names = ", ".join(sorted(map(_called, known)))

@@ -111,12 +111,12 @@ def unittestResultsToXml(
         test_results: a launch, or its name -> its results.
     """
     results = test_results or {}
-    seconds = sum(sum(each.testTimes.values()) for each in results.values())
+    seconds = sum(sum(result.testTimes.values()) for result in results.values())
     counts = {"tests": 0, "failures": 0, "errors": 0}
-    for each in results.values():
-        counts["tests"] += each.testsRun
-        counts["failures"] += len(each.failures)
-        counts["errors"] += len(each.errors)
+    for result in results.values():
+        counts["tests"] += result.testsRun
+        counts["failures"] += len(result.failures)
+        counts["errors"] += len(result.errors)
     root = ET.Element("testsuites", {"name": name, **_texts(counts), "time": _seconds(seconds)})
     root.extend(unittestResultToXml(str(run), each) for run, each in results.items())
     return ET.ElementTree(root)

@@ -160,11 +160,11 @@ class PostShutdownTestLoader(_Loader):
 
 def _cases(tests: Iterable[Any]) -> Iterator[Any]:
     """The tests in suites of suites."""
-    for each in tests:
-        if isinstance(each, Iterable):
-            yield from _cases(each)
+    for test in tests:
+        if isinstance(test, Iterable):
+            yield from _cases(test)
         else:
-            yield each
+            yield test
 
 
 def _rename(case: Any, name: str) -> None:

@@ -76,7 +76,7 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
     if isinstance(expected_lines, str) or hasattr(expected_lines, "match"):
         return find
     if isinstance(expected_lines, Iterable):
-        return _in_order([build_line_match(each) for each in expected_lines], strict=strict)
+        return _in_order([build_line_match(expected_line) for expected_line in expected_lines], strict=strict)
     raise ValueError("Unknown format for expected lines")
 
 
@@ -162,7 +162,7 @@ def basic_output_filter(
         filtered_patterns: regular expressions for the beginnings of such lines.
     """
     prefixes = tuple(get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
-    patterns = [re.compile(each) for each in filtered_patterns or ()]
+    patterns = [re.compile(filtered_pattern) for filtered_pattern in filtered_patterns or ()]
 
     def without_them(output: str) -> str:
         lines = output.splitlines(keepends=True)

@@ -43,8 +43,8 @@ def replace_node(node: Any, by: Any, content_only: bool = False) -> None:
     """
     parent = node.parentNode
     for new in by if isinstance(by, list) else [] if by is None else [by]:
-        for each in list(new.childNodes) if content_only else [new]:
-            parent.insertBefore(each, node)
+        for childNode in list(new.childNodes) if content_only else [new]:
+            parent.insertBefore(childNode, node)
     parent.removeChild(node)
 
 

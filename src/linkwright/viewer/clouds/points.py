@@ -99,7 +99,7 @@ def points_of_legacy_cloud(message: Any) -> Points:
     Raises:
         BadCloudError: a channel has not one value for each point.
     """
-    positions = np.array([(each.x, each.y, each.z) for each in message.points], dtype=np.float32).reshape(-1, 3)
+    positions = np.array([(point.x, point.y, point.z) for point in message.points], dtype=np.float32).reshape(-1, 3)
     channels: dict[str, NDArray[Any]] = {}
     for channel in message.channels:
         values = np.asarray(channel.values, dtype=np.float32)
@@ -120,20 +120,20 @@ def points_of_legacy_cloud(message: Any) -> Points:
 def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
     """Type and offset of each field by name."""
     found: dict[str, tuple[str, int]] = {}
-    for each in fields:
-        kind = _FORMATS.get(each.datatype)
-        if kind is None or each.name in found:
+    for point_field in fields:
+        kind = _FORMATS.get(point_field.datatype)
+        if kind is None or point_field.name in found:
             continue
-        if each.offset + int(kind[1]) > step:
+        if point_field.offset + int(kind[1]) > step:
             raise BadCloudError(
                 phrase(
                     "Field '{name}' ends at byte {end} of a point of {step} bytes",
-                    name=each.name,
-                    end=each.offset + int(kind[1]),
+                    name=point_field.name,
+                    end=point_field.offset + int(kind[1]),
                     step=step,
                 )
             )
-        found[each.name] = (kind, each.offset)
+        found[point_field.name] = (kind, point_field.offset)
     return found
 
 

@@ -113,7 +113,11 @@ class PanelsConfig:
 
     def _listed(self) -> list[Section]:
         """The entries that RViz loads; it passes over those that lack a class or a name."""
-        return [each for each in self._document.sections(_PANELS) if each.scalar("Class") and each.scalar("Name")]
+        return [
+            section
+            for section in self._document.sections(_PANELS)
+            if section.scalar("Class") and section.scalar("Name")
+        ]
 
     def _is_shown(self, section: Section) -> bool:
         name = section.text("Name") or ""
@@ -133,9 +137,9 @@ class PanelsConfig:
     def _add(self, panel: PanelName) -> Section | None:
         """An entry for a panel: the one that it had, in its place, or a new one; None in a file that cannot have it."""
         there = list(self._document.sections(_PANELS))
-        gone = next((each for each in self._order if _panel(each) == panel and each not in there), None)
+        gone = next((section for section in self._order if _panel(section) == panel and section not in there), None)
         if gone is None:
-            former = any(is_former(each.text("Class") or "") for each in self._order)
+            former = any(is_former(section.text("Class") or "") for section in self._order)
             if former and panel in _NOT_OF_RVIZ_1:
                 return None
             gone = new_section(self._document.source)
@@ -145,7 +149,7 @@ class PanelsConfig:
             self._order.append(gone)
             self._added.append(gone)
         after = self._order[self._order.index(gone) + 1 :]
-        insert_section(self._document, _PANELS, gone, next((each for each in after if each in there), None))
+        insert_section(self._document, _PANELS, gone, next((section for section in after if section in there), None))
         return gone
 
     def _is_on(self, *path: str) -> bool:

@@ -116,7 +116,7 @@ class DetectionPictureDisplay(ImageDisplay):
     def _detected(self, message: Any) -> None:
         self._detected_at = asyncio.get_running_loop().time()
         _, stamp_ns = self.frame_of(message)
-        image = next((each for each in self._images if self.frame_of(each)[1] == stamp_ns), None)
+        image = next((image for image in self._images if self.frame_of(image)[1] == stamp_ns), None)
         content = _boxes(message, of_image=image is not None)
         if content is None:
             self.say(DETECTIONS, "error", phrase("Message contained invalid floating point values (nans or infs)"))
@@ -132,8 +132,8 @@ class DetectionPictureDisplay(ImageDisplay):
 def _boxes(message: Any, *, of_image: bool) -> PictureBoxes | None:
     """The boxes; None when a number is not finite."""
     detections = list(message.detections)
-    results = [best_result(each) for each in detections]
-    middles = [each.bbox.center for each in detections]
+    results = [best_result(detection) for detection in detections]
+    middles = [detection.bbox.center for detection in detections]
     boxes = np.array(
         [
             (middle.position.x, middle.position.y, each.bbox.size_x, each.bbox.size_y, middle.theta)

@@ -101,7 +101,7 @@ class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
 
 def best_result(detection: Any) -> tuple[str, float]:
     """Class and score of the likeliest hypothesis of a Detection2D or Detection3D; no class and -1 without any."""
-    best = max((each.hypothesis for each in detection.results), key=lambda each: each.score, default=None)
+    best = max((result.hypothesis for result in detection.results), key=lambda each: each.score, default=None)
     return ("", -1.0) if best is None else (best.class_id, best.score)
 
 
@@ -151,9 +151,9 @@ class Detection3DArrayDisplay(_BoxDisplay):
     def content(self, message: Any) -> DataContent | None:
         """The boxes."""
         detections = self.detections_of(message)
-        results = [best_result(each) for each in detections]
+        results = [best_result(detection) for detection in detections]
         colors = [class_color(name, self._table) for name, _ in results]
-        boxes = [each.bbox for each in detections]
+        boxes = [detection.bbox for detection in detections]
         return self._content(boxes, colors, [score for _, score in results], [name for name, _ in results])
 
     def detections_of(self, message: Any) -> Sequence[Any]:

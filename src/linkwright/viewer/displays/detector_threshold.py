@@ -65,7 +65,7 @@ class DetectorThreshold:
         try:
             await services_ready(client)
             names = (await answer(client, client.list_parameters())).result.names
-            known = next((each for each in _NAMES if each in names), None)
+            known = next((name for name in _NAMES if name in names), None)
             if known is None:
                 return "ok", f"Filtered here: {name} has no parameter 'threshold'"
             wanted = Parameter(known, ParameterType.DOUBLE, value)

@@ -107,11 +107,11 @@ class OctomapDisplay(StoredMarkersDisplay):
             alpha=self.properties.number("Voxel Alpha"),
             by_probability=self.properties.text("Voxel Coloring") == BY_PROBABILITY,
         )
-        for gone in self._shown - {each.id for each in markers}:
+        for gone in self._shown - {marker.id for marker in markers}:
             self._store.remove(gone)
-        self._shown = {each.id for each in markers}
-        for each in markers:
-            self._store.put(each)
+        self._shown = {marker.id for marker in markers}
+        for marker in markers:
+            self._store.put(marker)
         self.show_markers()
         self.frames_changed()
 

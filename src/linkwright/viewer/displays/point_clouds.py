@@ -143,7 +143,7 @@ class CloudDisplay(TopicDisplay):
 
     def fields_of(self, key: str, index: int) -> dict[str, float | str] | None:
         """The values of a point that is shown, besides its coordinates; None when it is not shown any more."""
-        shown = next((each for each in self._shown if each.key == key), None)
+        shown = next((shown for shown in self._shown if shown.key == key), None)
         if shown is None or not 0 <= index < len(shown.points):
             return None
         fields: dict[str, float | str] = {}
@@ -203,7 +203,7 @@ class CloudDisplay(TopicDisplay):
             self._leave(len(self._shown) - 1)
             return
         now = time.monotonic()
-        self._leave(sum(now - each.received > decay for each in self._shown))
+        self._leave(sum(now - shown.received > decay for shown in self._shown))
         if self._shown:
             due = self._shown[0].received + decay - now
             self._decay = asyncio.get_running_loop().call_later(max(0.01, due + 0.005), self._decayed)
@@ -235,7 +235,7 @@ class CloudDisplay(TopicDisplay):
         self._say_count()
 
     def _say_count(self) -> None:
-        points = sum(len(each.points) for each in self._shown)
+        points = sum(len(shown.points) for shown in self._shown)
         self.say(
             "Points",
             "ok",

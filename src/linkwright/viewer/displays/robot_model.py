@@ -260,7 +260,7 @@ class RobotModelDisplay(ViewerDisplay):
         try:
             provenance = self.context.library.provenance(self._text, element)
         except LinkwrightError as error:
-            return LinkProvenance(self.id, link, [each.message for each in error.diagnostics])
+            return LinkProvenance(self.id, link, [diagnostic.message for diagnostic in error.diagnostics])
         return None if provenance is None else LinkProvenance(self.id, link, provenance_lines(provenance))
 
     # --- descriptions ------------------------------------------------------------------------------------------
@@ -309,8 +309,8 @@ class RobotModelDisplay(ViewerDisplay):
         )
 
     def _refused(self, diagnostics: Sequence[Diagnostic]) -> None:
-        errors = [each for each in diagnostics if each.severity is Severity.ERROR]
-        is_xml = not any(each.code.startswith("XML") for each in errors)
+        errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR]
+        is_xml = not any(error.code.startswith("XML") for error in errors)
         text = phrase("URDF failed Model parse") if is_xml else phrase("URDF failed XML parse")
         self._description = [StatusRow("URDF", "error", text)]
         for error in errors[:_MOST_FINDINGS]:
@@ -364,7 +364,7 @@ class RobotModelDisplay(ViewerDisplay):
         elif path not in rows.boxes:
             return
         value = self.properties.get(*path)
-        changed = [each for each in followers if self.properties.get(*each) != value]
+        changed = [follower for follower in followers if self.properties.get(*follower) != value]
         for each in changed:
             self.properties.set(each, value)
         changed += self._derive_boxes(rows)

@@ -262,8 +262,8 @@ class WorldDisplay(TopicDisplay):
         self._show_poses()
 
     def _refuse(self, diagnostics: tuple[Diagnostic, ...]) -> None:
-        errors = [each for each in diagnostics if each.severity is Severity.ERROR][:_MOST_FINDINGS]
-        texts = [each.placed_message for each in errors] or [phrase("The description is not SDF")]
+        errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR][:_MOST_FINDINGS]
+        texts = [error.placed_message for error in errors] or [phrase("The description is not SDF")]
         self.say(_WORLD, "error", joined(texts, "; "))
 
     def _tell_problems(self) -> None:
@@ -397,7 +397,7 @@ def _scene(
         list(world.scene.ambient[:3]),
         list(world.scene.background[:3]),
         world.scene.shadows,
-        [each.scene for each in lidars],
+        [lidar.scene for lidar in lidars],
         cameras,
         robots_of(world),
         None if camera is None else list(camera),

@@ -41,7 +41,7 @@ class LidarRays:
 
     def describe(self, lidars: Iterable[ShownLidar]) -> None:
         """Take the lidars of a world."""
-        self._lidars = {each.scene.name: each for each in lidars}
+        self._lidars = {lidar.scene.name: lidar for lidar in lidars}
         self._let_go(set())
         self._last = {name: message for name, message in self._last.items() if name in self._lidars}
         for message in list(self._last.values()):
@@ -67,12 +67,12 @@ class LidarRays:
             if topic and (choice == "All" or (choice == "Visualized" and lidar.scene.visualized)):
                 wanted.setdefault(topic if lidar.scene.visualized else topic + _OTHERS, []).append(name)
         self._let_go({name for names in wanted.values() for name in names})
-        for each in self._topics.keys() - wanted.keys():
-            self._topics.pop(each).close()
+        for key in self._topics.keys() - wanted.keys():
+            self._topics.pop(key).close()
         problem: Phrase | None = None
-        for each in wanted.keys() - self._topics.keys():
-            self._topics[each] = SideTopic(self._host, "sensor_msgs/msg/LaserScan", self._measured)
-            problem = self._topics[each].listen(each, SENSOR_DATA_QOS) or problem
+        for key in wanted.keys() - self._topics.keys():
+            self._topics[key] = SideTopic(self._host, "sensor_msgs/msg/LaserScan", self._measured)
+            problem = self._topics[key].listen(key, SENSOR_DATA_QOS) or problem
         return problem
 
     def go_on(self) -> None:

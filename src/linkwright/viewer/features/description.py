@@ -138,12 +138,20 @@ class DescriptionFeature(PageFeature):
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Remember the files with findings; their text is the one the findings refer to."""
-        self._faulty = {each.source.name: each.source.text for each in diagnostics if each.source is not None}
+        self._faulty = {
+            diagnostic.source.name: diagnostic.source.text
+            for diagnostic in diagnostics
+            if diagnostic.source is not None
+        }
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """The descriptions that can be asked for; no link counts as changed."""
         known = [self._look_at(display) for display in manager.robot_models()]
-        return [DescriptionChanged(each.display, each.revision, [], []) for each in known if each is not None]
+        return [
+            DescriptionChanged(known_description.display, known_description.revision, [], [])
+            for known_description in known
+            if known_description is not None
+        ]
 
     def receive(self, page: Page, message: _Question) -> None:
         """Queue a question."""
@@ -168,7 +176,7 @@ class DescriptionFeature(PageFeature):
 
     async def _answer(self, page: Page, question: _Question) -> None:
         seen = self.managers.of(page).robot_models()
-        display = next((each for each in seen if each.id == question.display), None)
+        display = next((display for display in seen if display.id == question.display), None)
         known = None if display is None else self._look_at(display)
         faulty = dict(self._faulty)
 
@@ -240,7 +248,7 @@ class DiagnosticsFeature(PageFeature):
     def _all(self) -> Diagnostics:
         models = [model for manager in self.managers.all() for model in manager.robot_models()]
         unseen = {model.text: found for model in models if (found := _unseen(model)) is not None}
-        return Diagnostics([item_of(each) for each in (*self._found, *unseen.values())])
+        return Diagnostics([item_of(diagnostic) for diagnostic in (*self._found, *unseen.values())])
 
 
 def _unseen(model: RobotModelDisplay) -> Diagnostic | None:

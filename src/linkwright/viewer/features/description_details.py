@@ -245,10 +245,10 @@ def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
     kept = Suppressions(subject, subject.settings).apply(found)
     owners = _owners(robot)
     return [
-        InertiaFinding(link, each.code, each.message, each.hint or "")
-        for each in kept
-        if each.severity is not Severity.INFO
-        if (link := _link_of(each, owners)) is not None
+        InertiaFinding(link, diagnostic.code, diagnostic.message, diagnostic.hint or "")
+        for diagnostic in kept
+        if diagnostic.severity is not Severity.INFO
+        if (link := _link_of(diagnostic, owners)) is not None
     ]
 
 

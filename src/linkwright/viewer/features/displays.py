@@ -47,8 +47,8 @@ class DisplaysFeature(PageFeature):
     def _tell_size(self, display: ViewerDisplay) -> None:
         """Tell a display the size of the largest panel that shows it, nothing where none does."""
         sizes = self._sizes[display].values()
-        width = max((each.width for each in sizes), default=0)
-        height = max((each.height for each in sizes), default=0)
+        width = max((size.width for size in sizes), default=0)
+        height = max((size.height for size in sizes), default=0)
         display.receive(PictureSize(display.id, width, height))
 
 
@@ -102,9 +102,9 @@ def show_topic(display: ViewerDisplay, topic: str) -> None:
     offers = [info.qos_profile for info in display.context.node.get_publishers_info_by_topic(topic)]
     if not offers:
         return
-    if "Reliability Policy" in parts and any(each.reliability is ReliabilityPolicy.BEST_EFFORT for each in offers):
+    if "Reliability Policy" in parts and any(offer.reliability is ReliabilityPolicy.BEST_EFFORT for offer in offers):
         display.properties.set((*path, "Reliability Policy"), "Best Effort")
-    if "Durability Policy" in parts and all(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in offers):
+    if "Durability Policy" in parts and all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers):
         display.properties.set((*path, "Durability Policy"), "Transient Local")
 
 

@@ -252,8 +252,8 @@ class RecordingFeature(PageFeature):
 
     def _refused(self, diagnostics: Iterable[Diagnostic]) -> None:
         """Show pages and the terminal an error."""
-        for each in diagnostics:
-            self.context.report(each)
+        for diagnostic in diagnostics:
+            self.context.report(diagnostic)
         self._problem = in_one_line(diagnostics)
 
     def _tell(self) -> None:

@@ -139,7 +139,9 @@ class SimulationFeature(PageFeature):
 
     def _is_drivable(self) -> bool:
         endpoints = self.context.node.graph.endpoints()
-        return any(each.kind is EndpointKind.SUBSCRIPTION and each.type_name in _VELOCITIES for each in endpoints)
+        return any(
+            endpoint.kind is EndpointKind.SUBSCRIPTION and endpoint.type_name in _VELOCITIES for endpoint in endpoints
+        )
 
     def _state(self, message: Any) -> None:
         self._tell(replace(self._status, present=True, paused=message.state == _PAUSED))

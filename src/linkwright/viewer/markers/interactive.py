@@ -204,10 +204,13 @@ def read_interactive_marker(
         pose=pose,
         scale=scale,
         controls=[
-            _control(each, message, scale, _unique(each.name, names), index, frames, transparent=transparent)
-            for each in message.controls
+            _control(control, message, scale, _unique(control.name, names), index, frames, transparent=transparent)
+            for control in message.controls
         ],
-        menu=[MarkerMenuEntry(each.id, each.parent_id, each.title) for each in message.menu_entries],
+        menu=[
+            MarkerMenuEntry(menu_entry.id, menu_entry.parent_id, menu_entry.title)
+            for menu_entry in message.menu_entries
+        ],
     )
 
 
@@ -236,7 +239,7 @@ def _control(
     independent = control.independent_marker_orientation
     orientation = list(unit_quaternion(control.orientation))
     if control.markers:
-        markers = [_marker(each, message, index, frames) for each in control.markers]
+        markers = [_marker(marker, message, index, frames) for marker in control.markers]
     elif mode == "menu":
         markers, facing, independent = [_button(control.description, scale)], "view_facing", False
     else:

@@ -162,18 +162,18 @@ def _rgba(color: Any) -> list[float]:
 def _points(points: Any) -> NDArray[np.float32]:
     if not points:
         return _NO_POINTS
-    return np.array([(each.x, each.y, each.z) for each in points], dtype=np.float32).reshape(-1, 3)
+    return np.array([(point.x, point.y, point.z) for point in points], dtype=np.float32).reshape(-1, 3)
 
 
 def _colors(colors: Any) -> NDArray[np.float32]:
     if not colors:
         return _NO_COLORS
-    return np.array([(each.r, each.g, each.b, each.a) for each in colors], dtype=np.float32).reshape(-1, 4)
+    return np.array([(color.r, color.g, color.b, color.a) for color in colors], dtype=np.float32).reshape(-1, 4)
 
 
 def _check_floats(shape: MarkerShape) -> None:
     finite = all(map(math.isfinite, (*shape.pose, *shape.scale, *shape.color)))
-    if not finite or any(len(each) and not np.isfinite(each).all() for each in (shape.points, shape.colors)):
+    if not finite or any(len(array) and not np.isfinite(array).all() for array in (shape.points, shape.colors)):
         raise BadMarkerError(phrase("Contains invalid floating point values (nans or infs)"))
 
 
@@ -282,7 +282,9 @@ def _add_texture(message: Any, shape: MarkerShape, index: MeshIndex) -> None:
             )
         )
     shape.texture = located.url
-    shape.uvs = np.array([(each.u, each.v) for each in message.uv_coordinates], dtype=np.float32)
+    shape.uvs = np.array(
+        [(uv_coordinate.u, uv_coordinate.v) for uv_coordinate in message.uv_coordinates], dtype=np.float32
+    )
 
 
 def _ending(name: str) -> str:

@@ -244,7 +244,7 @@ class Line:
     @property
     def is_full(self) -> bool:
         """Whether large messages should wait until the page has those that are on the way."""
-        return self._answers and sum(each.size for each in self._on_the_way) >= self.room / 2
+        return self._answers and sum(on_the_way.size for on_the_way in self._on_the_way) >= self.room / 2
 
     @property
     def is_idle(self) -> bool:

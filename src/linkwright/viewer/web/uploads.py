@@ -127,8 +127,8 @@ class Uploads:
             announced = msgspec.json.decode(await request.read(), type=_Announcement)
         except msgspec.DecodeError as error:
             return web.Response(status=400, text=f"{error}\n")
-        names = [each.name for each in announced.files]
-        wrong = next((each for each in names if not _FILE.fullmatch(each)), None)
+        names = [file.name for file in announced.files]
+        wrong = next((name for name in names if not _FILE.fullmatch(name)), None)
         if wrong is not None:
             return _refused(
                 request, phrase("'{name}' is no file of a recording: these are .mcap and .db3", name=wrong[:100])
@@ -138,7 +138,7 @@ class Uploads:
         if (
             not _NAME.fullmatch(announced.name)
             or announced.name in _DOTS
-            or any(each.size < 0 for each in announced.files)
+            or any(file.size < 0 for file in announced.files)
         ):
             return web.Response(status=400, text="A name without slashes, and sizes.\n")
         if len(self._uploads) >= _MOST_AT_ONCE:
@@ -146,7 +146,7 @@ class Uploads:
                 request, phrase("{count} other recordings are being sent: wait for one of them", count=_MOST_AT_ONCE)
             )
         scratch = scratch_folder()
-        needed = sum(each.size for each in announced.files)
+        needed = sum(file.size for file in announced.files)
         free = shutil.disk_usage(scratch.name).free
         if needed + self._left_free > free:
             scratch.cleanup()

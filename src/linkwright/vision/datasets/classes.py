@@ -85,9 +85,9 @@ def read_classes(path: Path) -> ClassRules:
         if not isinstance(key, yaml.ScalarNode) or not key.value.strip() or key.value in patterns:
             raise _wrong(document, key)
         entries = value.value if isinstance(value, yaml.SequenceNode) else [value]
-        if not entries or not all(isinstance(each, yaml.ScalarNode) for each in entries):
+        if not entries or not all(isinstance(entry, yaml.ScalarNode) for entry in entries):
             raise _wrong(document, value)
-        patterns[key.value] = tuple(str(each.value) or key.value for each in entries)
+        patterns[key.value] = tuple(str(entry.value) or key.value for entry in entries)
     return ClassRules(patterns)
 
 

@@ -21,19 +21,19 @@ def contact_sheet(pictures: Sequence[Taken], classes: Sequence[str]) -> bytes:
     """
     from PIL import Image, ImageDraw
 
-    shown = sorted(pictures, key=lambda each: each.index)[:MOST]
+    shown = sorted(pictures, key=lambda picture: picture.index)[:MOST]
     small = []
     for taken in shown:
         image = Image.open(BytesIO(taken.data)).convert("RGB")
         scale = _WIDTH / image.width
         image = image.resize((_WIDTH, max(round(image.height * scale), 1)))
         draw = ImageDraw.Draw(image)
-        for each in taken.labels:
-            left, top, right, bottom = (scale * side for side in each.box)
-            colour = _IGNORED if each.ignored else _COLOURS[each.label % len(_COLOURS)]
+        for label in taken.labels:
+            left, top, right, bottom = (scale * side for side in label.box)
+            colour = _IGNORED if label.ignored else _COLOURS[label.label % len(_COLOURS)]
             draw.rectangle((left, top, max(right - 1, left), max(bottom - 1, top)), outline=colour)
-            if not each.ignored:
-                words = f"{classes[each.label]} {each.visibility:.0%}"
+            if not label.ignored:
+                words = f"{classes[label.label]} {label.visibility:.0%}"
                 box = draw.textbbox((left + 1, max(top - 11, 0)), words)
                 draw.rectangle(box, fill="#000000")
                 draw.text((left + 1, max(top - 11, 0)), words, fill=colour)

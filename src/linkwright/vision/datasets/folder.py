@@ -133,7 +133,7 @@ class DatasetFolder:
         return None
 
     def _write(self, card: Mapping[str, Any]) -> None:
-        made = {**card, "first": self.first, "pictures": self.count - sum(each["pictures"] for each in self._runs)}
+        made = {**card, "first": self.first, "pictures": self.count - sum(run["pictures"] for run in self._runs)}
         splits = {split: len(images) for split, images in self._images.items()}
         whole = {
             "form": _FORM,
@@ -202,12 +202,12 @@ class DatasetFolder:
                 {key: value for key, value in each.items() if key != "id"} for each in written["annotations"]
             ]
         self._runs = card["made"]
-        numbers = [each["id"] for images in self._images.values() for each in images]
+        numbers = [image["id"] for images in self._images.values() for image in images]
         self.first = max(numbers, default=-1) + 1
 
     def _drop(self, count: int) -> None:
         """Remove the last pictures."""
-        newest = sorted(each["id"] for images in self._images.values() for each in images)[-count:]
+        newest = sorted(image["id"] for images in self._images.values() for image in images)[-count:]
         gone = set(newest)
         for split in SPLITS:
             files = [each["file_name"] for each in self._images[split] if each["id"] in gone]
@@ -226,30 +226,30 @@ class DatasetFolder:
 
 def _yolo(taken: Taken, width: int, height: int) -> str:
     lines = []
-    for each in taken.labels:
-        if not each.ignored:
-            left, top, right, bottom = each.box
+    for label in taken.labels:
+        if not label.ignored:
+            left, top, right, bottom = label.box
             middle = (left + right) / 2 / width, (top + bottom) / 2 / height
             size = (right - left) / width, (bottom - top) / height
-            lines.append(" ".join([str(each.label), *(f"{value:.6f}" for value in (*middle, *size))]) + "\n")
+            lines.append(" ".join([str(label.label), *(f"{value:.6f}" for value in (*middle, *size))]) + "\n")
     return "".join(lines)
 
 
 def _coco(taken: Taken, width: int, height: int) -> list[dict[str, Any]]:
     found = []
-    for each in taken.labels:
-        left, top, right, bottom = each.box
-        whole = each.whole
+    for label in taken.labels:
+        left, top, right, bottom = label.box
+        whole = label.whole
         found.append(
             {
                 "image_id": taken.index,
-                "category_id": each.label + 1,
+                "category_id": label.label + 1,
                 "bbox": [left, top, right - left, bottom - top],
-                "area": each.area,
-                "segmentation": {"size": [height, width], "counts": list(each.counts)},
-                "iscrowd": int(each.ignored),
-                "visibility": round(each.visibility, 4),
-                "truncated": each.truncated,
+                "area": label.area,
+                "segmentation": {"size": [height, width], "counts": list(label.counts)},
+                "iscrowd": int(label.ignored),
+                "visibility": round(label.visibility, 4),
+                "truncated": label.truncated,
                 "amodal_bbox": [whole[0], whole[1], whole[2] - whole[0], whole[3] - whole[1]],
             }
         )

@@ -50,19 +50,19 @@ def statistics_of(
     """
     found = {name: ClassStatistics() for name in classes}
     pictures: dict[str, set[int]] = {name: set() for name in classes}
-    for each in annotations:
-        name = classes[each["category_id"] - 1]
+    for annotation in annotations:
+        name = classes[annotation["category_id"] - 1]
         facts = found[name]
-        if each["iscrowd"]:
+        if annotation["iscrowd"]:
             facts.ignored += 1
             continue
-        pictures[name].add(each["image_id"])
+        pictures[name].add(annotation["image_id"])
         facts.things += 1
-        side = next(side for side, most in _SIZES if sqrt(each["area"]) < most)
+        side = next(side for side, most in _SIZES if sqrt(annotation["area"]) < most)
         setattr(facts, side, getattr(facts, side) + 1)
-        facts.hidden += each["visibility"] < _MOSTLY
-        facts.truncated += bool(each["truncated"])
-        left, top, width, height = each["bbox"]
+        facts.hidden += annotation["visibility"] < _MOSTLY
+        facts.truncated += bool(annotation["truncated"])
+        left, top, width, height = annotation["bbox"]
         column = min(int(3 * (left + width / 2) / size[0]), 2)
         row = min(int(3 * (top + height / 2) / size[1]), 2)
         facts.thirds[3 * row + column] += 1

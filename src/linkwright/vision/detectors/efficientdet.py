@@ -87,7 +87,9 @@ class EfficientDetDetector(Detector):
 
 def _final_outputs(file: Path, interpreter: Any) -> list[int]:
     """The tensors of boxes, classes, scores and their number; files differ in order and names of outputs."""
-    last = [each for each in interpreter._get_ops_details() if each["op_name"] == _LAST_STEP]
+    last = [
+        get_ops_detail for get_ops_detail in interpreter._get_ops_details() if get_ops_detail["op_name"] == _LAST_STEP
+    ]
     if len(last) != 1:
         message = phrase("the network in '{file}' has no final boxes, as EfficientDet-Lite has", file=file.name)
         raise LinkwrightError(Diagnostic("VISION106", message, hint=phrase("export it as ONNX")))
@@ -97,7 +99,7 @@ def _final_outputs(file: Path, interpreter: Any) -> list[int]:
 def _names_in(file: Path) -> tuple[str, ...]:
     try:
         with ZipFile(file) as archive:
-            entry = next(each for each in archive.infolist() if each.filename.endswith(".txt"))
+            entry = next(zip_info for zip_info in archive.infolist() if zip_info.filename.endswith(".txt"))
             with archive.open(entry) as text:
                 lines = text.read(_LARGEST_LABELS).decode().splitlines()
         return tuple(line.strip() for line in lines)

@@ -138,7 +138,7 @@ def find_layout(
             "YOLOX, YOLOv6 and RT-DETR have other boxes"
         )
         raise LinkwrightError(Diagnostic("VISION106", message, hint=hint))
-    form, classes = next((each for each in forms if each[1] in (0, named)), forms[0])
+    form, classes = next((form for form in forms if form[1] in (0, named)), forms[0])
     if named is not None and classes not in (0, named):
         raise wrong_number(file, classes, named, labels_file)
     return Layout(form, classes, _BOXES[task])
@@ -187,7 +187,7 @@ def _possible(shape: Sequence[int], size: tuple[int, int], more: int, *, suppres
     if batch != 1:
         return []
     places = {sum((size[0] // stride) * (size[1] // stride) for stride in strides) for strides in _HEADS}
-    triples = {_SHAPES * each for each in places}
+    triples = {_SHAPES * place for place in places}
     if second == 6 + more and (suppressed or first not in places | triples):
         return [(Form.FINAL, 0)]
     as_columns, as_rows = (Form.COLUMNS, first - 4 - more), (Form.ROWS, second - 5 - more)

@@ -51,4 +51,4 @@ def hsv_range(name: str, value: object) -> tuple[int, ...]:
     ):
         hint = phrase("it is six numbers: least hue (0 to 179), saturation and value (0 to 255), then the largest")
         raise bad_setting(name, value, hint)
-    return tuple(int(each) for each in numbers)
+    return tuple(int(number) for number in numbers)

@@ -170,8 +170,8 @@ def wanted(text: str) -> Wanted | None:
 def described(sightings: Iterable[Sighting], language: str) -> str:
     """A sentence about seen objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
-    for each in sorted(sightings, key=lambda each: hypot(each.ahead, each.left)):
-        groups.setdefault(named(each.name, each.colour, language), []).append(each)
+    for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
+        groups.setdefault(named(sighting.name, sighting.colour, language), []).append(sighting)
     if not groups:
         return "我什么也没看到。" if language == "zh" else "I see nothing that I know."
     if language == "zh":

@@ -127,8 +127,8 @@ def _facts(
     options: Options, dataset: Dataset, lesson: Sequence[Labelled], epochs: int, best: int, network: Network
 ) -> dict[str, str]:
     """The facts on the making, for the card."""
-    parameters = sum(each.numel() for each in network.parameters())
-    asked = sum(int((~each.ignored).sum()) for each in lesson)
+    parameters = sum(parameter.numel() for parameter in network.parameters())
+    asked = sum(int((~labelled.ignored).sum()) for labelled in lesson)
     return {
         "command": f"`{options.command}`",
         "classes": ", ".join(dataset.names),
@@ -156,9 +156,9 @@ def _beginning(weights: Path | None) -> dict[str, str]:
 def sum_of(lesson: Sequence[Labelled]) -> str:
     """SHA-256 over pictures and labels, in order, to identify a dataset."""
     whole = hashlib.sha256()
-    for each in lesson:
-        whole.update(hashlib.sha256(each.path.read_bytes()).digest())
-        whole.update(each.classes.tobytes() + each.boxes.tobytes())
+    for labelled in lesson:
+        whole.update(hashlib.sha256(labelled.path.read_bytes()).digest())
+        whole.update(labelled.classes.tobytes() + labelled.boxes.tobytes())
     return whole.hexdigest()
 
 

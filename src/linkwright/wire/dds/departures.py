@@ -73,7 +73,7 @@ class Departures:
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
         """Note what a participant announces now: endpoints that disappeared and are not announced were withdrawn."""
         self._gone = [
-            each for each in self._gone if each.endpoint.participant != participant or each.endpoint.guid in endpoints
+            gone for gone in self._gone if gone.endpoint.participant != participant or gone.endpoint.guid in endpoints
         ]
 
     def review(self) -> float | None:
@@ -86,22 +86,22 @@ class Departures:
 
     def _review_gone(self) -> None:
         now, waiting = self._now(), []
-        for each in self._gone:
-            if each.due is None:
-                each.due = now + FAREWELL_WITHIN
-            if now < each.due:
-                waiting.append(each)
+        for gone in self._gone:
+            if gone.due is None:
+                gone.due = now + FAREWELL_WITHIN
+            if now < gone.due:
+                waiting.append(gone)
             else:
-                self._tell(each.endpoint, each.node)
+                self._tell(gone.endpoint, gone.node)
         self._gone = waiting
 
     def _review_processes(self) -> bool:
         """Look at the processes of participants; whether there are any."""
         now = self._now()
-        here = [each for each in self._remote.participants() if each.process is not None]
-        dead = {each.guid for each in here if each.has_died()}
+        here = [participant for participant in self._remote.participants() if participant.process is not None]
+        dead = {participant.guid for participant in here if participant.has_died()}
         self._dead_since = {guid: self._dead_since.get(guid, now) for guid in dead}
-        self._told &= dead | {each.endpoint.participant for each in self._gone}
+        self._told &= dead | {gone.endpoint.participant for gone in self._gone}
         for guid, since in self._dead_since.items():
             if now - since >= GRACE and guid not in self._told:
                 self._told.add(guid)

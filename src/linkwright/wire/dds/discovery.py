@@ -197,7 +197,7 @@ class Discovery:
 
     def review_gid_size(self) -> None:
         """Use the gid size that the other participants understand."""
-        ours = {each.guid for each in self._remote.participants() if each.is_ours}
+        ours = {participant.guid for participant in self._remote.participants() if participant.is_ours}
         sizes = {size for owner, size in self._evidence.items() if owner not in ours}
         size = max(sizes, default=self.gid_size)
         if size != self.gid_size:

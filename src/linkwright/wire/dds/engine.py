@@ -299,7 +299,7 @@ class Engine(AnyEngine):
                 self._mismatched.pop(topic, None)
 
     def _review_replies(self) -> bool:
-        waiting = [each for each in tuple(self._services.values()) if each.has_more_to_do]
+        waiting = [service for service in tuple(self._services.values()) if service.has_more_to_do]
         for service in waiting:
             service.review()
         return any(service.has_more_to_do for service in waiting)

@@ -151,10 +151,18 @@ class FastServer:
         heard = self._participant.matched_writers(self._requests)
         with self._lock:
             early, self._early = self._early, []
-            ready = {each.writer for each in early if _is_settled(heard.get(each.writer), now)}
-            self._early = [each for each in early if each.writer not in ready and now < each.came + _EARLY_WAITS]
+            ready = {
+                early_request.writer for early_request in early if _is_settled(heard.get(early_request.writer), now)
+            }
+            self._early = [
+                early_request
+                for early_request in early
+                if early_request.writer not in ready and now < early_request.came + _EARLY_WAITS
+            ]
         for writer in ready:
-            for number, request in self._numbered_of(writer, [each for each in early if each.writer == writer]):
+            for number, request in self._numbered_of(
+                writer, [early_request for early_request in early if early_request.writer == writer]
+            ):
                 self._ask(request.body, writer, writer, number)
 
     def _numbered_of(self, writer: bytes, early: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
@@ -164,7 +172,7 @@ class FastServer:
             if writer in self._first:
                 number, written_first = self._first[writer]
                 last = number - 1
-                early = [each for each in early if each.written < written_first - _SAME_TIME]
+                early = [early_request for early_request in early if early_request.written < written_first - _SAME_TIME]
             numbered = list(zip(range(last - len(early) + 1, last + 1), early, strict=True))
             asked = self._numbered.setdefault(writer, deque(maxlen=_REMEMBERED))
             asked.extend((number, request.written) for number, request in numbered)

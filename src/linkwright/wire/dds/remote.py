@@ -185,7 +185,7 @@ class RemoteGraph(Outside):
     def participant_went(self, guid: bytes) -> None:
         """Remove a participant and its endpoints."""
         with self._lock:
-            for endpoint in [each for each in self._endpoints.values() if each.participant == guid]:
+            for endpoint in [endpoint for endpoint in self._endpoints.values() if endpoint.participant == guid]:
                 self._forget(endpoint)
             self._participants.pop(guid, None)
             self._early.pop(guid, None)
@@ -229,7 +229,11 @@ class RemoteGraph(Outside):
     def endpoints_of(self, topic: str, *, writers: bool) -> list[RemoteEndpoint]:
         """The writers or the readers of a DDS topic."""
         with self._lock:
-            return [each for each in self._endpoints.values() if each.topic == topic and each.is_writer is writers]
+            return [
+                endpoint
+                for endpoint in self._endpoints.values()
+                if endpoint.topic == topic and endpoint.is_writer is writers
+            ]
 
     def participants(self) -> list[RemoteParticipant]:
         """All participants."""
@@ -246,7 +250,7 @@ class RemoteGraph(Outside):
         """Whether a participant of Fast DDS that is not known to have been killed reads a DDS topic."""
         dead = self._dead_participants()
         readers = self.endpoints_of(topic, writers=False)
-        return any(each.is_fast and each.participant not in dead for each in readers)
+        return any(reader.is_fast and reader.participant not in dead for reader in readers)
 
     def is_dead(self, prefix: bytes) -> bool:
         """Whether a participant, named by the prefix of its GUIDs, is known to have been killed."""
@@ -256,9 +260,9 @@ class RemoteGraph(Outside):
         """Whether each participant with a writer of ``ros_discovery_info`` has announced its nodes."""
         with self._lock:
             speakers = {
-                each.participant
-                for each in self._endpoints.values()
-                if each.is_writer and each.topic == DISCOVERY_TOPIC
+                endpoint.participant
+                for endpoint in self._endpoints.values()
+                if endpoint.is_writer and endpoint.topic == DISCOVERY_TOPIC
             }
             return all(
                 participant.entities is not None
@@ -274,8 +278,10 @@ class RemoteGraph(Outside):
         """
         now = time.monotonic()
         with self._lock:
-            known = {each.participant for each in self._endpoints.values()}
-            listeners = {each.participant for each in self._endpoints.values() if each.topic == DISCOVERY_TOPIC}
+            known = {endpoint.participant for endpoint in self._endpoints.values()}
+            listeners = {
+                endpoint.participant for endpoint in self._endpoints.values() if endpoint.topic == DISCOVERY_TOPIC
+            }
             for guid, participant in self._participants.items():
                 age = now - participant.came_at
                 if guid not in known and age < _ENDPOINTS_WITHIN:
@@ -289,8 +295,10 @@ class RemoteGraph(Outside):
 
     def our_processes(self) -> set[int]:
         """The ids of Linkwright's processes on this machine, as far as they are known and alive."""
-        ours = [each for each in self.participants() if each.is_ours and not each.has_died()]
-        return {each.process for each in ours if each.process is not None}
+        ours = [
+            participant for participant in self.participants() if participant.is_ours and not participant.has_died()
+        ]
+        return {our.process for our in ours if our.process is not None}
 
     def nodes(self) -> list[NodeIdentity]:
         """The nodes of other processes, one entry for each, in the order of their participants."""
@@ -337,8 +345,12 @@ class RemoteGraph(Outside):
     def writers_of(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
         """The writers of a participant, and the node of each where it has been told."""
         with self._lock:
-            writers = [each for each in self._endpoints.values() if each.participant == participant and each.is_writer]
-            return [(each, self._owner_of(each)) for each in writers]
+            writers = [
+                endpoint
+                for endpoint in self._endpoints.values()
+                if endpoint.participant == participant and endpoint.is_writer
+            ]
+            return [(writer, self._owner_of(writer)) for writer in writers]
 
     def _owners(self) -> dict[bytes, NodeIdentity]:
         return {
@@ -354,7 +366,7 @@ class RemoteGraph(Outside):
         now = time.monotonic()
         looked_at, dead = self._dead
         if now - looked_at > 0.25:
-            dead = frozenset(each.guid for each in self.participants() if each.has_died())
+            dead = frozenset(participant.guid for participant in self.participants() if participant.has_died())
             self._dead = (now, dead)
         return dead
 

@@ -71,7 +71,7 @@ class Pair:
         self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
         facts = service_facts(os.urandom(16), endpoint, is_server=is_server)
         # By their names alone: requests of Fast DDS come without the header.
-        described = (domain.types.by_name(each) for each in halves(endpoint.type_name))
+        described = (domain.types.by_name(half) for half in halves(endpoint.type_name))
         request = participant.create_topic(self.request_topic, next(described))
         reply = participant.create_topic(self.reply_topic, next(described))
         self._topics = (request, reply)
@@ -183,7 +183,7 @@ class OutsideServer:
 
     def _server_is_there(self) -> bool:
         listening = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.writer, writer=True)]
-        ours = [each for each in listening if each is not None and not each.is_fast]
+        ours = [endpoint for endpoint in listening if endpoint is not None and not endpoint.is_fast]
         replying = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.reader, writer=False)]
         return any(_belong_together(a, b, "serviceid") for a in ours for b in replying)
 

@@ -218,7 +218,7 @@ class OutgoingTopic(MirroredTopic):
     def _fast_readers(self) -> list[bytes]:
         """The GUIDs of the readers of Fast DDS that the writer is connected with."""
         known = map(self._remote.endpoint, self._dds.matched(self.entity, writer=True))
-        return [each.guid for each in known if each is not None and each.is_fast]
+        return [endpoint.guid for endpoint in known if endpoint is not None and endpoint.is_fast]
 
     def _make_backlog(self, fragment_size: int) -> Backlog | None:
         """What large samples wait in, where the writer replaces samples that readers may ask for again."""

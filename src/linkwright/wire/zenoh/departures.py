@@ -101,10 +101,10 @@ class Departures:
     def review(self) -> float | None:
         """Report the publishers that count as lost by now; seconds until it is to be called again, or None."""
         now = self._now()
-        due = [each for each in self._gone if each.due <= now]
-        self._gone = [each for each in self._gone if each.due > now]
-        for each in due:
-            info = each.token.described() if self._is_lost(each) else None
+        due = [gone for gone in self._gone if gone.due <= now]
+        self._gone = [gone for gone in self._gone if gone.due > now]
+        for gone in due:
+            info = gone.token.described() if self._is_lost(gone) else None
             if info is not None:
                 for lost in self._watchers:
                     lost(info)

@@ -86,7 +86,7 @@ class RemoteGraph(Outside):
     def has_endpoints(self, node_key: tuple[str, str]) -> bool:
         """Whether there are endpoints of a node, by `Token.node_key`."""
         with self._lock:
-            return any(each.kind is not None and each.node_key == node_key for each in self._tokens.values())
+            return any(token.kind is not None and token.node_key == node_key for token in self._tokens.values())
 
     def is_there(self, key: str) -> bool:
         """Whether there is a token."""
@@ -95,15 +95,15 @@ class RemoteGraph(Outside):
     def sessions(self, kind: EndpointKind | None = None) -> set[str]:
         """The sessions that anything is known of, or that have endpoints of a kind."""
         with self._lock:
-            return {each.session for each in self._tokens.values() if kind is None or each.kind is kind}
+            return {token.session for token in self._tokens.values() if kind is None or token.kind is kind}
 
     def nodes(self) -> list[NodeIdentity]:
         """The nodes of other sessions."""
         with self._lock:
-            return [each.node for each in self._tokens.values() if each.kind is None]
+            return [token.node for token in self._tokens.values() if token.kind is None]
 
     def endpoints(self) -> list[EndpointInfo]:
         """The endpoints of other sessions."""
         with self._lock:
             tokens = list(self._tokens.values())
-        return [info for each in tokens if (info := each.described()) is not None]
+        return [info for token in tokens if (info := token.described()) is not None]

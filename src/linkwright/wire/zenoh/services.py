@@ -140,8 +140,8 @@ class IncomingService:
             self._closed = True  # a request may be on its way here in a thread of Zenoh
             questions = list(self._open)
             self._open.clear()
-        for each in questions:
-            each.drop()
+        for question in questions:
+            question.drop()
 
     def _receive(self, query: zenoh.Query) -> None:
         """Have a request answered, in a thread of Zenoh."""

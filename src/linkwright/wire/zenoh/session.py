@@ -53,7 +53,7 @@ def refusal(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
         Diagnostic(
             "DDS112",
             phrase("a session of Zenoh cannot be opened: {reason}", reason=foreign(_reason(error))),
-            notes=tuple(Note(each) for each in found),
+            notes=tuple(Note(phrase) for phrase in found),
             hint=None if found else _advice(str(error)),
         )
     )
@@ -76,7 +76,7 @@ def is_client(settings: Settings) -> bool:
 def listening_at(config: zenoh.Config) -> list[str]:
     """The addresses that a configuration listens at, where it is the same for all kinds of sessions."""
     addresses = json.loads(config.get_json("listen/endpoints"))
-    return [str(each) for each in addresses] if isinstance(addresses, list) else []
+    return [str(address) for address in addresses] if isinstance(addresses, list) else []
 
 
 def configuration(settings: Settings) -> zenoh.Config:

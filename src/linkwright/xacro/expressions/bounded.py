@@ -174,7 +174,7 @@ def split(pattern: str, text: str) -> list[str]:
     """
     begins = re.match(_CLASS_BEGINS, pattern)
     written = re.compile(_WRITTEN).finditer(pattern, begins.end() if begins else 0)
-    ends = next((each.end() for each in written if each[0] == "]"), 0)
+    ends = next((match.end() for match in written if match[0] == "]"), 0)
     if ends == len(pattern):
         return re.split(pattern, text)
     import regex

@@ -53,12 +53,12 @@ def state(**positions: float) -> Any:
     """A RobotState; a diff when it says nothing of joints."""
     made = RobotState(is_diff=not positions)
     made.joint_state.name = list(positions)
-    made.joint_state.position = [float(each) for each in positions.values()]
+    made.joint_state.position = [float(position) for position in positions.values()]
     return made
 
 
 def primitive(kind: int, *dimensions: float) -> Any:
-    return SolidPrimitive(type=kind, dimensions=[float(each) for each in dimensions])
+    return SolidPrimitive(type=kind, dimensions=[float(dimension) for dimension in dimensions])
 
 
 def thing(name: str, *primitives: Any, frame: str = "base", at: Any = None, operation: bytes = b"\x00") -> Any:

@@ -57,7 +57,7 @@ def test_how_long_a_state_is_shown(text, seconds):
 
 def test_a_motion_begins_with_its_start_and_keeps_what_does_not_move():
     motion = read_motion(robot(), trajectory(0.5, 1.0))
-    assert [each.values for each in motion.states] == [
+    assert [state.values for state in motion.states] == [
         {"shoulder": 0.0, "wrist": 0.5},
         {"shoulder": 0.5, "wrist": 0.5},
         {"shoulder": 1.0, "wrist": 0.5},
@@ -104,7 +104,7 @@ async def test_the_robot_goes_through_the_states_and_is_gone_at_the_end():
 
         def watched(group, shapes):
             shapes = list(shapes)
-            places.extend(round(each.pose[0], 3) for each in shapes if each.id == "Planned Path/hand")
+            places.extend(round(shape.pose[0], 3) for shape in shapes if shape.id == "Planned Path/hand")
             put(group, shapes)
 
         display.put = watched

@@ -47,7 +47,7 @@ def test_the_page_has_everything_a_server_would_tell():
         assert needed in types
     assert types[-1] == "frame_table"
     controls = next(message for message in told["messages"] if message["type"] == "joints")["controls"]
-    assert [(each["name"], each["mimic"]) for each in controls] == [
+    assert [(control["name"], control["mimic"]) for control in controls] == [
         ("turn", None),
         ("open", None),
         ("open_too", "open"),

@@ -6,7 +6,7 @@ from linkwright.viewer.protocol.monitor import MessageField
 
 
 def row(rows: list[MessageField], *path: str) -> MessageField:
-    found = next(each for each in rows if each.name == path[0])
+    found = next(row for row in rows if row.name == path[0])
     return row(found.children, *path[1:]) if path[1:] else found
 
 
@@ -42,7 +42,7 @@ def test_a_huge_message_stays_small():
     )
 
     def count(rows: list[MessageField]) -> int:
-        return sum(1 + count(each.children) for each in rows)
+        return sum(1 + count(row.children) for row in rows)
 
     assert count(message_tree(message)) <= 1600
 

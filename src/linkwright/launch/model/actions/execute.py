@@ -252,7 +252,7 @@ class ExecuteLocal(Action):
             return output_destinations(mode)
         except KeyError as error:
             wrong = str(error.args[0])
-            modes = ", ".join(f"'{each}'" for each in OUTPUT_MODES)
+            modes = ", ".join(f"'{output_mode}'" for output_mode in OUTPUT_MODES)
             hint = did_you_mean(wrong, OUTPUT_MODES) or phrase("use one of {modes}", modes=modes)
             text = f'{wrong} is not a valid standard output config i.e. "screen", "log" or "both"'
             message = phrase("there is no output '{wrong}'", wrong=wrong)

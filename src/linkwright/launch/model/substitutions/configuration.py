@@ -33,7 +33,7 @@ _NOT_IN_NAMES = str.maketrans(".-:", "___")
 def default_texts(given: Any) -> list[Substitution]:
     """A default, whose parts may be numbers and truth values too."""
     parts = given if isinstance(given, (list, tuple)) else [given]
-    return normalize_to_list_of_substitutions([each if isinstance(each, Substitution) else str(each) for each in parts])
+    return normalize_to_list_of_substitutions([part if isinstance(part, Substitution) else str(part) for part in parts])
 
 
 class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({variable_name})"):

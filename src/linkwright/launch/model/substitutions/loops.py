@@ -58,7 +58,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
             return str(values[local_name(name)])
         if self.default_value is not None:
             return perform_substitutions(context, self.default_value)
-        known = [each.removeprefix(_PREFIX) for each in values if each.startswith(_PREFIX)]
+        known = [value.removeprefix(_PREFIX) for value in values if value.startswith(_PREFIX)]
         hint = did_you_mean(name, known)
         if hint is None:
             hint = phrase("it has {names}", names=quoted_names(known)) if known else phrase("use it inside of a loop")

@@ -57,7 +57,7 @@ class ToolboxServices:
         self._logger.error(reason)
 
     def _tell(self, error: LinkwrightError) -> None:
-        self._refuse("\n".join(render(each) for each in error.diagnostics))
+        self._refuse("\n".join(render(diagnostic) for diagnostic in error.diagnostics))
 
     def _on_get_map(self, _request: Any, response: Any) -> Any:
         message = self._toolbox.map_message()

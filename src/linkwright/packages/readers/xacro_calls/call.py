@@ -62,10 +62,10 @@ class CallingFile:
     def included(self) -> list[tuple[str | None, str, Inclusion]]:
         """Each inclusion behind the package that its path begins with, or None, and the name of its file."""
         found: list[tuple[str | None, str, Inclusion]] = []
-        for each in self.inclusions:
-            last = each.path[-1] if each.path and isinstance(each.path[-1], str) else ""
-            package, rest = split_mark(resolve(each.path, self.choices, Selection()) or last)
-            found.append((package, rest.rpartition("/")[2], each))
+        for inclusion in self.inclusions:
+            last = inclusion.path[-1] if inclusion.path and isinstance(inclusion.path[-1], str) else ""
+            package, rest = split_mark(resolve(inclusion.path, self.choices, Selection()) or last)
+            found.append((package, rest.rpartition("/")[2], inclusion))
         return found
 
     def declare(self, name: str, default: Text | None, others: tuple[Text, ...] = ()) -> None:

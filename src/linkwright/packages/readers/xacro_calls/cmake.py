@@ -45,8 +45,8 @@ def _calls(command: Command, package: Path) -> Iterator[tuple[Text, dict[str, Te
             elif not keyword:
                 files.append(word)
         files = files[:1] if command.name == "xacro_add_xacro_file" else files
-        for each in files:
-            yield literal(_path(each, command, package)), arguments
+        for file in files:
+            yield literal(_path(file, command, package)), arguments
         return
     words = command.words
     if "COMMAND" in words:

@@ -73,7 +73,7 @@ def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
         attributes = value if isinstance(value, dict) else {}
         if tag in ("arg", "let") and "name" in attributes:
             default = attributes.get("default", attributes.get("value"))
-            offered = tuple(literal(str(each["value"])) for each in _mappings(attributes.get("choice"), "value"))
+            offered = tuple(literal(str(mapping["value"])) for mapping in _mappings(attributes.get("choice"), "value"))
             written = None if default is None else markup_text(str(default), source.name)
             file.declare(str(attributes["name"]), written, offered)
             continue

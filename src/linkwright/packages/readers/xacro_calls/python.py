@@ -65,7 +65,7 @@ class _Reader:
         others = self._texts.value(choices, scope) if choices is not None else Items(())
         if len(name) == 1 and isinstance(name[0], str):
             values = (
-                tuple(each for each in others.values if isinstance(each, tuple)) if isinstance(others, Items) else ()
+                tuple(value for value in others.values if isinstance(value, tuple)) if isinstance(others, Items) else ()
             )
             self._file.declare(name[0], None if default is None else self._texts.text(default, scope), values)
 
@@ -99,7 +99,7 @@ class _Reader:
         """Any function that is given a description and a mapping expands the one with the other."""
         paths: list[Text] = []
         mapping: Mapping[str, Value] | None = None
-        for written in (*node.args, *(each.value for each in node.keywords)):
+        for written in (*node.args, *(keyword.value for keyword in node.keywords)):
             value = self._texts.value(written, scope)
             if isinstance(value, tuple) and self._is_description(value):
                 paths.append(value)
@@ -139,7 +139,7 @@ class _Reader:
         if isinstance(given, Entries):
             arguments = dict(_texts_of(given.values))
         elif isinstance(given, Items):
-            pairs = [each.values for each in given.values if isinstance(each, Items) and len(each.values) == 2]
+            pairs = [value.values for value in given.values if isinstance(value, Items) and len(value.values) == 2]
             arguments = dict(
                 _texts_of(
                     {resolve(key, {}, Selection()) or "": value for key, value in pairs if isinstance(key, tuple)}
@@ -161,7 +161,7 @@ class _Reader:
 def _lists_of(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
     """The list that is the value of a name."""
     found = scope.find(node.id) if isinstance(node, ast.Name) else None
-    yield from (each.value for each in (found[1] if found else ()) if each.value is not None)
+    yield from (binding.value for binding in (found[1] if found else ()) if binding.value is not None)
 
 
 def _is_builder(node: ast.AST) -> bool:

@@ -175,7 +175,7 @@ class PythonTexts:
     def _call(self, node: ast.Call, scope: Scope) -> Value:
         name = called_name(node).rpartition(".")[2]
         owner = node.func.value if isinstance(node.func, ast.Attribute) else None
-        first = node.args[0] if node.args else next((each.value for each in node.keywords), None)
+        first = node.args[0] if node.args else next((keyword.value for keyword in node.keywords), None)
         if name in ("LaunchConfiguration", "LaunchConfigurationEquals"):
             return self._launch_argument(first, argument_of(node, "default"), scope)
         if name in _SHARES:
@@ -190,9 +190,9 @@ class PythonTexts:
         if name == "format" and owner is not None:
             return self._formatted(owner, node, scope)
         if name == "dict" and not node.args:
-            return Entries({each.arg: self.value(each.value, scope) for each in node.keywords if each.arg})
+            return Entries({keyword.arg: self.value(keyword.value, scope) for keyword in node.keywords if keyword.arg})
         if name == "product":
-            return Items((Items(tuple(self._any_of(each, scope) for each in node.args)),))
+            return Items((Items(tuple(self._any_of(arg, scope) for arg in node.args)),))
         if name in _METHODS and owner is not None:
             return self.value(owner, scope)
         if name in _PASSING and first is not None:
@@ -222,8 +222,8 @@ class PythonTexts:
         pattern = _plain(self.text(owner, scope))
         if pattern is None:
             return _OPEN
-        named = {each.arg: self.text(each.value, scope) for each in node.keywords if each.arg}
-        given = [self.text(each, scope) for each in node.args]
+        named = {keyword.arg: self.text(keyword.value, scope) for keyword in node.keywords if keyword.arg}
+        given = [self.text(arg, scope) for arg in node.args]
         parts = _FIELD.split(pattern)
         if "{" in "".join(parts[::2]):
             return _OPEN
@@ -250,11 +250,11 @@ class PythonTexts:
     def _value_of_name(self, name: str, home: Scope, bindings: Sequence[Binding]) -> Value:
         if not bindings and home.function is not None:
             return self._parameter(name, home)
-        values = [self._bound(each, home) for each in bindings if not each.is_added]
+        values = [self._bound(binding, home) for binding in bindings if not binding.is_added]
         value = values[0] if len(values) == 1 else self._one_of(bindings[0].value, values)
-        for each in bindings:
-            if each.is_added:
-                value = _sum(value, self._bound(each, home))
+        for binding in bindings:
+            if binding.is_added:
+                value = _sum(value, self._bound(binding, home))
         if isinstance(value, Entries) and name in home.entries:
             more = {_plain(self.text(key, home)) or "": self.value(item, home) for key, item in home.entries[name]}
             value = Entries({**value.values, **more, **(UNKNOWN_ENTRIES if "" in more else {})})
@@ -275,7 +275,7 @@ class PythonTexts:
 
     def _one_of(self, node: ast.expr | None, values: Sequence[Value]) -> Value:
         """One of several values, of which it is not known when it is taken."""
-        lasting = [each for each in values if each != _OPEN]
+        lasting = [value for value in values if value != _OPEN]
         if len(lasting) < 2 or not all(isinstance(each, tuple) for each in lasting):
             return lasting[0] if lasting else _OPEN
         return self._rows_of(node, lasting, is_certain=False)
@@ -283,11 +283,13 @@ class PythonTexts:
     def _rows_of(self, node: ast.expr | None, values: Sequence[Value], *, is_certain: bool) -> Value:
         """A place for one of several values; where all are lists of as many items, a list of places."""
         name = "unknown" if node is None else f"at:{node.lineno}:{node.col_offset}"
-        width = {len(each.values) if isinstance(each, Items) else 0 for each in values}
+        width = {len(value.values) if isinstance(value, Items) else 0 for value in values}
         if len(width) != 1:
             return _OPEN
         columns = width.pop()
-        rows = [tuple(map(_as_text, each.values)) if isinstance(each, Items) else (_as_text(each),) for each in values]
+        rows = [
+            tuple(map(_as_text, value.values)) if isinstance(value, Items) else (_as_text(value),) for value in values
+        ]
         self.file.choices[name] = Choice(tuple(dict.fromkeys(rows)), is_certain)
         return Items(tuple((Open(name, column),) for column in range(columns))) if columns else (Open(name),)
 

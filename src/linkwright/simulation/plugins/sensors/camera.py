@@ -188,7 +188,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
 
     def is_wanted(self) -> bool:
         """Whether anybody listens, and, where a trigger is used, a picture was asked for."""
-        return self._asked and any(each.is_wanted for each in (*self._images, *self._infos, *self._depths))
+        return self._asked and any(image.is_wanted for image in (*self._images, *self._infos, *self._depths))
 
     def measure(self) -> None:
         """Render pictures, each only if its topics have subscriptions."""
@@ -280,19 +280,19 @@ class GzCamera(CameraPlugin[NoParameters]):
         return f"{above}{slash}camera_info"
 
     def _outputs(self) -> Iterator[Output]:
-        yield from (each for each in (self._image, self._depth, self._cloud, self._info) if each is not None)
+        yield from (output for output in (self._image, self._depth, self._cloud, self._info) if output is not None)
 
     def is_wanted(self) -> bool:
         """Whether anybody listens."""
-        return any(each.is_wanted for each in self._outputs())
+        return any(output.is_wanted for output in self._outputs())
 
     def measure(self) -> None:
         """Render a picture, with those parts whose topics have subscriptions."""
         (eye, *_) = self.eyes
         wanted = Wanted(0)
-        if any(each is not None and each.is_wanted for each in (self._image, self._cloud)):
+        if any(output is not None and output.is_wanted for output in (self._image, self._cloud)):
             wanted |= Wanted.COLOUR
-        if any(each is not None and each.is_wanted for each in (self._depth, self._cloud)):
+        if any(output is not None and output.is_wanted for output in (self._depth, self._cloud)):
             wanted |= Wanted.DEPTH
         picture = self.see(eye, wanted) if wanted else Picture(None, None, None)
         if self._image is not None and self._image.is_wanted:

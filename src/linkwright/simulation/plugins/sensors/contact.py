@@ -70,7 +70,7 @@ class GzContact(_Contacts[NoParameters]):
         touching = self.contacts.measure()
         if touching:
             message = self.message(_CONTACTS, "")
-            message.contacts = [_contact(each) for each in touching]
+            message.contacts = [_contact(contact) for contact in touching]
             self.output.publish(message)
 
 
@@ -79,9 +79,9 @@ def _contact(contact: Contact) -> Any:
     message = get_message("ros_gz_interfaces/msg/Contact")()
     for entity, name in ((message.collision1, contact.collision1), (message.collision2, contact.collision2)):
         entity.name, entity.type = name, entity.COLLISION
-    message.positions = [vector(each) for each in contact.positions]
-    message.normals = [vector(each) for each in contact.normals]
-    message.depths = [float(each) for each in contact.depths]
+    message.positions = [vector(position) for position in contact.positions]
+    message.normals = [vector(normal) for normal in contact.normals]
+    message.depths = [float(depth) for depth in contact.depths]
     for force, torque in zip(contact.forces, contact.torques, strict=True):
         pair = get_message("ros_gz_interfaces/msg/JointWrench")()
         pair.body_1_name.data, pair.body_2_name.data = contact.collision1, contact.collision2
@@ -95,9 +95,9 @@ def _state(contact: Contact) -> Any:
     state.collision1_name, state.collision2_name = contact.collision1, contact.collision2
     state.wrenches = [wrench(*pair) for pair in zip(contact.forces, contact.torques, strict=True)]
     state.total_wrench = wrench(contact.forces.sum(axis=0), contact.torques.sum(axis=0))
-    state.contact_positions = [vector(each) for each in contact.positions]
-    state.contact_normals = [vector(each) for each in contact.normals]
-    state.depths = [float(each) for each in contact.depths]
+    state.contact_positions = [vector(position) for position in contact.positions]
+    state.contact_normals = [vector(normal) for normal in contact.normals]
+    state.depths = [float(depth) for depth in contact.depths]
     return state
 
 

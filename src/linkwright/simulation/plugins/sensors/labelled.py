@@ -67,8 +67,8 @@ class Labels:
 
     def _known(self) -> Iterator[tuple[str, int]]:
         """Labels by the names of models and of visuals."""
-        for each in self._simulation.scene.models.values():
-            yield from _labels_in(each.model, each.name)
+        for model in self._simulation.scene.models.values():
+            yield from _labels_in(model.model, model.name)
 
 
 def _labels_in(model: Model, path: str) -> Iterator[tuple[str, int]]:
@@ -138,7 +138,7 @@ class GzSegmentation(_LabellingCamera):
 
     def is_wanted(self) -> bool:
         """Whether anybody listens."""
-        return any(each.is_wanted for each in (self._maps, self._coloured, self._info))
+        return any(output.is_wanted for output in (self._maps, self._coloured, self._info))
 
     def measure(self) -> None:
         """Make the maps."""
@@ -177,7 +177,7 @@ class GzBoxes(_LabellingCamera):
 
     def is_wanted(self) -> bool:
         """Whether anybody listens."""
-        return any(each.is_wanted for each in (self._boxes, self._pictures, self._info))
+        return any(output.is_wanted for output in (self._boxes, self._pictures, self._info))
 
     def measure(self) -> None:
         """Find the boxes."""

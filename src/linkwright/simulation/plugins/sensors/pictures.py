@@ -54,9 +54,9 @@ class PixelNoise:
         if len(self._more) < colour.size + _PLACES:
             drawn = self._generator.normal(noise.mean * 255, noise.stddev * 255, colour.size + _PLACES)
             drawn = np.clip(np.round(drawn), -255, 255)
-            self._more, self._less = (np.maximum(each, 0).astype(np.uint8) for each in (drawn, -drawn))
+            self._more, self._less = (np.maximum(array, 0).astype(np.uint8) for array in (drawn, -drawn))
         start = int(self._generator.integers(_PLACES))
-        more, less = (each[start : start + colour.size].reshape(colour.shape) for each in (self._more, self._less))
+        more, less = (array[start : start + colour.size].reshape(colour.shape) for array in (self._more, self._less))
         noisy: Pixels = np.maximum(colour, less)  # in bytes, in a sixth of the time of larger numbers that are clipped
         noisy -= less
         np.invert(noisy, out=noisy)  # and so with how much is missing to white

@@ -508,9 +508,9 @@ class RecentDisplay(TopicDisplay):
             length = self._length()
             kept = list(self._shown)[-length:]
             self.reset()
-            for each in kept:
-                self._shown.append(each)
-                self._send(each)
+            for shown in kept:
+                self._shown.append(shown)
+                self._send(shown)
 
     def reset(self) -> None:
         """Forget all of them."""
@@ -528,7 +528,7 @@ class RecentDisplay(TopicDisplay):
 
     def is_finite(self, *numbers: ArrayLike) -> bool:
         """Whether all are finite; the status says so if not."""
-        if all(np.isfinite(each).all() for each in numbers):
+        if all(np.isfinite(number).all() for number in numbers):
             self.accept()
             return True
         self.refuse(_INVALID)

@@ -78,7 +78,7 @@ class RobotStateDisplay(MoveItDisplay):
             return
         properties = self.properties
         alpha = properties.number("Robot Alpha")
-        highlights = {each.id: rgba(each.color) for each in message.highlight_links}
+        highlights = {highlight_link.id: rgba(highlight_link.color) for highlight_link in message.highlight_links}
         look = Look(
             _ROBOT,
             visual=properties.flag("Visual Enabled"),

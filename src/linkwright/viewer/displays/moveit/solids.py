@@ -152,7 +152,7 @@ def _mesh(mesh: Any) -> Form:
     if not mesh.triangles:
         raise BadObjectError(phrase("A mesh has no triangles"))
     places = np.array([triangle.vertex_indices for triangle in mesh.triangles], dtype=np.int64).reshape(-1)
-    vertices = np.array([(each.x, each.y, each.z) for each in mesh.vertices], dtype=np.float32).reshape(-1, 3)
+    vertices = np.array([(vertex.x, vertex.y, vertex.z) for vertex in mesh.vertices], dtype=np.float32).reshape(-1, 3)
     if places.max() >= len(vertices):
         raise BadObjectError(
             phrase(

@@ -113,14 +113,14 @@ class ComparisonFeature(PageFeature):
             ComparedRobot(_identity(shows_new), self._pair.new.label(), new_marks),
             joints_that_follow(old, new, comparison.joints),
             _links_of_same_shape(comparison),
-            [_item(each, old, new, self._pair) for each in comparison.differences],
+            [_item(difference, old, new, self._pair) for difference in comparison.differences],
         )
 
 
 def without_paths(message: ComparedDescriptions) -> ComparedDescriptions:
     """The comparison for readers without those files: places are texts, without folders above the current one."""
-    for each in (message.old, message.new):
-        each.label = _shareable(each.label)
+    for compared_robot in (message.old, message.new):
+        compared_robot.label = _shareable(compared_robot.label)
     for item in message.items:
         for place in (item.old_place, item.new_place):
             if place is not None:
@@ -135,8 +135,8 @@ def _shareable(name: str) -> str:
 def _displays(manager: VisualizationManager) -> tuple[RobotModelDisplay | None, RobotModelDisplay | None]:
     """The displays of the old robot and of the new one."""
     models = manager.robot_models()
-    old = next((each for each in models if _topic_of(each) == TOPIC), None)
-    return old, next((each for each in models if _topic_of(each) != TOPIC), None)
+    old = next((model for model in models if _topic_of(model) == TOPIC), None)
+    return old, next((model for model in models if _topic_of(model) != TOPIC), None)
 
 
 def _topic_of(display: RobotModelDisplay) -> str:
@@ -157,13 +157,13 @@ def _marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Ma
     of_old: dict[str, Mark] = {name: "removed" for name in old.links if name not in comparison.links}
     before = {after: name for name, after in comparison.links.items()}
     of_new: dict[str, Mark] = {name: "added" for name in new.links if name not in before}
-    for each in comparison.differences:
-        if each.subject == "link":
-            link: str | None = each.name
-        elif each.subject == "joint" and each.kind == "removed":
-            link = comparison.links.get(old.joints[each.name].child)
+    for difference in comparison.differences:
+        if difference.subject == "link":
+            link: str | None = difference.name
+        elif difference.subject == "joint" and difference.kind == "removed":
+            link = comparison.links.get(old.joints[difference.name].child)
         else:
-            link = new.joints[each.name].child if each.subject == "joint" else None
+            link = new.joints[difference.name].child if difference.subject == "joint" else None
         if link in before:
             of_new[link] = "changed"
     return of_old, of_new
@@ -172,9 +172,9 @@ def _marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Ma
 def _links_of_same_shape(comparison: Comparison) -> dict[str, str]:
     """Links of both, by their names in the old one, whose visuals and collisions are the same."""
     other = {
-        each.name
-        for each in comparison.differences
-        if each.subject == "link" and each.property.startswith(("visual", "collision"))
+        difference.name
+        for difference in comparison.differences
+        if difference.subject == "link" and difference.property.startswith(("visual", "collision"))
     }
     return {old: new for old, new in comparison.links.items() if new not in other}
 

@@ -114,7 +114,9 @@ class EditingFeature(PageFeature):
 
     def _known(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
         """The robot that a display shows, and how it was read where that is from a file of this machine."""
-        found = next((each for each in self.managers.of(page).robot_models() if each.id == display), None)
+        found = next(
+            (robot_model for robot_model in self.managers.of(page).robot_models() if robot_model.id == display), None
+        )
         if found is None or found.robot is None:
             return None, None
         known = self.context.library.description(found.text)

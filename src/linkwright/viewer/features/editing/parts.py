@@ -26,7 +26,7 @@ def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
         *(part for joint in robot.joints.values() if joint.child == link_name for part in _of_joint(joint)),
         *(_of_shape("visual", link_name, index, shape) for index, shape in enumerate(link.visuals)),
         *(_of_shape("collision", link_name, index, shape) for index, shape in enumerate(link.collisions)),
-        *(_of_inertial(link_name, each) for each in (link.inertial,) if each is not None),
+        *(_of_inertial(link_name, inertial) for inertial in (link.inertial,) if inertial is not None),
     ]
 
 

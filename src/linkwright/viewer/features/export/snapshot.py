@@ -224,14 +224,17 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
         raise no_robot()
     told, frames = viewer.opening_messages(manager)
     if view is not None:
-        told = [ViewState(view, each.revision) if isinstance(each, ViewState) else each for each in told]
+        told = [
+            ViewState(view, server_message.revision) if isinstance(server_message, ViewState) else server_message
+            for server_message in told
+        ]
     snapshot = take_snapshot(models[0], told, frames, viewer.context.meshes)
     files = viewer.context.library.files
-    outside = [path for each in models for path in files_outside(files(each.text), each.scene, snapshot.meshes)]
+    outside = [path for model in models for path in files_outside(files(model.text), model.scene, snapshot.meshes)]
     return dataclasses.replace(
         snapshot,
         outside=list(dict.fromkeys(outside)),
-        problems=[problem for each in models for problem in _problems(each)],
+        problems=[problem for model in models for problem in _problems(model)],
         awaits_size=manager.config.awaits_size,
         spacing=manager.config.spacing,
     )
@@ -295,7 +298,7 @@ def take_snapshot(
     controls = _controls(robot)
     messages[-1:-1] = [
         Joints(controls),
-        JointPositions({each.name: positions.get(each.name, 0.0) for each in controls}),
+        JointPositions({control.name: positions.get(control.name, 0.0) for control in controls}),
     ]
     problems = _problems(model)
     return Snapshot(
@@ -347,7 +350,8 @@ def _poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.f
 def _anonymous(tree: Tree) -> Tree:
     """The displays without their status and without paths, which tell of this machine."""
     displays: list[Display] = [
-        replace(each, status=[], level="ok", properties=_without_paths(each.properties)) for each in tree.displays
+        replace(display, status=[], level="ok", properties=_without_paths(display.properties))
+        for display in tree.displays
     ]
     return replace(tree, global_status=[], global_level="ok", displays=displays)
 

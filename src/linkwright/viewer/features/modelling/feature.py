@@ -206,7 +206,7 @@ class ModellingFeature(PageFeature):
 
         def take(future: Any) -> None:
             if not told.done():
-                told.set_result(next((each.string_value for each in future.result().values), ""))
+                told.set_result(next((value.string_value for value in future.result().values), ""))
 
         try:
             if not client.service_is_ready():

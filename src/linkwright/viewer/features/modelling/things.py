@@ -36,7 +36,7 @@ from linkwright.viewer.protocol.modelling import (
 
 def things_of(world: WorldText) -> list[WorldThing]:
     """The models and lights of a world."""
-    return [_thing(each) for each in world.things.values()]
+    return [_thing(thing) for thing in world.things.values()]
 
 
 def _thing(thing: Thing) -> WorldThing:

@@ -131,7 +131,7 @@ def element_names(owners: Sequence[Any], values: Any) -> Sequence[str] | None:
     if len(values) and isinstance(values[0], Message):
         for field in NAME_FIELDS:
             if isinstance(getattr(values[0], field, None), str):
-                return [getattr(each, field) for each in values]
+                return [getattr(value, field) for value in values]
         return None
     for owner in reversed(owners):
         for field in NAME_LISTS:

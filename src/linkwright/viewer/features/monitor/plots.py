@@ -180,7 +180,7 @@ class _Channel:
     def take_past(self, seconds: Callable[[_Series], float], timeline: TimelineFeature) -> None:
         """Give the series that wait for it their samples before the time that is shown."""
         cls = self.tap.message_class
-        feeding = [each for each in self.series if each.error is None and each.path is not None]
+        feeding = [series for series in self.series if series.error is None and series.path is not None]
         if cls is None or not feeding:
             return
         longest = max(map(seconds, feeding))

@@ -111,14 +111,14 @@ class TopicTap:
             for endpoint in self._node.graph.endpoints()
             if endpoint.name == self.topic and endpoint.kind is EndpointKind.PUBLISHER
         ]
-        types = sorted({each.type_name for each in publishers})
+        types = sorted({publisher.type_name for publisher in publishers})
         if not types:
             return  # what was known of publishers that have gone holds until others come
         if len(types) > 1:
             self.error = f"the topic carries more than one type: {', '.join(types)}"
             self._leave()
             return
-        offers = [each.qos for each in publishers]
+        offers = [publisher.qos for publisher in publishers]
         if self._subscription is not None and self._fits(types[0], offers):
             return
         self._leave()

@@ -45,14 +45,14 @@ class _Tree:
 
     def fields(self, message: Message) -> list[MessageField]:
         rows = []
-        for each in definition_of(type(message)).fields:
+        for message_field in definition_of(type(message)).fields:
             if self._left <= 0:
                 break
-            value = getattr(message, each.name)
-            if each.type.container is Container.ONE:
-                rows.append(self._one(each.name, each, value))
+            value = getattr(message, message_field.name)
+            if message_field.type.container is Container.ONE:
+                rows.append(self._one(message_field.name, message_field, value))
             else:
-                rows.append(self._several(each, value))
+                rows.append(self._several(message_field, value))
         return rows
 
     def _one(self, name: str, field: Field, value: Any) -> MessageField:
@@ -69,7 +69,7 @@ class _Tree:
         if field.type.primitive is None:
             row = MessageField(field.name, kind, "")
         else:
-            shown = ", ".join(_text(each) for each in values[:_SHOWN_ELEMENTS])
+            shown = ", ".join(_text(value) for value in values[:_SHOWN_ELEMENTS])
             row = MessageField(field.name, kind, f"[{shown}{', ...' if count > _SHOWN_ELEMENTS else ''}]")
         for index in range(min(count, _MOST_ELEMENTS)):
             if self._left <= 0:

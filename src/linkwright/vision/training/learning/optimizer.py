@@ -31,12 +31,12 @@ class Optimizer:
     def __init__(self, network: nn.Module, rate: float) -> None:
         every = list(network.parameters())
         self._kernels = [each for each in every if each.ndim == 4 and min(each.shape[:2]) >= _LEAST]
-        self._momenta = [torch.zeros_like(each) for each in self._kernels]
-        kernels = {id(each) for each in self._kernels}
+        self._momenta = [torch.zeros_like(kernel) for kernel in self._kernels]
+        kernels = {id(kernel) for kernel in self._kernels}
         others = [each for each in every if id(each) not in kernels]
         groups = [
-            {"params": [each for each in others if each.ndim > 1], "weight_decay": _DECAY},
-            {"params": [each for each in others if each.ndim <= 1], "weight_decay": 0.0},
+            {"params": [other for other in others if other.ndim > 1], "weight_decay": _DECAY},
+            {"params": [other for other in others if other.ndim <= 1], "weight_decay": 0.0},
         ]
         self._network = network
         self._adamw = torch.optim.AdamW(groups, lr=rate, betas=(0.9, 0.98))

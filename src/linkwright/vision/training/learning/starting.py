@@ -72,7 +72,7 @@ def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
         raise _unusable(path, phrase("it is not an ONNX file")) from None
     stored.update({each.output[0]: stored[each.input[0]] for each in model.graph.node if each.input[:1]
                    and each.op_type == "Cast" and each.input[0] in stored})  # fmt: skip
-    metadata = {each.key: each.value for each in model.metadata_props}
+    metadata = {metadata_prop.key: metadata_prop.value for metadata_prop in model.metadata_props}
     known = names_in_metadata(metadata.get("names", ""))
     inputs = [each.input[1:] for each in model.graph.node if each.op_type == "Conv"]
     if known is None or not inputs or not all(len(each) == 2 and set(each) <= stored.keys() for each in inputs):
@@ -84,7 +84,7 @@ def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
 def _in_order(network: Network) -> list[nn.Conv2d]:
     """The convolutions in the order of the computation."""
     found: list[nn.Conv2d] = []
-    layers = [each for each in network.modules() if isinstance(each, nn.Conv2d)]
+    layers = [module for module in network.modules() if isinstance(module, nn.Conv2d)]
     hooks = [each.register_forward_hook(lambda layer, _, __: found.append(layer)) for each in layers]
     with torch.no_grad():
         network(torch.zeros(1, 3, 32, 32, device=layers[0].weight.device))
@@ -114,8 +114,8 @@ def _normalize(network: Network, blocks: Sequence[Convolution], pictures: Iterab
         sums[layer] += torch.stack((torch.full((len(values),), values.shape[1]), values.sum(1), (values**2).sum(1)))
 
     hooks = [block.norm.register_forward_pre_hook(measure) for block in blocks]
-    for each in pictures:
-        network(each)
+    for picture in pictures:
+        network(picture)
     for hook in hooks:
         hook.remove()
     for block in blocks:

@@ -205,7 +205,7 @@ class RtpsParticipant:
             if peer is None or told is None:
                 return None
             addresses = self._network.best_of(told.addresses) or peer.user
-        return next((each for each in addresses if self._network.is_here(each[0])), None)
+        return next((address for address in addresses if self._network.is_here(address[0])), None)
 
     def last_of(self, local: LocalReader, writer: bytes) -> int:
         """The highest sequence number that a writer has told a reader of ours."""
@@ -293,9 +293,9 @@ class RtpsParticipant:
         return max(0.0, min(_IDLE, min(due) - time.monotonic()))
 
     def _entities(self) -> list[Reader | Writer]:
-        writers = [self._publications, self._subscriptions, *(each.writer for each in self._writers.values())]
+        writers = [self._publications, self._subscriptions, *(writer.writer for writer in self._writers.values())]
         readers = [self._heard_publications, self._heard_subscriptions]
-        return [*writers, *readers, *(each.reader for each in self._readers.values())]
+        return [*writers, *readers, *(reader.reader for reader in self._readers.values())]
 
     def _ring(self) -> None:
         with suppress(OSError):
@@ -504,7 +504,7 @@ class RtpsParticipant:
         if entity == v.SUBSCRIPTIONS_WRITER:
             return (self._heard_subscriptions,)
         if said.reader == v.UNKNOWN:
-            return tuple(each.reader for each in self._readers.values())
+            return tuple(reader.reader for reader in self._readers.values())
         local = self._readers.get(said.reader)
         return () if local is None else (local.reader,)
 

@@ -164,7 +164,7 @@ class Reader:
 
     def remind(self, now: float) -> list[Packet]:
         """The packets that ask silent writers again, where it is time."""
-        silent = [each for each in self._writers.items() if each[1].heard_at is None and now >= each[1].due]
+        silent = [item for item in self._writers.items() if item[1].heard_at is None and now >= item[1].due]
         return [self._ask(writer, known, now) for writer, known in silent]
 
     def next_reminder(self) -> float | None:

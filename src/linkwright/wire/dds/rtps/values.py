@@ -77,7 +77,7 @@ def parameter(pid: int, value: bytes) -> bytes:
 
 def parameters(*pairs: tuple[int, bytes]) -> bytes:
     """A list of parameters with its end."""
-    return b"".join(parameter(*each) for each in pairs) + struct.pack("<HH", _PID_SENTINEL, 0)
+    return b"".join(parameter(*pair) for pair in pairs) + struct.pack("<HH", _PID_SENTINEL, 0)
 
 
 def read_parameters(data: bytes, offset: int, order: str) -> tuple[Parameters, int]:

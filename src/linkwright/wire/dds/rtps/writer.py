@@ -209,7 +209,7 @@ class Writer:
 
     def _forget_acknowledged(self) -> None:
         base = min((known.base for known in self._readers.values()), default=self._last + 1)
-        for number in [each for each in self._changes if each < base]:
+        for number in [change for change in self._changes if change < base]:
             if not self._lasting or self._changes[number].payload is None:
                 self._drop(number)
 
