@@ -2,9 +2,9 @@
 
 Usage: python tools/plain_words.py [PATH ...]
 
-Reads the strings, docstrings and comments of the Python sources and of the page, and prints each text that a pattern of
-``plain_words.toml`` matches, with the plain way to say it. Exits with 1 if there is one, or an exception of the table that
-no text needs. With paths below ``src/linkwright`` or ``frontend/src``, reads only those.
+Reads the strings, docstrings and comments of the Python sources and of the page. Prints each text that a pattern of
+``plain_words.toml`` matches, with the plain way to say it, and each exception of the table that no text needs.
+Exits with 1 if there is one. With paths below ``src/linkwright`` or ``frontend/src``, reads only those.
 """
 
 from __future__ import annotations
