@@ -93,6 +93,7 @@ class JointTrajectoryController(Controller[Parameters]):
         self._state: dict[str, list[StateInterface]] = {
             kind: self.states[number::count] for number, kind in enumerate(said.state_interfaces)
         }
+        self._measured = tuple(self._state.get(kind, []) for kind in (POSITION, VELOCITY, ACCELERATION))
         self._has_velocity_error = VELOCITY in self._state and (VELOCITY in self._command or EFFORT in self._command)
         self._has_acceleration_error = ACCELERATION in self._state and ACCELERATION in self._command
         self._timeout_s = self._allowed_timeout(said)
@@ -215,9 +216,11 @@ class JointTrajectoryController(Controller[Parameters]):
     # --- states -------------------------------------------------------------------------------------------------------
 
     def _read(self) -> MotionState:
-        states = self._state
+        positions, velocities, accelerations = self._measured
         return MotionState(
-            *([state.value for state in states.get(kind, ())] for kind in (POSITION, VELOCITY, ACCELERATION))
+            [position.value for position in positions],
+            [velocity.value for velocity in velocities],
+            [acceleration.value for acceleration in accelerations],
         )
 
     def _as_commanded(self, state: MotionState) -> MotionState:

@@ -75,13 +75,21 @@ class GenericSystem(Hardware):
             for state in self.states
             if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
         ]
-        # Without a joint between: this is done a thousand times a second.
-        joints = self._joints.values()
+        # A thousand times a second each lookup counts: only dynamics and mimicry go by the state of a joint.
+        tied = {each for joint, followed, _ in self._followers for each in (joint, followed)}
+        joints = [joint for joint in self._joints.values() if self._dynamic or joint in tied]
+        free = [joint for joint in self._joints.values() if not self._dynamic and joint not in tied]
         self._shown = [(state, joint.values, state.kind) for joint in joints for state in joint.shown]
         self._repeated = [
-            (command, joint.values, kind, self._own_offset if kind == POSITION else 0.0)
+            (command, joint.values, kind, self._offset_of(kind))
             for joint in joints
             for kind, command in joint.commands.items()
+        ]
+        self._copied = [
+            (joint.commands[state.kind], state, self._offset_of(state.kind))
+            for joint in free
+            for state in joint.shown
+            if state.kind in joint.commands
         ]
         self._read: Callable[[float], None] = self._integrate if self._dynamic else self._repeat
 
@@ -122,6 +130,10 @@ class GenericSystem(Hardware):
         """Copy commands to states."""
         if self._disabled:
             return
+        for command, state, offset in self._copied:
+            value = command.value
+            if value == value:
+                state.value = value + offset
         self._read(period_s)
         for joint, followed, mimic in self._followers:
             joint.values[POSITION] = mimic.multiplier * followed.values[POSITION] + mimic.offset
@@ -140,6 +152,9 @@ class GenericSystem(Hardware):
     @property
     def _own_offset(self) -> float:
         return 0.0 if self._offset_interface else self._offset
+
+    def _offset_of(self, kind: str) -> float:
+        return self._own_offset if kind == POSITION else 0.0
 
     def _repeat(self, _: float) -> None:
         for command, values, kind, offset in self._repeated:

@@ -75,7 +75,7 @@ class Loaded:
         if not commands:
             return ""
         values = [command.value for command in commands]
-        if all(map(isfinite, values)):  # as nearly always
+        if isfinite(sum(values)) or all(map(isfinite, values)):  # as nearly always; a sum may overflow
             self.before = values
             return ""
         wrong = ""
