@@ -34,6 +34,17 @@ async def test_calls_come_in_the_order_in_which_they_are_due_and_never_early():
     assert all(called_ns >= due_ns for due_ns, called_ns in made)
 
 
+def test_a_loop_has_alarms_of_its_own_where_one_that_is_gone_was():
+    async def called() -> None:
+        fine, made = await alarms(), asyncio.Event()
+        fine.call_at(time.monotonic_ns(), made.set)
+        await asyncio.wait_for(made.wait(), 20)
+
+    for _ in range(20):  # most are made where the one before was
+        asyncio.run(called())
+        gc.collect()
+
+
 async def test_an_alarm_that_is_cancelled_is_not_called_even_by_one_before_it():
     fine, made, later = await alarms(), [], []
 

@@ -150,6 +150,10 @@ class Timer(Entity):
         """Nanoseconds until the next call, negative when it is late; None for a timer that is stopped."""
         return self._due_ns - self.clock.timer_ns() if self._running else None
 
+    def next_call_ns(self) -> int:
+        """When the next call is due, by `Clock.timer_ns` of its clock."""
+        return self._due_ns
+
     def retire(self) -> None:
         """Never call back again."""
         super().retire()

@@ -134,7 +134,8 @@ class Clock:
         self.clock_type = clock_type
         self.timebase: Timebase = timebase or _SYSTEM
         self._jump_handles: list[JumpHandle] = []
-        self._changed = threading.Condition(threading.RLock())
+        self._lock = threading.RLock()
+        self._changed = threading.Condition(self._lock)
 
     def __repr__(self) -> str:
         return f"Clock(clock_type={self.clock_type.name})"
@@ -296,7 +297,7 @@ class ROSClock(Clock):
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a call for a value of `timer_ns`."""
-        with self._changed:
+        with self._lock:  # that of the condition, which enters it in Python: timers come here with each beat
             if not self._active:
                 return dispatcher.call_at(timer_ns, callback)
             alarm = _SimulatedAlarm(timer_ns, next(self._numbers), callback)

@@ -30,9 +30,11 @@ _NANOSECONDS = 1_000_000_000
 def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
     """The fine alarms of an event loop, asked for in its thread; None where its own alarms must do."""
     try:
-        return _of_loops[loop]  # once: each look makes a weak reference, and timers look with each beat
+        return _of_loops[id(loop)]  # no weak dictionary, which is Python: timers look here with each beat
     except KeyError:
-        return _of_loops.setdefault(loop, _made(loop))
+        found = _of_loops[id(loop)] = _made(loop)
+        weakref.finalize(loop, _of_loops.pop, id(loop), None)
+        return found
 
 
 def _made(loop: AbstractEventLoop) -> FineAlarms | None:
@@ -129,4 +131,5 @@ class FineAlarms:
         self._set_timer()
 
 
-_of_loops: weakref.WeakKeyDictionary[AbstractEventLoop, FineAlarms | None] = weakref.WeakKeyDictionary()
+_of_loops: dict[int, FineAlarms | None] = {}
+"""By the identity of the loop; what is said of a loop goes with it."""

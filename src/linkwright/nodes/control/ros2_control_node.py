@@ -143,7 +143,7 @@ class Ros2ControlNode(SingleNode):
         self._timer = self._node.create_timer(1.0 / manager.update_rate, self._update)
 
     def _update(self) -> None:
-        before_ns, self._next_ns = self._next_ns, self._clock.timer_ns() + (self._timer.time_until_next_call() or 0)
+        before_ns, self._next_ns = self._next_ns, self._timer.next_call_ns()
         missed = round((self._next_ns - before_ns) / self._period_ns) - 1
         if missed > 0 and self._clock.ros_time_is_active is self._was_simulated is False:
             self._missed(missed)

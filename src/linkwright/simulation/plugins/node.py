@@ -80,7 +80,9 @@ class Output:
         Subscriptions come and go at any time, on another thread; within one call of a plugin the answer stays the same.
         """
         number = self.calls.number
-        if not number or number != self._asked:
+        if not number:
+            return self._has_readers()
+        if number != self._asked:
             self._asked, self._is_wanted = number, self._has_readers()
         return self._is_wanted
 
