@@ -138,14 +138,15 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
             pair.left.target, pair.right.target = pair.drive.wheel_speeds(forward, turning)
 
     def _angles(self) -> tuple[float, float]:
-        left, right = self._pairs[0].joints
-        return self.simulation.joint_state(left)[0], self.simulation.joint_state(right)[0]
+        """The angles of the first pair of wheels in rad; their velocities are kept for `_speeds`."""
+        state, (left, right) = self.simulation.joint_state, self._pairs[0].joints
+        (left_angle, left_speed), (right_angle, right_speed) = state(left), state(right)
+        self._rolling = left_speed, right_speed
+        return left_angle, right_angle
 
     def _speeds(self) -> tuple[float, float]:
-        """The velocity forward in m/s and around z in rad/s that the first pair of wheels rolls with."""
-        pair = self._pairs[0]
-        left, right = (self.simulation.joint_state(joint)[1] for joint in pair.joints)
-        return pair.drive.motion(left, right)
+        """The velocity forward in m/s and around z in rad/s that the first pair of wheels rolled with when measured."""
+        return self._pairs[0].drive.motion(*self._rolling)
 
     def _measure(self) -> None:
         """Update the odometry by the rotation of the first pair of wheels."""
