@@ -30,6 +30,16 @@ async def test_positions_and_what_is_not_known(stand):
     assert list(dynamic[0].interface_values[1].values) == [-0.5, 30.0]
 
 
+async def test_what_is_not_known_is_each_message_s_own(stand):
+    stand.joint("hip", position=0.5)
+    heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
+    broadcaster = stand.start(JointStateBroadcaster)
+    await stand.step(broadcaster)
+    heard[0].effort[0] = 7.0
+    await stand.step(broadcaster)
+    assert isnan(heard[1].effort[0])
+
+
 async def test_only_joints_of_the_description_and_extra_ones(stand):
     stand.joint("hip", position=0.5)
     stand.joint("imu", position=1.0)

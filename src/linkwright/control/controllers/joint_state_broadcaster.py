@@ -72,9 +72,13 @@ class JointStateBroadcaster(Controller[Parameters]):
         self._extra = [extra_joint for extra_joint in self.parameters.extra_joints if extra_joint not in joints]
         self._names = [*joints, *self._extra]
         unknown, none = StateInterface("", ""), StateInterface("", "", 0.0)
-        self._columns = [
+        columns = [
             [*(of_joint[place] or unknown for of_joint in joints.values()), *(none for _ in self._extra)]
             for place in range(3)
+        ]
+        # What no joint tells, as often the efforts, is the same in each message.
+        self._columns = [
+            (column, _values(column) if {unknown, none}.issuperset(column) else None) for column in columns
         ]
 
     def update(self, time_ns: int, period_s: float) -> None:
@@ -93,8 +97,7 @@ class JointStateBroadcaster(Controller[Parameters]):
         return Header(stamp=Time(*divmod(time_ns, _NANOSECONDS)), frame_id=self.parameters.frame_id)
 
     def _joint_states(self, header: Header) -> JointState:
-        # Arrays are taken as they are; the elements of lists would be looked at one by one.
-        position, velocity, effort = (array("d", [state.value for state in column]) for column in self._columns)
+        position, velocity, effort = (_values(column) if fixed is None else fixed[:] for column, fixed in self._columns)
         return JointState(header=header, name=[*self._names], position=position, velocity=velocity, effort=effort)
 
     def _dynamic_states(self, header: Header) -> object:
@@ -104,3 +107,8 @@ class JointStateBroadcaster(Controller[Parameters]):
         ]
         names: Sequence[str] = [*self._of, *self._extra]
         return get_message("control_msgs/msg/DynamicJointState")(header, list(names), rows)
+
+
+def _values(states: Sequence[StateInterface]) -> array[float]:
+    """Values for a message: an array is taken as it is, and the elements of a list would be looked at one by one."""
+    return array("d", [state.value for state in states])
