@@ -216,6 +216,18 @@ async def test_what_is_no_number_does_not_reach_the_hardware(made, said, wrong):
     assert "'hip/velocity' is not a number" in said("ERROR")[0]
 
 
+async def test_numbers_reach_the_hardware_whatever_their_sum_is(made, said):
+    it = made()
+    started(it, "low")
+    it.switch(["low"], [], STRICT)
+    loaded = it.controllers["low"]
+    loaded.controller.commands *= 2  # the sum of both is no number
+    loaded.controller.value = 1.5e308
+    it.cycle(1, 0.01)
+    assert value(it, "hip/velocity") == 1.5e308
+    assert said("ERROR") == []
+
+
 async def test_hardware_that_fails_stops_its_controllers(made, said):
     it = made()
     started(it, "low", "high")
