@@ -7,6 +7,7 @@ import json
 import pytest
 
 from linkwright.cli import main
+from linkwright.lint.registry import find_rule
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>A robot.</description>
@@ -347,3 +348,48 @@ def test_a_copied_inertia_that_one_set_shows_is_not_called_too_large_by_another(
         "arm/launch/view.launch.py": "",
     }
     assert [each["code"] for each in check(alone) if each["code"].startswith("LW3")] == ["LW324"]
+
+
+TURNED = """
+  <link name="base_link"/><link name="hand"/>
+  <xacro:macro name="turned" params="rate"><joint name="turn" type="revolute">
+    <parent link="base_link"/><child link="hand"/><axis xyz="0 0 1"/>
+    <limit lower="0" upper="1" effort="1" velocity="{velocity}"/>
+  </joint></xacro:macro>
+  <xacro:turned rate="$(arg kind)"/>
+"""
+
+
+def given_kinds(inside, *kinds):
+    """A description with an argument, and a launch file that gives it values."""
+    robot = f'<robot {XACRO} name="a"><xacro:arg name="kind" default="{kinds[0]}"/>{inside}</robot>'
+    launch = LAUNCH.format(kinds=", ".join(map(repr, kinds))).replace("'name': 'a', 'type'", "'kind'")
+    return {"arm/urdf/arm.urdf.xacro": robot, "arm/launch/view.launch.py": launch}
+
+
+@pytest.mark.parametrize(
+    ("velocity", "of_robot"),
+    [("0", 1), ("${0 if float(rate) == 3 else 1}", 2)],
+    ids=["the same robot", "robots with the same parts"],
+)
+def test_rules_run_once_for_sets_that_give_the_same_robot(check, monkeypatch, velocity, of_robot):
+    ran = []
+    for code in ("LW206", "LW701"):
+        rule = find_rule(code)
+        monkeypatch.setattr(
+            type(rule), "check", lambda self, subject, own=rule.check: ran.append(self.code) or list(own(subject))
+        )
+    files = given_kinds(TURNED.format(velocity=velocity), "1", "2", "3")
+    found = check(files, ".", "--select", "LW206,LW701")
+    assert codes(found) == [("warning", "LW206")]
+    notes = [note["message"] for note in found[0]["notes"]]
+    assert ("this is so with kind:=3" in notes) is (of_robot > 1)
+    assert (ran.count("LW206"), ran.count("LW701")) == (of_robot, 1)
+
+
+def test_a_property_whose_name_is_pasted_by_one_set_is_used(check):
+    """What is used may hang on the values of arguments, although the files are the same."""
+    properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in ("size", "width", "other"))
+    files = given_kinds(f'{properties}<link name="l${{$(arg kind)}}"/>', "size", "width")
+    found = check(files, ".", "--select", "LW701")
+    assert [each["message"] for each in found] == ["nothing uses the property 'other'"]

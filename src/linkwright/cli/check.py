@@ -31,8 +31,8 @@ from linkwright.lean_dataclasses import dataclass, field
 if TYPE_CHECKING:
     from linkwright.descriptions.argument_sets import ArgumentSet, ArgumentSets
     from linkwright.lint.apply import Mended
+    from linkwright.lint.contexts import Contexts
     from linkwright.lint.engine import Checked
-    from linkwright.lint.package import Contexts
     from linkwright.lint.settings import Settings
     from linkwright.lint.targets import Targets
     from linkwright.packages import PackageFinder
@@ -171,6 +171,7 @@ def _contents(checked: Checked) -> str:
 
 def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Checked | None]:
     """Everything found, each thing once, and what came of the file where one was named."""
+    from linkwright.lint.contexts import Contexts
     from linkwright.lint.engine import examine_package
     from linkwright.lint.folders import Examined, reported, reported_of_package
     from linkwright.lint.targets import find_targets
@@ -190,7 +191,7 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
     checked = None
     examined: list[Examined] = []
     of_settings: list[tuple[Diagnostic, ...]] = []
-    contexts: Contexts = {}
+    contexts = Contexts()
     for file in targets.files:
         checked, trouble = _examine(file, words, targets, contexts=contexts)
         examined.append(Examined.of(checked, file))

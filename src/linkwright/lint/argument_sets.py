@@ -167,7 +167,7 @@ class SetCheck:
             for key, each in _numbered(run.checked.diagnostics):
                 told.setdefault(key, (each, []))[1].append(run)
         found: list[Diagnostic] = [*as_set(more, self.settings)]
-        copied = {name for run in runs if run.checked.subject for name in placeholders(run.checked.subject)}
+        copied = {name for run in runs if run.checked.subject for name in run.checked.subject.once(placeholders)}
         for diagnostic, having in told.values():
             if diagnostic.code in LEFT_TO_PLACEHOLDERS and as_phrase(diagnostic.message).arguments["name"] in copied:
                 continue  # the rule about these speaks with other values

@@ -15,7 +15,7 @@ from linkwright.lean_dataclasses import dataclass
 from linkwright.lint.finding import Finding
 from linkwright.lint.missing_files import judged_files
 from linkwright.lint.missing_packages import judged
-from linkwright.lint.registry import find_rule, rules_of, unusable_rules
+from linkwright.lint.registry import find_rule, has_rules_of_others, rules_of, unusable_rules
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
@@ -26,7 +26,7 @@ from linkwright.urdf import Reading, Robot
 from linkwright.xmltree import Document, Element, Overlay
 
 if TYPE_CHECKING:
-    from linkwright.lint.package import Contexts
+    from linkwright.lint.contexts import Contexts
     from linkwright.sdf.worlds import Sdf
 
 
@@ -93,7 +93,7 @@ def examine(
         overlay: texts that stand for those of files, such as ones that are not saved yet.
         scopes: the rules to run.
         xacro: whether to expand a robot; None for what the file says.
-        contexts: packages that were met, for checks of several files at one moment.
+        contexts: what checks at one moment share.
     """
     path = Path(path)
     trouble: tuple[Diagnostic, ...] = ()
@@ -112,7 +112,7 @@ def examine(
     except LinkwrightError as error:
         return Checked(path, None, (*trouble, *as_set(error.diagnostics, settings)), None)
     subject = Subject(description, finder, settings, contexts)
-    found = _run(subject, scopes, _of_library(subject) if subject.is_library else description.diagnostics)
+    found = _run(subject, scopes, _of_library(description) if subject.is_library else description.diagnostics)
     return Checked(path, subject.robot, (*trouble, *found), subject)
 
 
@@ -149,18 +149,40 @@ def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic]
 
 def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
     """The findings of the rules, each place once; some are only wanted to see whether a comment is of use."""
+    known = {} if has_rules_of_others() else subject.once(_findings_of_scopes)
+    key = frozenset(scopes)
+    if key not in known:
+        known[key] = _find_anew(subject, scopes, suppressions)
+    return known[key]
+
+
+def _findings_of_scopes(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
+    """Where the findings of rules are kept, for them and for subjects that are alike."""
+    return {}
+
+
+def _find_anew(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
     found: list[Diagnostic] = []
     for rule in rules_of(scopes):
         if not (subject.settings.runs(rule) or suppressions.audits(rule.code)):
             continue
         if not _may_run(rule, subject):
             continue
-        for diagnostic in rule.check(subject):
+        for diagnostic in _found_by(rule, subject):
             if diagnostic.code != rule.code:
                 raise ValueError(f"{rule.code} reported a finding of {diagnostic.code}")
             found.append(_with_trail(diagnostic))
     unread = subject.meshes.unread.diagnostics if subject.meshes.unread else ()
     return [*_without_repetitions(found), *(each.but(severity=Severity.INFO) for each in unread)]
+
+
+def _found_by(rule: Rule, subject: Subject) -> Iterable[Diagnostic]:
+    if not rule.of_sources or subject.expansion is None:
+        return rule.check(subject)
+    known = subject.xacro.found
+    if rule.code not in known:
+        known[rule.code] = tuple(rule.check(subject))
+    return known[rule.code]
 
 
 def _may_run(rule: Rule, subject: Subject) -> bool:
@@ -170,15 +192,15 @@ def _may_run(rule: Rule, subject: Subject) -> bool:
     return subject.is_whole and (rule.holds_for_libraries or not subject.is_library)
 
 
-def _of_library(subject: Subject) -> Iterator[Diagnostic]:
+def _of_library(described: Description) -> Iterator[Diagnostic]:
     """The findings on a file that others include: those that hold for each part, and that it is no robot."""
-    described = subject.description
     yield from (*described.problems, *described.remarks)
-    whole = subject.root.span()
+    root = described.document.root
+    whole = root.span()
     yield from (each for each in described.reading.diagnostics if each.code in TRUE_OF_PARTS and each.span != whole)
     hint = phrase("check the file that includes it")
     message = phrase("this file holds parts for others to include and is no robot by itself")
-    yield Diagnostic("LINT302", message, subject.root.span(), Severity.INFO, hint=hint, source=subject.root.source)
+    yield Diagnostic("LINT302", message, whole, Severity.INFO, hint=hint, source=root.source)
 
 
 def in_order(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
@@ -208,7 +230,7 @@ def examine_package(
         settings: the settings in force for it.
         finder: where packages are.
         overlay: texts that stand for those of files.
-        contexts: packages that were met, for checks of several files at one moment.
+        contexts: what checks at one moment share.
     """
     path = folder / MANIFEST
     empty = Document(Element("robot", {"name": folder.name}))

@@ -25,24 +25,22 @@ _MOST_FILES = 20_000
 _DESCRIPTIONS = (".xacro", ".urdf")
 
 
-Contexts = dict[Path, "PackageContext"]
-"""The packages that were met by their folders, for checks of several files at one moment."""
-
-
-def find_package(path: Path, overlay: Overlay | None = None, contexts: Contexts | None = None) -> PackageContext | None:
+def find_package(
+    path: Path, overlay: Overlay | None = None, known: dict[Path, PackageContext] | None = None
+) -> PackageContext | None:
     """The package that a file or folder lies in: the nearest folder upwards with a ``package.xml``; or None.
 
     Args:
         path: the file or folder.
         overlay: texts that stand for those of files.
-        contexts: where to look for the package and to put it, where there is no overlay.
+        known: packages by their folders, to look the package up in and to add it to, where there is no overlay.
     """
     path = path.absolute()
     for folder in (path, *path.parents):
         if (folder / MANIFEST).is_file():
-            if overlay is not None or contexts is None:
+            if overlay is not None or known is None:
                 return PackageContext(folder, overlay)
-            return contexts.get(folder) or contexts.setdefault(folder, PackageContext(folder))
+            return known.get(folder) or known.setdefault(folder, PackageContext(folder))
     return None
 
 

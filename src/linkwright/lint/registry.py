@@ -45,6 +45,11 @@ def unusable_rules() -> tuple[Diagnostic, ...]:
     return _found(whole=False)[1]
 
 
+def has_rules_of_others() -> bool:
+    """Whether another package brings rules, of which nobody knows what they look at."""
+    return any(not rule.code.startswith(_OURS) for rule in _found(whole=False)[0])
+
+
 def find_rule(code_or_name: str) -> Rule | None:
     """The rule of a code or name, in any case; None where there is none."""
     key = code_or_name.strip().casefold()

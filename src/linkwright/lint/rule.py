@@ -43,6 +43,8 @@ class Rule:
             one element, or one text, by itself.
         holds_for_libraries: whether it looks at files as they are written, so that it has something to say of one that
             only defines macros. Rules that hold for parts do too.
+        of_sources: whether what it finds follows from the files as they are written, their package and the names of the
+            arguments: it then runs once for all sets of arguments with which the same files are read.
         needs_all_sets: whether a finding is true only where every set of arguments shows it: something is never used.
         options: its settings.
         replaces: codes of findings that one of this rule stands for, where both are at one place.
@@ -55,6 +57,7 @@ class Rule:
     scope: ClassVar[Scope] = Scope.DESCRIPTION
     holds_for_parts: ClassVar[bool] = False
     holds_for_libraries: ClassVar[bool] = False
+    of_sources: ClassVar[bool] = False
     needs_all_sets: ClassVar[bool] = False
     options: ClassVar[tuple[Option, ...]] = ()
     replaces: ClassVar[tuple[str, ...]] = ()

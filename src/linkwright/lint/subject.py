@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.descriptions import Description
 from linkwright.diagnostics import LinkwrightError
@@ -16,14 +16,17 @@ from linkwright.xmltree import Document, Element
 if TYPE_CHECKING:
     from linkwright.geometry.placement import Placement
     from linkwright.kinematics import KinematicTree
+    from linkwright.lint.contexts import Contexts, OfFile
     from linkwright.lint.extents import Extents
     from linkwright.lint.meshes import MeshFacts
-    from linkwright.lint.package import Contexts, PackageContext
+    from linkwright.lint.package import PackageContext
     from linkwright.lint.structure import Structure
     from linkwright.lint.tensors import Flaw
     from linkwright.lint.xacro_facts import XacroFacts
     from linkwright.packages import PackageFinder
     from linkwright.urdf.bodies import Bodies
+
+Value = TypeVar("Value")
 
 _DEFINITIONS = {"material", "xacro:macro", "xacro:property"}
 """What a file for others to include may hold without anything that makes a robot."""
@@ -38,7 +41,7 @@ class Subject:
         description: what is checked.
         finder: where packages are.
         settings: the settings in force for its file.
-        contexts: packages that were met, for checks of several files at one moment.
+        contexts: what checks at one moment share.
 
     Attributes:
         description: what is checked.
@@ -86,6 +89,20 @@ class Subject:
     def root(self) -> Element:
         """The root element of the expanded document."""
         return self.document.root
+
+    def once(self, work: Callable[[Subject], Value]) -> Value:
+        """Return what a function makes of this subject, worked out once for all rules and for all subjects alike."""
+        if work not in self._done:
+            self._done[work] = work(self)
+        value: Value = self._done[work]
+        return value
+
+    @cached_property
+    def _done(self) -> dict[Any, Any]:
+        """What was worked out of this subject, or of one with other arguments that is alike."""
+        if self._shared is None:
+            return {}
+        return self._shared.done(self.xacro, self.root, is_whole=self.is_whole)
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
         """The elements directly in ``<robot>``, all or those of one tag, in document order."""
@@ -149,7 +166,16 @@ class Subject:
         """The definitions and uses in its xacro files."""
         from linkwright.lint.xacro_facts import XacroFacts
 
-        return XacroFacts(self.path, self.sources, self.expansion, self.package, is_library=not self.links)
+        given = {} if self.expansion is None else self.expansion.arguments
+        facts = XacroFacts(self.path, self.sources, given, self.package, is_library=not self.links)
+        return facts if self._shared is None else self._shared.facts(facts)
+
+    @property
+    def _shared(self) -> OfFile | None:
+        """What the checks of an expanded file share with those of other sets of arguments."""
+        if self._contexts is None or self.expansion is None or self.description.overlay is not None:
+            return None
+        return self._contexts.of_file(self.path)
 
     @cached_property
     def bodies(self) -> Bodies:
@@ -185,4 +211,5 @@ class Subject:
         """The ROS package that the file lies in, or None."""
         from linkwright.lint.package import find_package
 
-        return find_package(self.path, self.description.overlay, self._contexts)
+        known = None if self._contexts is None else self._contexts.packages
+        return find_package(self.path, self.description.overlay, known)

@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from linkwright.diagnostics import LinkwrightError, Span
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Span
 from linkwright.lean_dataclasses import dataclass, field
 from linkwright.lint.xacro_names import Mentions, identifiers, mentions
 from linkwright.xacro.expressions.symbols import MATHEMATICS
@@ -24,7 +24,6 @@ from linkwright.xmltree.positions import attribute_value_range
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
-    from linkwright.xacro import Expansion
 
 TAGS = frozenset(
     f"xacro:{name}"
@@ -263,36 +262,33 @@ class XacroFacts:
 
     Attributes:
         path: the checked file.
-        expansion: what came of it.
+        given: name -> final value of every argument that was given or declared.
         package: the package that it lies in, or None.
         is_library: whether it makes no robot of its own: it is there for others to include.
         files: path -> facts, the checked file first.
+        found: code -> findings of the rules that look at nothing else (`Rule.of_sources`), as far as they ran.
     """
 
     def __init__(
         self,
         path: Path,
         sources: Mapping[Path, Document],
-        expansion: Expansion | None,
+        given: Mapping[str, str],
         package: PackageContext | None,
         *,
         is_library: bool,
     ) -> None:
         self.path = path
-        self.expansion = expansion
+        self.given = given
         self.package = package
         self.is_library = is_library
         self.files: dict[Path, FileFacts] = {path: FileFacts.of(document) for path, document in sources.items()}
+        self.found: dict[str, tuple[Diagnostic, ...]] = {}
 
     @property
     def main(self) -> FileFacts:
         """The facts of the checked file."""
         return next(iter(self.files.values()))
-
-    @property
-    def given(self) -> Mapping[str, str]:
-        """Name -> final value of every argument that was given or declared."""
-        return self.expansion.arguments if self.expansion else {}
 
     @cached_property
     def own(self) -> Mapping[Path, FileFacts]:
@@ -311,15 +307,18 @@ class XacroFacts:
         return {path: FileFacts.of(document) for path, document in documents.items() if path.absolute() not in known}
 
     @cached_property
+    def pastes(self) -> bool:
+        """Whether an expression pastes a value into another, so that names may come of the values of arguments."""
+        return any(facts.pasted for facts in self._all())
+
+    @cached_property
     def names(self) -> frozenset[str]:
         """All names that any file here or beside mentions in an expression or could paste into one."""
         found: set[str] = set()
         for facts in self._all():
             found |= facts.names | facts.blocks
-        expansion = self.expansion
-        pasted = {name for facts in self._all() for name in facts.pasted}
-        if pasted and expansion is not None:
-            for value in expansion.arguments.values():
+        if self.pastes:
+            for value in self.given.values():
                 found |= identifiers(value)
         return frozenset(found)
 

@@ -401,7 +401,7 @@ class InertiaTooSmall(Rule):
 
 def _without_placeholders(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
     """The measured links but those of which `PlaceholderInertia` says that their inertia was never computed."""
-    copied = placeholders(subject) if subject.extents.measured else set()
+    copied = subject.once(placeholders) if subject.extents.measured else set()
     return (each for each in subject.extents.measured if each[0].name not in copied)
 
 

@@ -89,7 +89,7 @@ class WheelsNotLevel(Rule):
     options = (Option("tolerance", 0.01, "how far above the ground a wheel may be, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        found = contacts(subject)
+        found = subject.once(contacts)
         if found is None or sum(contact.is_wheel for contact in found) < 2:
             return
         tolerance = self.option(subject, "tolerance", float)
@@ -155,7 +155,7 @@ class CenterBeyondWheels(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         robot = subject.robot
-        found = contacts(subject)
+        found = subject.once(contacts)
         if robot is None or found is None or len(found) < 3:
             return
         corners = _hull([contact.place[:2] for contact in found])

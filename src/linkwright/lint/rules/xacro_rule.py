@@ -18,6 +18,7 @@ class XacroRule(Rule, ABC):
     """A rule about the xacro files of a description; it has nothing to say of plain URDF."""
 
     holds_for_libraries = True
+    of_sources = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         if subject.expansion is not None:

@@ -60,6 +60,7 @@ class XacroPrefixMissing(Rule):
     code = "LW720"
     name = "xacro-prefix-missing"
     holds_for_parts = True
+    of_sources = True
     severity = Severity.ERROR
     replaces = ("LW104", "LW105", "LW107")
 
@@ -173,6 +174,7 @@ class XacroNamespaceAddress(Rule):
     code = "LW722"
     name = "xacro-namespace-address"
     holds_for_parts = True
+    of_sources = True
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
@@ -298,6 +300,7 @@ class UndeclaredPackage(Rule):
     code = "LW724"
     name = "undeclared-package"
     holds_for_libraries = True
+    of_sources = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         if subject.expansion is None:

@@ -1,0 +1,126 @@
+"""What checks share at one moment: packages, and what was found in descriptions that come out the same.
+
+A description is checked with every set of values that its arguments are given. Most sets read the same files, and many
+give the same robot: an address or a rate is for the driver alone. So rules about files as they are written run once for
+them (`Rule.of_sources`), and all rules once for sets whose expansions are alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.lean_dataclasses import NamedTuple
+from linkwright.xacro.origin import Frame
+from linkwright.xmltree import Element, Text
+from linkwright.xmltree.nodes import LazyCopy, Node
+
+if TYPE_CHECKING:
+    from linkwright.lint.package import PackageContext
+    from linkwright.lint.xacro_facts import XacroFacts
+
+_UNREAD = ()
+"""The content of the first description of its parts, until there is another one of the same parts."""
+
+
+class _Done(NamedTuple):
+    root: Element
+    results: dict[Any, Any]
+
+
+class Contexts:
+    """What checks of several files, and of one file with several sets of arguments, share at one moment.
+
+    Attributes:
+        packages: the packages that were met, by their folders.
+    """
+
+    def __init__(self) -> None:
+        self.packages: dict[Path, PackageContext] = {}
+        self._last: OfFile | None = None
+
+    def of_file(self, path: Path) -> OfFile:
+        """What checks of a file with one and the same settings share; only that of the last file is kept."""
+        if self._last is None or self._last.path != path:
+            self._last = OfFile(path)
+        return self._last
+
+
+class OfFile:
+    """What checks of a file with several sets of arguments share.
+
+    Attributes:
+        path: the file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._facts: dict[Hashable, XacroFacts] = {}
+        self._done: dict[Hashable, dict[tuple[object, ...], _Done]] = {}
+        self._places: dict[Hashable, int] = {}
+
+    def facts(self, facts: XacroFacts) -> XacroFacts:
+        """Return the facts that are known of the same files and arguments, else the given ones.
+
+        The values of arguments matter only where names are pasted of them.
+        """
+        documents = tuple(id(file.document) for file in facts.files.values())
+        key = (facts.is_library, frozenset(facts.given), documents)
+        known = self._facts.get(key)
+        if known is None or (known.given != facts.given and known.pastes):
+            known = self._facts[key] = facts
+        return known
+
+    def done(self, facts: XacroFacts, root: Element, *, is_whole: bool) -> dict[Any, Any]:
+        """What was worked out of a description that is alike, to be added to; nothing where it is the first.
+
+        Args:
+            facts: those of its files, as `facts` returns them.
+            root: the root element of its expansion.
+            is_whole: whether no part is missing.
+        """
+        parts = tuple((element.tag, element.offset) for element in root.elements())
+        known = self._done.setdefault((facts, is_whole, parts), {})
+        done = _Done(root, {})
+        if not known:
+            known[_UNREAD] = done  # most are unlike all others in their parts, and are not compared further
+            return done.results
+        if _UNREAD in known:
+            first = known.pop(_UNREAD)
+            known[self._content(first.root)] = first
+        return known.setdefault(self._content(root), done).results
+
+    def _content(self, root: Element) -> tuple[object, ...]:
+        """All that an expanded element is, in document order, with the number of the place that it comes from.
+
+        What it was made of is known by its identity; the elements that are kept hold it.
+        """
+        found: list[object] = []
+        numbers: dict[int, int] = {}
+        pending: list[tuple[Node, int | None]] = [(root, None)]
+        while pending:
+            node, number = pending.pop()
+            found += (node.offset, id(node.source))
+            if not isinstance(node, Element):
+                found += (type(node), node.data, node.cdata if isinstance(node, Text) else None)
+                continue
+            own = self._number(node.origin, numbers) if number is None else number
+            while isinstance(node, LazyCopy) and node.original is not None:
+                node, number = node.original, own  # what a copy would be made of, all of it in the place of the copy
+            found += (own, node.tag, len(node.attributes), *node.attributes.items(), len(node.children))
+            pending.extend([(child, number) for child in reversed(node.children)])
+        return tuple(found)
+
+    def _number(self, origin: object, numbers: dict[int, int]) -> int:
+        """The number of a chain of macro calls and includes; `numbers` has those of the document so far."""
+        chain: list[Frame] = []
+        frame = origin if isinstance(origin, Frame) else None
+        while frame is not None and id(frame) not in numbers:
+            chain.append(frame)
+            frame = frame.around
+        number = 0 if frame is None else numbers[id(frame)]
+        for each in reversed(chain):
+            number = self._places.setdefault((each.macro, id(each.site), number), len(self._places) + 1)
+            numbers[id(each)] = number
+        return number
