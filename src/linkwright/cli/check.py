@@ -235,12 +235,13 @@ def _examine(
     from linkwright.xmltree import Overlay
 
     settings, trouble = words.settings(file)
+    finder = words.finder(file)
 
     def with_values(values: Mapping[str, str], xacro: bool | None = None) -> Checked:
         return examine(
             file,
             arguments=values,
-            packages=words.finder(file),
+            packages=finder,
             settings=settings,
             overlay=None if text is None else Overlay({file: text}),
             scopes=(Scope.DESCRIPTION,),
@@ -250,7 +251,7 @@ def _examine(
 
     if words.values:
         return with_values(words.values), trouble
-    check = SetCheck(file, words.finder(file), settings, with_values, is_named=file in targets.named)
+    check = SetCheck(file, finder, settings, with_values, is_named=file in targets.named)
     configured = settings.arguments_of(file)
     if configured:
         return check.with_configured(configured), trouble

@@ -89,6 +89,7 @@ class SetCheck:
     examine: Callable[[Mapping[str, str], bool | None], Checked]
     is_named: bool
     _xacro: bool | None = field(default=None, init=False)
+    _is_expanded: bool = field(default=False, init=False)
 
     def with_configured(self, sets: Sequence[Mapping[str, str]]) -> Checked:
         """The check with the sets of a configuration, which stand for everything that callers give."""
@@ -142,7 +143,9 @@ class SetCheck:
         return default
 
     def _run(self, given: ArgumentSet) -> _Run:
-        checked = self.examine(given.values, self._xacro)
+        # What was expanded once is expanded with arguments, and nobody need look again whether it is xacro.
+        checked = self.examine(given.values, True if given.values and self._is_expanded else self._xacro)
+        self._is_expanded = checked.subject is not None and checked.subject.expansion is not None
         if given.values:  # a caller may give what other descriptions take
             found = tuple(diagnostic for diagnostic in checked.diagnostics if diagnostic.code != UNUSED)
             checked = replace(checked, diagnostics=found)

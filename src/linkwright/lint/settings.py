@@ -64,6 +64,8 @@ class Settings:
             code: of the finding.
             default: whether they are when nobody says anything about them.
         """
+        if self.select is None and not self.extend_select and not self.ignore:
+            return default  # as in most projects; it is asked for each rule of each check
         wanted = specificity(self.extend_select, code)
         if self.select is not None:
             wanted = max(wanted, specificity(self.select, code))

@@ -106,7 +106,15 @@ class Subject:
 
     def elements(self, tag: str | None = None) -> Iterator[Element]:
         """The elements directly in ``<robot>``, all or those of one tag, in document order."""
-        return self.root.elements(tag)
+        return self.root.elements() if tag is None else iter(self._by_tag.get(tag, ()))
+
+    @cached_property
+    def _by_tag(self) -> Mapping[str, list[Element]]:
+        """The elements directly in ``<robot>`` by their tags, for most rules ask for those of one tag."""
+        found: dict[str, list[Element]] = {}
+        for element in self.root.elements():
+            found.setdefault(element.tag, []).append(element)
+        return found
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:

@@ -92,11 +92,14 @@ class Element:
         while pending:
             element = pending.pop()
             yield element
-            pending.extend(reversed(list(element.elements())))
+            pending += [child for child in reversed(element.children) if isinstance(child, Element)]
 
     def first(self, tag: str) -> Element | None:
         """The first child element of a tag, or None."""
-        return next(self.elements(tag), None)
+        for child in self.children:
+            if isinstance(child, Element) and child.tag == tag:
+                return child
+        return None
 
     def text(self) -> str:
         """The character data directly inside, joined."""
