@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.lean_dataclasses import NamedTuple
 from linkwright.xacro.origin import Frame
 from linkwright.xmltree import Element, Text
-from linkwright.xmltree.nodes import LazyCopy, Node
+from linkwright.xmltree.nodes import LazyCopy
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
@@ -92,24 +92,27 @@ class OfFile:
         return known.setdefault(self._content(root), done).results
 
     def _content(self, root: Element) -> tuple[object, ...]:
-        """All that an expanded element is, in document order, with the number of the place that it comes from.
+        """All that an expanded element is, with the numbers of the places that its elements come from.
 
         What it was made of is known by its identity; the elements that are kept hold it.
         """
         found: list[object] = []
         numbers: dict[int, int] = {}
-        pending: list[tuple[Node, int | None]] = [(root, None)]
+        pending: list[tuple[Element, int | None]] = [(root, None)]
         while pending:
             node, number = pending.pop()
-            found += (node.offset, id(node.source))
-            if not isinstance(node, Element):
-                found += (type(node), node.data, node.cdata if isinstance(node, Text) else None)
-                continue
             own = self._number(node.origin, numbers) if number is None else number
             while isinstance(node, LazyCopy) and node.original is not None:
                 node, number = node.original, own  # what a copy would be made of, all of it in the place of the copy
-            found += (own, node.tag, len(node.attributes), *node.attributes.items(), len(node.children))
-            pending.extend([(child, number) for child in reversed(node.children)])
+            attributes, children = node.attributes, node.children
+            found += (own, node.tag, node.offset, id(node.source), len(attributes), *attributes.items(), len(children))
+            for child in children:
+                if isinstance(child, Element):
+                    found.append(None)  # an element is here, and what it is follows in its turn
+                    pending.append((child, number))
+                else:
+                    is_cdata = child.cdata if isinstance(child, Text) else None
+                    found += (type(child), child.data, is_cdata, child.offset, id(child.source))
         return tuple(found)
 
     def _number(self, origin: object, numbers: dict[int, int]) -> int:
