@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
 
 from linkwright.diagnostics import phrase, term
@@ -53,17 +52,12 @@ class Structure:
     @cached_property
     def places(self) -> list[Place]:
         """Every element that URDF has a place for, in document order; none where the root is no ``<robot>``."""
-        return list(self._walk())
+        return self._walked[0]
 
     @cached_property
     def unknown_elements(self) -> list[tuple[Place, Element]]:
         """The elements that URDF has no place for where they stand, but for those of other tools and namespaces."""
-        return [
-            (place, child)
-            for place in self.places
-            for child in place.element.elements()
-            if child.tag not in place.rule.child_rules and not _is_expected(place, child)
-        ]
+        return [(place, child) for place, child in self._walked[1] if not _is_expected(place, child)]
 
     @cached_property
     def unknown_attributes(self) -> list[tuple[Place, str]]:
@@ -75,20 +69,25 @@ class Structure:
             if name not in place.rule.attribute_rules and ":" not in name and name != "xmlns"
         ]
 
-    def _walk(self) -> Iterator[Place]:
-        if self._root.tag != schema.ROBOT.tag:
-            return
-        waiting = [Place(self._root, schema.ROBOT, None, None)]
+    @cached_property
+    def _walked(self) -> tuple[list[Place], list[tuple[Place, Element]]]:
+        """The elements that have a place, and those inside them that have none, both in document order."""
+        known: list[Place] = []
+        unknown: list[tuple[Place, Element]] = []
+        waiting = [Place(self._root, schema.ROBOT, None, None)] if self._root.tag == schema.ROBOT.tag else []
         while waiting:
             place = waiting.pop()
-            yield place
+            known.append(place)
             element, rules, _, owner = place
-            inner = [
-                Place(child, rule, element, owner or child)
-                for child in element.elements()
-                if (rule := rules.child_rules.get(child.tag)) is not None
-            ]
+            inner = []
+            for child in element.elements():
+                rule = rules.child_rules.get(child.tag)
+                if rule is None:
+                    unknown.append((place, child))
+                else:
+                    inner.append(Place(child, rule, element, owner or child))
             waiting.extend(reversed(inner))
+        return known, unknown
 
 
 def _is_expected(place: Place, child: Element) -> bool:

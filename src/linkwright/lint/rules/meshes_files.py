@@ -262,9 +262,10 @@ class OutsidePackage(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        if enclosing_package(subject.path.absolute().parent) is None:
+        files = subject.meshes.files
+        if not files or enclosing_package(subject.path.absolute().parent) is None:
             return
-        for use, path in subject.meshes.files:
+        for use, path in files:
             uri = use.mesh.filename
             if HOME.match(written(use.element, "filename")):
                 continue  # that is said already

@@ -10,6 +10,7 @@ import ast
 import warnings
 from collections.abc import Iterator, Sequence
 from enum import Enum
+from functools import cached_property
 from typing import Union
 
 from linkwright.diagnostics import SourceText, Span, phrase
@@ -75,34 +76,14 @@ class PythonFile:
     def __init__(self, source: SourceText) -> None:
         self.source = source
         self.tree = _parsed(source.text)
-        self._assigned: dict[str, ast.expr | None] = {}
+
+    @cached_property
+    def _assigned(self) -> dict[str, ast.expr | None]:
+        """Name -> what it is assigned; None where that happens more than once, or is no single expression."""
+        found: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
-            self._note_bindings(node)
-
-    def _note_bindings(self, node: ast.AST) -> None:
-        if isinstance(node, ast.Assign):
-            for target in node.targets:
-                self._bind(target, node.value)
-        elif isinstance(node, ast.AnnAssign) and node.value is not None:
-            self._bind(node.target, node.value)
-        elif isinstance(node, (ast.AugAssign, ast.NamedExpr, ast.For, ast.AsyncFor, ast.comprehension)):
-            self._bind(node.target, None)
-        elif isinstance(node, ast.withitem) and node.optional_vars is not None:
-            self._bind(node.optional_vars, None)
-        elif isinstance(node, ast.arg):
-            self._assigned[node.arg] = None
-        elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-            self._assigned[node.name] = None
-
-    def _bind(self, target: ast.expr, value: ast.expr | None) -> None:
-        if isinstance(target, ast.Name):
-            again = target.id in self._assigned
-            self._assigned[target.id] = None if again else value
-        elif isinstance(target, (ast.Tuple, ast.List)):
-            for part in target.elts:
-                self._bind(part, None)
-        elif isinstance(target, ast.Starred):
-            self._bind(target.value, None)
+            _note_bindings(node, found)
+        return found
 
     def assigned(self, name: str) -> ast.expr | None:
         """The expression that a name is assigned, when that happens exactly once in the file."""
@@ -231,6 +212,32 @@ class PythonFile:
         if last == "TextSubstitution":
             return self.value(argument_of(node, "text"), depth + 1)
         return UNKNOWN
+
+
+def _note_bindings(node: ast.AST, found: dict[str, ast.expr | None]) -> None:
+    if isinstance(node, ast.Assign):
+        for target in node.targets:
+            _bind(target, node.value, found)
+    elif isinstance(node, ast.AnnAssign) and node.value is not None:
+        _bind(node.target, node.value, found)
+    elif isinstance(node, (ast.AugAssign, ast.NamedExpr, ast.For, ast.AsyncFor, ast.comprehension)):
+        _bind(node.target, None, found)
+    elif isinstance(node, ast.withitem) and node.optional_vars is not None:
+        _bind(node.optional_vars, None, found)
+    elif isinstance(node, ast.arg):
+        found[node.arg] = None
+    elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+        found[node.name] = None
+
+
+def _bind(target: ast.expr, value: ast.expr | None, found: dict[str, ast.expr | None]) -> None:
+    if isinstance(target, ast.Name):
+        found[target.id] = None if target.id in found else value
+    elif isinstance(target, (ast.Tuple, ast.List)):
+        for part in target.elts:
+            _bind(part, None, found)
+    elif isinstance(target, ast.Starred):
+        _bind(target.value, None, found)
 
 
 def _parsed(text: str) -> ast.Module:
