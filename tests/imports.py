@@ -5,13 +5,18 @@ from __future__ import annotations
 import subprocess
 import sys
 
-_ALWAYS = "import importlib, typing"
-"""What every program of ours imports; with Python 3.10 these load more than with later ones."""
+_ALWAYS = "import importlib"
+"""What every program of ours imports; with Python 3.10 it loads more than with later ones."""
 
 
 def loaded_by(code: str) -> set[str]:
     """The modules that a process loads for some code, besides those of `_ALWAYS`."""
     return _modules(code) - _modules(_ALWAYS)
+
+
+def rooms_of(loaded: set[str]) -> set[str]:
+    """The rooms of ours that modules are from."""
+    return {name.split(".")[1] for name in loaded if name.startswith("linkwright.") and name.count(".") > 1}
 
 
 def _modules(code: str) -> set[str]:

@@ -16,9 +16,9 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from operator import attrgetter
-from typing import Any
 
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_typing import Any
 
 _OURS = "linkwright."
 _READ = (_OURS, "launch_ros.")

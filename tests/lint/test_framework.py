@@ -11,6 +11,7 @@ from linkwright.diagnostics import Severity
 from linkwright.lint import Settings, check, examine
 from linkwright.lint.registry import all_rules, find_rule, rules_of
 from linkwright.lint.rule import Scope
+from tests.imports import loaded_by, rooms_of
 from tests.lint.cases import FOLDER, load_cases
 
 ROBOTS = sorted((Path(__file__).parents[2] / "robots" / "my_robot_description" / "urdf").glob("*.*"))
@@ -32,6 +33,14 @@ def test_rules_about_packages_are_in_modules_of_their_own():
     }
     of_files = rules_of((Scope.DESCRIPTION,))
     assert of_files == tuple(rule for rule in all_rules() if rule.scope is Scope.DESCRIPTION)
+
+
+def test_the_room_imports_what_the_check_of_a_robot_uses_alone():
+    loaded = loaded_by("from linkwright.lint import check")
+    assert not {"argparse", "ast", "asyncio", "dataclasses", "inspect", "numpy", "tomllib", "typing", "yaml"} & loaded
+    below = {"descriptions", "diagnostics", "geometry", "packages", "schema", "urdf", "xmltree"}
+    assert rooms_of(loaded) == {"lint", *below}
+    assert not any(name.startswith("linkwright.lint.rules") for name in loaded)
 
 
 def test_a_rule_is_found_by_code_and_name():

@@ -10,6 +10,7 @@ from linkwright.diagnostics import Severity
 from linkwright.geometry.single import quaternion_of
 from linkwright.urdf import Box, Capsule, Limit, Mimic, Pose, read
 from linkwright.xmltree import Document, Element, parse
+from tests.imports import loaded_by, rooms_of
 from tests.urdf.robots import chain, robot_text
 
 BOX = '<geometry><box size="1 2 3"/></geometry>'
@@ -304,3 +305,11 @@ class TestRest:
             for n in range(1, count)
         )
         assert len(robot(links, joints).joints) == count - 1
+
+
+def test_the_room_imports_what_reading_a_robot_uses_alone():
+    loaded = loaded_by("from linkwright.urdf import read")
+    slow = {"contextlib", "dataclasses", "inspect", "pathlib", "typing", "warnings", "xml.parsers"}
+    assert not slow & loaded
+    assert rooms_of(loaded) == {"diagnostics", "geometry", "schema", "urdf", "xmltree"}
+    assert not {f"linkwright.urdf.{seldom}" for seldom in ("gv", "listing", "writer")} & loaded

@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
@@ -27,6 +26,7 @@ from linkwright.diagnostics.alike import alike_together
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 from linkwright.diagnostics.translation import localized
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from linkwright.descriptions.argument_sets import ArgumentSet, ArgumentSets

@@ -9,7 +9,6 @@ import gc
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Protocol, cast
 
 from linkwright._version import __version__
 from linkwright.cli.endings import FINE, USAGE, status_of
@@ -17,6 +16,7 @@ from linkwright.cli.language import LANGUAGE_HELP, said_in_help, take_language
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language
 from linkwright.interruption import end_at_once, raise_interrupts
+from linkwright.lean_typing import TYPE_CHECKING, Protocol, cast
 
 if TYPE_CHECKING:
     import argparse

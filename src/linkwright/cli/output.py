@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.whole_files import write_whole_file
 
 if TYPE_CHECKING:

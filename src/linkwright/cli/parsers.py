@@ -6,11 +6,11 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Iterator
-from typing import Any, NoReturn
 
 from linkwright.cli.language import said_in_help
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import language
+from linkwright.lean_typing import Any, NoReturn
 
 
 def make_parser(

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import Diagnostic, Severity, phrase, print_diagnostics
+from linkwright.lean_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import argparse

@@ -6,11 +6,11 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 from linkwright.descriptions.service import examine
 from linkwright.descriptions.worlds import examine_world, is_world
 from linkwright.diagnostics import Diagnostic
+from linkwright.lean_typing import TYPE_CHECKING, Any
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:

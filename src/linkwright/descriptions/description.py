@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Reading, Robot, read
 from linkwright.xmltree import Document, Element, Overlay
 

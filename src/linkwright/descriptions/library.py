@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright.descriptions.description import TEXT_NAME, Description
 from linkwright.diagnostics import LinkwrightError
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading, read
 from linkwright.urdf.plaintext import parse_as_urdfdom

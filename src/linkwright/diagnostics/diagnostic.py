@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import Enum
-from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics.phrase import Phrase, joined
 from linkwright.diagnostics.source import SourceText, Span
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from typing_extensions import Self

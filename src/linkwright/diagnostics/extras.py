@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 import sys
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError
 from linkwright.diagnostics.phrase import Phrase, phrase
+from linkwright.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.diagnostics.installation import Installation

@@ -17,9 +17,10 @@ from dataclasses import dataclass
 from importlib import import_module, metadata
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
+
+from linkwright.lean_typing import Any
 
 NAME = "linkwright"
 SOMEWHERE = "PATH_TO_LINKWRIGHT"

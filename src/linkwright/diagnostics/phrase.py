@@ -7,7 +7,8 @@ template up in that language's catalogue and fills that in with the same argumen
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Protocol
+
+from linkwright.lean_typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from typing_extensions import Self

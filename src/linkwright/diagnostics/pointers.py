@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from linkwright.diagnostics.phrase import phrase
+from linkwright.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics.phrase import Phrase, joined, phrase, quoted_names
 from linkwright.diagnostics.render import display_path
+from linkwright.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path

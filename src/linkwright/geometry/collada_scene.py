@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from typing import Any, Generic, Protocol, TypeVar
 from xml.etree import ElementTree as ET
 
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import Any, Generic, Protocol, TypeVar
 
 _Node = ET.Element
 _TRANSFORMS = ("matrix", "translate", "rotate", "scale")

@@ -11,10 +11,10 @@ import re
 import struct
 from collections.abc import Callable, Iterator
 from math import isfinite
-from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.diagnostics.pointers import is_pointer
+from linkwright.lean_typing import Any
 from linkwright.xmltree import Element, parse
 
 _WEB_PAGE = re.compile(rb"\s*<(?:!doctype\s+)?html", re.IGNORECASE)

@@ -8,7 +8,6 @@ import warnings
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from linkwright.geometry.outlines import STL_HEADER, STL_TRIANGLE
 from linkwright.geometry.stl import read_stl
 from linkwright.geometry.wavefront import read_obj
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_typing import Any
 from linkwright.xmltree import Comment, write_element
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.tinyxml import parse_as_tinyxml

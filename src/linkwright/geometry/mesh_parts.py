@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import lru_cache
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ from linkwright.diagnostics import missing_extra
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, placed_meshes, said_by_parser
 from linkwright.lean_dataclasses import dataclass, replace
+from linkwright.lean_typing import Any
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import stat
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -26,6 +25,7 @@ from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, beside, p
 from linkwright.geometry.outlines import COLLADA_PADDING
 from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
 from linkwright.geometry.vectors import Vector3
+from linkwright.lean_typing import Any
 
 LARGEST_FILE = 1 << 29
 """A mesh file of more bytes is not read."""

@@ -12,10 +12,10 @@ from functools import cached_property
 from itertools import chain, pairwise
 from math import isfinite
 from struct import iter_unpack
-from typing import Protocol
 
 from linkwright.geometry.bounds import FARTHEST, Bounds
 from linkwright.geometry.vectors import Vector3
+from linkwright.lean_typing import Protocol
 
 STEPS = 1 << 20
 """Corners nearer to each other than this part of the mesh's size are one."""

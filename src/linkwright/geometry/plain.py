@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import warnings
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.collada_scene import Unusual
 from linkwright.geometry.polyhedron import Faces
+from linkwright.lean_typing import Any
 
 
 class PlainMesh:

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from itertools import chain
 from math import copysign, hypot, isfinite, sqrt
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.bounds import Bounds
 from linkwright.geometry.placement import Matrix
 from linkwright.geometry.vectors import Vector3
+from linkwright.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.geometry.arrays import Array

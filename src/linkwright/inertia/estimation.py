@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase, term
 from linkwright.geometry.bounds import FARTHEST, bounds_of
 from linkwright.geometry.mass import MassProperties, combine
@@ -11,6 +9,7 @@ from linkwright.geometry.solids import shape_properties
 from linkwright.inertia.inertial import has_mass
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import Literal
 from linkwright.urdf import Collision, Link, Mesh, Visual
 
 ShapeKind = Literal["collision", "visual"]

@@ -6,11 +6,11 @@ import os
 import stat
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.bounds import FARTHEST
 from linkwright.geometry.outlines import Outline, SmallMesh, read_small
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Mesh
 from linkwright.xacro.kept import Kept

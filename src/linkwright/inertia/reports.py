@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict
-from typing import Any
 
 from linkwright.diagnostics import Phrase, counted, display_path, phrase, quoted_names
 from linkwright.diagnostics.render import shown_width
@@ -16,6 +15,7 @@ from linkwright.inertia.estimation import Estimate
 from linkwright.inertia.inertial import to_inertial
 from linkwright.inertia.verdict import Standing, Verdict, grouped, judge
 from linkwright.inertia.writing import Written
+from linkwright.lean_typing import Any
 from linkwright.urdf import Robot
 from linkwright.urdf.bodies import Bodies
 

@@ -11,7 +11,6 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 from linkwright.diagnostics import (
     Diagnostic,
@@ -26,6 +25,7 @@ from linkwright.diagnostics import (
     phrase,
     quoted,
 )
+from linkwright.lean_typing import Any
 from linkwright.lint.option import Option, OptionValue
 from linkwright.lint.registry import find_rule
 from linkwright.lint.rule import Rule

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright.descriptions import Description, Packages, examine_world, is_world
 from linkwright.descriptions import examine as examine_description
@@ -12,6 +11,7 @@ from linkwright.descriptions.description import TRUE_OF_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.finding import Finding
 from linkwright.lint.missing_files import judged_files
 from linkwright.lint.missing_packages import judged

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, SourceText, Span, phrase
+from linkwright.lean_typing import Any
 from linkwright.lint.fix import Fix
 from linkwright.xmltree import Element
 

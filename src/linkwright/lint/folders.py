@@ -9,11 +9,11 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
 
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_typing import TYPE_CHECKING, TypeAlias
 from linkwright.lint.finding import without_element
 from linkwright.packages import enclosing_package
 

@@ -6,7 +6,8 @@ import re
 from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+from linkwright.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext

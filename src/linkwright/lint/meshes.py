@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Collision, Link, Mesh, Visual
 from linkwright.xmltree import Element
 

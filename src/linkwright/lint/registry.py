@@ -11,10 +11,10 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
 from linkwright.extensions import EntryPoint, extensions
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rule import Rule, Scope
 
 if TYPE_CHECKING:

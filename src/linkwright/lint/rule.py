@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import Enum
-from typing import ClassVar, TypeVar
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, SourceText, Span
+from linkwright.lean_typing import ClassVar, TypeVar
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Fix
 from linkwright.lint.option import Option

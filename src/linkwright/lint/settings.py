@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Protocol
 
 from linkwright.diagnostics import Severity
 from linkwright.lean_dataclasses import dataclass, field, replace
+from linkwright.lean_typing import Protocol
 from linkwright.lint.option import OptionValue
 from linkwright.lint.selectors import specificity
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.descriptions import Description
 from linkwright.diagnostics import LinkwrightError
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.settings import Settings
 from linkwright.urdf import Inertial, Joint, Link, Robot
 from linkwright.xmltree import Document, Element

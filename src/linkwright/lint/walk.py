@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Joint
 from linkwright.urdf.values import number, numbers
 from linkwright.xmltree import Element

@@ -10,10 +10,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_typing import TYPE_CHECKING, TypeVar
 from linkwright.lint.xacro_names import Mentions, identifiers, mentions
 from linkwright.xacro.expressions.symbols import MATHEMATICS
 from linkwright.xacro.faults import Fault

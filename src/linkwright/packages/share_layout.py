@@ -14,8 +14,8 @@ import os
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.packages.cache import SHARES
 from linkwright.packages.substituted import substituted_files
 

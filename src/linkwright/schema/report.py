@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Final, Protocol
 
+from linkwright.lean_typing import Any, Final, Protocol
 from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.xmltree import Element
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_typing import Any
 
 Version = tuple[int, int]
 """Major and minor version of a language."""

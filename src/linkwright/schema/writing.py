@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
 
+from linkwright.lean_typing import Any
 from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.xmltree import Element, Text
 

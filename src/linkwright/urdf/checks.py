@@ -6,12 +6,12 @@ Each function gets a value that was read and says what is wrong with it beyond i
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Quaternion, rpy_from_quaternion
 from linkwright.geometry.vectors import Vector3
 from linkwright.lean_dataclasses import replace
+from linkwright.lean_typing import Any
 from linkwright.schema.report import UNREADABLE
 from linkwright.urdf.findings import Findings
 from linkwright.urdf.model import Dynamics, Geometry, Limit

@@ -11,10 +11,10 @@ the colour written in the visual itself. A definition in a later link does not h
 from __future__ import annotations
 
 from itertools import takewhile
-from typing import Any
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, did_you_mean, joined, phrase
 from linkwright.lean_dataclasses import replace
+from linkwright.lean_typing import Any
 from linkwright.schema.reading import reader_of
 from linkwright.schema.report import UNREADABLE
 from linkwright.schema.rules import ElementRule, Version

@@ -8,12 +8,12 @@ Source of meaning: REP-independent, the ROS ``urdf`` package's XML specification
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal
 
 from linkwright.geometry.shapes import SimpleShape
 from linkwright.geometry.single import IDENTITY_POSE, Pose
 from linkwright.geometry.vectors import Vector3
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_typing import Literal
 from linkwright.xmltree import Element
 
 JointType = Literal["revolute", "continuous", "prismatic", "fixed", "floating", "planar"]

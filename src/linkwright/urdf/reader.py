@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable
-from typing import TypeVar
 
 from linkwright.diagnostics import Diagnostic, did_you_mean, joined, phrase
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import TypeVar
 from linkwright.schema.rules import Version
 from linkwright.urdf.elements import MaterialTable, read_joint, read_link
 from linkwright.urdf.model import Joint, Link, Robot

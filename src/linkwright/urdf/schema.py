@@ -7,11 +7,11 @@ table cannot say are in `linkwright.urdf.checks`. Source: urdfdom 3.0.1 for URDF
 from __future__ import annotations
 
 from math import inf
-from typing import Any
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import IDENTITY_POSE
 from linkwright.lean_dataclasses import replace
+from linkwright.lean_typing import Any
 from linkwright.schema.rules import AttributeRule, ElementRule, Version
 from linkwright.urdf.checks import check_dynamics, check_end, check_limit, check_origin, check_sizes, pose_of
 from linkwright.urdf.model import (

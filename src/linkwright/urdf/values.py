@@ -11,11 +11,11 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 from math import isfinite, isinf, radians
-from typing import get_args
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.single import Quaternion
 from linkwright.geometry.vectors import Vector3
+from linkwright.lean_typing import get_args
 from linkwright.schema import ValueType, Version
 from linkwright.urdf.model import JointType
 

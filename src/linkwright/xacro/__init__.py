@@ -1,8 +1,7 @@
 """The macro language xacro, as ros/xacro 2.1 understands it, with positions and without its holes."""
 
-from typing import TYPE_CHECKING
-
 from linkwright.deferred import deferred
+from linkwright.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.xacro.engine import expand

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.expansion import Expansion
 from linkwright.xacro.inputs import Inputs, main_document

@@ -8,9 +8,10 @@ brought it there.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import NamedTuple, NoReturn
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Span, phrase
+from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_typing import NoReturn
 from linkwright.xacro.comments import CommentSweeper
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault

@@ -7,9 +7,9 @@ starts with offsets, is placed by whoever evaluates an element's text, and grows
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 from linkwright.diagnostics import Note, Phrase, SourceText, Span, phrase, term
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.xmltree import Element, Text
 
 # Not compiled here: few files need them.

@@ -6,9 +6,9 @@ The modules that answer them are imported on demand.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.xacro.engine import expand
 from linkwright.xacro.inputs import Inputs
 from linkwright.xacro.limits import Limits

@@ -8,9 +8,9 @@ from __future__ import annotations
 import sys
 from _thread import allocate_lock  # what threading.Lock is, without the rest of it
 from time import thread_time
-from typing import NamedTuple
 
 from linkwright.diagnostics import phrase
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree.collection import seldom_collected
 

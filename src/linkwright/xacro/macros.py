@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import NamedTuple
 
 from linkwright.diagnostics import phrase
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Element
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import groupby
-from typing import NamedTuple
 
 from linkwright.diagnostics import Note, Span, phrase
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.xmltree import Element
 
 _SHOWN = 10

@@ -11,8 +11,7 @@ element for it.
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
-
+from linkwright.lean_typing import Any, TypeAlias
 from linkwright.xacro.limits import LONG
 from linkwright.xmltree import Comment, Document, Element, Node, Text
 from linkwright.xmltree.nodes import KeptText

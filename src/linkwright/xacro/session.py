@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.diagnostics import (
     Diagnostic,
@@ -17,6 +16,7 @@ from linkwright.diagnostics import (
     foreign,
     phrase,
 )
+from linkwright.lean_typing import TYPE_CHECKING, Any, Protocol
 from linkwright.xacro import sources
 from linkwright.xacro.expressions import sandbox, symbols
 from linkwright.xacro.expressions.bounded import keys

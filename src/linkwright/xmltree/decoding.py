@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import codecs
 import re
-from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, phrase
 from linkwright.diagnostics.pointers import FETCH, IS_POINTER, is_pointer
+from linkwright.lean_dataclasses import NamedTuple
 
 UTF_8 = "utf-8"
 _LONGEST_BEGINNING = 100

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from _thread import allocate_lock  # what threading.Lock is, without the rest of it
 from collections.abc import Iterator
-from typing import Any, SupportsIndex
 
 from linkwright.diagnostics import SourceText, Span
+from linkwright.lean_typing import Any, SupportsIndex
 from linkwright.xmltree.decoding import UTF_8
 
 

@@ -7,7 +7,6 @@ import re
 from bisect import bisect_right
 from collections.abc import Callable
 from pyexpat import ExpatError, ParserCreate  # what xml.parsers.expat is, without the packages around it
-from typing import TYPE_CHECKING, NoReturn
 
 from linkwright.diagnostics import (
     Diagnostic,
@@ -20,6 +19,7 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.input_files import LARGEST_TEXT, NoWriterError, read_file
+from linkwright.lean_typing import TYPE_CHECKING, NoReturn
 from linkwright.xmltree.decoding import decoded, unsaved
 from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text

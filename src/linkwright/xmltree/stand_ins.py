@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, Text
 
 _PRIVATE = 0xE000

@@ -9,11 +9,11 @@ after the first. Such files work for their users, so they are read, with a warni
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 from xml.parsers.expat import ExpatError, ParserCreate
 from xml.parsers.expat.errors import XML_ERROR_TAG_MISMATCH, codes
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, SourceText, Span, phrase
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.xmltree.nodes import Document
 from linkwright.xmltree.reader import parse
 from linkwright.xmltree.stand_ins import REPAIRS, can_stand_in, put_back, stand_in, tags_alone

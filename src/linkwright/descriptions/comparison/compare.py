@@ -6,7 +6,6 @@ import filecmp
 import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal, TypeVar
 
 from linkwright.descriptions.comparison.facts import (
     Block,
@@ -21,6 +20,7 @@ from linkwright.descriptions.comparison.facts import (
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.diagnostics import LinkwrightError, Span
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_typing import Literal, TypeVar
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
 from linkwright.xacro.origin import Frame, frames
 from linkwright.xmltree import Element

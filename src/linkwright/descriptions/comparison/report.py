@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from linkwright.descriptions.comparison.compare import Comparison, Difference, Place
 from linkwright.diagnostics import Phrase, Span, counted, phrase, term
 from linkwright.diagnostics.translation import localized
+from linkwright.lean_typing import Any
 
 Label = Callable[[str], str]
 """What readers know a file by."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import yaml
 
 from linkwright.descriptions.editing.places import Candidate, Place, literal, words
 from linkwright.diagnostics import LinkwrightError, SourceText
+from linkwright.lean_typing import Any
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import parse_parameters
 from linkwright.xacro.origin import Frame, frames

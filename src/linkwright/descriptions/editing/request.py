@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
 
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import Literal
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright.descriptions.description import Description
 from linkwright.descriptions.editing.definitions import Definitions
 from linkwright.descriptions.editing.places import Place
 from linkwright.diagnostics import LinkwrightError
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.urdf import read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element, Overlay

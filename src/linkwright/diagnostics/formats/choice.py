@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from importlib import import_module
-from typing import cast
 
 from linkwright.diagnostics.diagnostic import Diagnostic
 from linkwright.diagnostics.translation import translated
+from linkwright.lean_typing import cast
 
 FORMATS = ("text", "concise", "json", "sarif", "github")
 """``text`` for people, ``concise`` a line each, ``json`` and ``sarif`` for programs, ``github`` for its workflows."""

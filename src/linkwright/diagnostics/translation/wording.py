@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from functools import cache
-from typing import TYPE_CHECKING
+
+from linkwright.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from gettext import NullTranslations

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import prod
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.geometry.shapes import volume_of
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.explanations import is_explained
 from linkwright.lint.extents import MARKER, WEIGHTLESS
 from linkwright.lint.option import Option

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
 from linkwright.extensions import extensions
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.dependencies import brings, is_always_installed, would_make_a_circle
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from linkwright.descriptions import examine
 from linkwright.diagnostics import (
@@ -22,6 +21,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.launch_files import LaunchRule

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from math import isclose
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import Fix, add_attribute, replace_value
 from linkwright.lint.meshes import MeshUse
 from linkwright.lint.option import Option

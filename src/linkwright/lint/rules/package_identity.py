@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from keyword import iskeyword
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rules.package_manifest import ManifestRule, PackageRule
 from linkwright.packages.naming import check_package_name, departure_from_rep, is_accepted_name, is_email
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.made_files import is_ignored_by_git, is_made_by_cmake, submodule_of
 from linkwright.lint.rules.package_manifest import PackageRule
 

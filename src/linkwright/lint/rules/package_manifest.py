@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.subject import Subject

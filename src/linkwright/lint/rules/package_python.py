@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rules.package_install import checkout_hint, near_file
 from linkwright.lint.rules.package_manifest import PackageRule
 

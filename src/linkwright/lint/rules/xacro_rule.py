@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 

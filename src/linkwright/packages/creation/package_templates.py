@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from html import escape
-from typing import TYPE_CHECKING
+
+from linkwright.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linkwright.packages.creation.request import PackageRequest

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
 
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import Literal
 
 BuildType = Literal["cmake", "ament_cmake", "ament_python"]
 BUILD_TYPES: tuple[BuildType, ...] = ("cmake", "ament_cmake", "ament_python")

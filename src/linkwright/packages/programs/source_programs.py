@@ -14,10 +14,10 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from linkwright.diagnostics import SourceText
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_typing import Any
 from linkwright.packages.readers.entry_points import (
     LINE,
     PROGRAMS,

@@ -7,9 +7,9 @@ import re
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_typing import Any
 
 PROGRAMS = "console_scripts"
 """The group of the programs that a package installs."""

@@ -10,11 +10,10 @@ import ast
 import warnings
 from collections.abc import Iterator, Sequence
 from enum import Enum
-from functools import cached_property
-from typing import Union
 
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_typing import Union
 
 
 class Nothing(Enum):

@@ -13,7 +13,8 @@ from fnmatch import fnmatchcase
 from glob import glob
 from itertools import chain
 from pathlib import Path, PurePosixPath
-from typing import Any
+
+from linkwright.lean_typing import Any
 
 _MOST_ITEMS = 20_000
 _LONGEST_TEXT = 4096

@@ -10,8 +10,8 @@ import ast
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
-from typing import Any
 
+from linkwright.lean_typing import Any
 from linkwright.packages.readers.installed_file import InstalledFile
 from linkwright.packages.readers.setup_library import (
     ATTRIBUTES,

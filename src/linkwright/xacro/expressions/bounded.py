@@ -12,9 +12,9 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable
-from typing import Any
 
 from linkwright.diagnostics import phrase
+from linkwright.lean_typing import Any
 from linkwright.xacro.expressions.refusal import RefusalError
 
 _MOST_ALIKE = 1_000

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Generic, TypeVar
 
+from linkwright.lean_typing import Generic, TypeVar
 from linkwright.xacro.kept import Kept
 
 _Form = TypeVar("_Form")

@@ -11,9 +11,9 @@ import _ast as ast  # the nodes alone: what ast adds takes long to import
 import operator
 import re
 from collections.abc import Callable, Iterator
-from typing import Any
 
 from linkwright.diagnostics import Phrase, foreign, phrase
+from linkwright.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import keys
 from linkwright.xacro.expressions.function_calls import call, charged, cost

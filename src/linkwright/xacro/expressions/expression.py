@@ -9,9 +9,9 @@ from __future__ import annotations
 import _ast as ast  # the nodes alone: what ast adds takes long to import
 import re
 from types import GeneratorType
-from typing import Any
 
 from linkwright.diagnostics import foreign, phrase
+from linkwright.lean_typing import Any
 from linkwright.xacro.expressions.compile_cache import TextCompiler
 from linkwright.xacro.expressions.compiler import FAILURES, Closure, Compiler, failure
 from linkwright.xacro.expressions.scope import Scope

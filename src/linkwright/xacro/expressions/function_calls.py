@@ -6,8 +6,7 @@ not for nothing, and an expression may call them as often as it likes.
 
 from __future__ import annotations
 
-from typing import Any
-
+from linkwright.lean_typing import Any
 from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import HASHING, check_codec, keys
 from linkwright.xacro.expressions.functions import Function

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import _ast as ast  # the nodes alone: what ast adds takes long to import
 from collections.abc import Callable
-from typing import Any, NamedTuple
 
 from linkwright.diagnostics import phrase
+from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_typing import Any
 from linkwright.xacro.expressions.scope import Environment, Local
 
 _Closure = Callable[[Any], Any]

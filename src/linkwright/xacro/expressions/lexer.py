@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 from enum import Enum
-from typing import NamedTuple
 
 from linkwright.diagnostics import phrase
+from linkwright.lean_dataclasses import NamedTuple
 from linkwright.xacro.faults import Fault
 
 

@@ -7,7 +7,8 @@ are strings.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
+
+from linkwright.lean_typing import Any
 
 _NEVER_A_LITERAL = frozenset('ABCDEGHJKLMOPQRSUVWXYZabcdeghjklmopqrsuvwxyz$/<>(["')
 """What no number and no boolean begins with."""

@@ -10,9 +10,9 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Callable
-from typing import Any
 
 from linkwright.diagnostics import phrase
+from linkwright.lean_typing import Any
 from linkwright.xacro.expressions import bounded
 from linkwright.xacro.expressions.refusal import RefusalError
 from linkwright.xacro.expressions.scope import Namespace

@@ -10,9 +10,9 @@ import builtins
 import math
 import re
 from collections.abc import Callable
-from typing import Any, Protocol
 
 from linkwright.diagnostics import Severity, foreign, phrase
+from linkwright.lean_typing import Any, Protocol
 from linkwright.xacro.expressions import bounded, sandbox
 from linkwright.xacro.expressions.refusal import RefusalError
 from linkwright.xacro.expressions.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Any
 
 from linkwright.diagnostics import phrase
+from linkwright.lean_typing import Any
 from linkwright.xacro.kept import Kept
 
 UNITS = {

@@ -7,9 +7,10 @@ are no scalars, dates, tags) is left to it.
 from __future__ import annotations
 
 import sys
-from typing import Any
 
 import yaml
+
+from linkwright.lean_typing import Any
 
 _PREFIX = "tag:yaml.org,2002:"
 _MOST_REMEMBERED = 10_000

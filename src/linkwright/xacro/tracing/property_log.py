@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.lean_typing import Any
 from linkwright.xacro.expander import Expander, Site
 from linkwright.xacro.expressions.scope import Lazy, Scope
 from linkwright.xacro.inputs import Inputs

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, Span
+from linkwright.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.literals import literal
 from linkwright.xacro.expressions.scope import Lazy, Scope

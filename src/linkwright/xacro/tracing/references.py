@@ -5,9 +5,10 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 from linkwright.diagnostics import Span
+from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_typing import Any
 from linkwright.xacro.expressions.lexer import TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree.positions import attribute_value_range

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator
-from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, SourceText, Span
+from linkwright.lean_typing import Any
 from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, launch_argument
 from linkwright.packages.readers.xacro_calls.command_line import xacro_command
 from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Open, Share, Text, literal

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations, islice
-from typing import Union
 
 from linkwright.lean_dataclasses import dataclass, field, replace
+from linkwright.lean_typing import Union
 
 _DEEPEST = 12
 _MOST_PATHS = 64
