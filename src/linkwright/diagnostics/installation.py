@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import shlex
 import shutil
 import sys
@@ -20,6 +19,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Any
 
 NAME = "linkwright"
@@ -89,8 +89,8 @@ class Installation:
 
 PIPX = ("pipx", "install", "--force")
 UV_TOOL = ("uv", "tool", "install")
-_EXTRAS = re.compile(r"\[([^\]]*)\]")
-_PLAIN = re.compile(r"[\w@%+=:,./\\-]+")
+_EXTRAS = lazy_pattern(r"\[([^\]]*)\]")
+_PLAIN = lazy_pattern(r"[\w@%+=:,./\\-]+")
 _CACHE_OF_UV = ("archive-v", "environments-v")
 
 

@@ -7,18 +7,18 @@ What stands in the tree is read here, and numbers by arrays (`collada`) or, for 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator
 from xml.etree import ElementTree as ET
 
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Any, Generic, Protocol, TypeVar
 
 _Node = ET.Element
 _TRANSFORMS = ("matrix", "translate", "rotate", "scale")
 _NO_FACES = ("source", "vertices", "lines", "extra")
 _WITHOUT_TRIANGLES = ("instance_camera", "instance_light", "instance_controller", "extra", "asset")
-_DECLARATION = re.compile(rb"<!(?!--)")
+_DECLARATION = lazy_pattern(rb"<!(?!--)")
 """The beginning of a document type, which may hold entities, and of quoted text."""
 _MOST_PLACES = 20_000
 """Nodes at their places, of which a few can make any number by naming each other."""

@@ -14,10 +14,11 @@ from math import isfinite
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.diagnostics.pointers import is_pointer
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Any
 from linkwright.xmltree import Element, parse
 
-_WEB_PAGE = re.compile(rb"\s*<(?:!doctype\s+)?html", re.IGNORECASE)
+_WEB_PAGE = lazy_pattern(rb"\s*<(?:!doctype\s+)?html", re.IGNORECASE)
 
 _HEADER, _TRIANGLE = 84, 50  # bytes of a binary STL
 _GLB_HEADER, _CHUNK_HEADER = 12, 8

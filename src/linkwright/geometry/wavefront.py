@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 
 from linkwright.geometry.collada_scene import Unusual
 from linkwright.geometry.plain import PlainMesh, fans, numbers
 from linkwright.geometry.polyhedron import Faces
+from linkwright.lean_patterns import lazy_pattern
 
-_OF_TEXTURES = re.compile(rb"/\S*")
+_OF_TEXTURES = lazy_pattern(rb"/\S*")
 """What stands behind the number of a vertex: those of its texture and its normal."""
 
 

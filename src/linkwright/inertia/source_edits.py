@@ -9,17 +9,18 @@ from math import isclose
 from linkwright.diagnostics import SourceText, phrase
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import Attributes, inertial_block, inertial_parts, start_tag
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.urdf import Link
 from linkwright.xacro.origin import Frame, frames
 from linkwright.xmltree import Element, parse
 from linkwright.xmltree.patches import Replacement, indentation, newline_of
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
 
-_START_TAG = re.compile(r"""<(?:[^"'>]|"[^"]*"|'[^']*')*>""")
-_REST_OF_LINE = re.compile(r"(?:[ \t]*<!--(?:(?!-->).)*-->)*(?=[ \t]*\r?\n)")
+_START_TAG = lazy_pattern(r"""<(?:[^"'>]|"[^"]*"|'[^']*')*>""")
+_REST_OF_LINE = lazy_pattern(r"(?:[ \t]*<!--(?:(?!-->).)*-->)*(?=[ \t]*\r?\n)")
 """Comments behind a start tag, which belong to it."""
 
-_EXPRESSION = re.compile(r"\$[{(](?!find\b)")
+_EXPRESSION = lazy_pattern(r"\$[{(](?!find\b)")
 """An expression whose value may change; a package's folder does not change the shape of a mesh."""
 
 

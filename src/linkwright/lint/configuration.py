@@ -25,6 +25,7 @@ from linkwright.diagnostics import (
     phrase,
     quoted,
 )
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Any
 from linkwright.lint.option import Option, OptionValue
 from linkwright.lint.registry import find_rule
@@ -39,8 +40,8 @@ _PROJECT = "pyproject.toml"
 _PROJECT_TABLE = ("tool", "linkwright")
 KEYS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options", "arguments")
 
-_HEADER = re.compile(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
-_PLACE = re.compile(r"\(at line (\d+), column (\d+)\)")
+_HEADER = lazy_pattern(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
+_PLACE = lazy_pattern(r"\(at line (\d+), column (\d+)\)")
 _KINDS = {
     bool: phrase("true or false"),
     int: phrase("a whole number"),

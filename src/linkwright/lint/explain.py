@@ -11,12 +11,13 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, joined, nearest, phrase, term, title_of_page
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.option import OptionValue
 from linkwright.lint.registry import all_rules, find_rule
 from linkwright.lint.rule import Rule
 
 PAGES = Path(__file__).parent / "pages"
-_SECTION = re.compile(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3}: |\Z)", re.MULTILINE | re.DOTALL)
+_SECTION = lazy_pattern(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3}: |\Z)", re.MULTILINE | re.DOTALL)
 
 _HEADINGS: dict[str, str] = {each: each for each in (phrase("## Why"), phrase("## Example"), phrase("## Use instead"))}
 """The lines of a rule's docstring that are the same in all; the text between them is in English only."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 
-_COMMENT = re.compile(r"<!--(.*?)-->", re.DOTALL)
-_ABOVE = re.compile(r"<!--((?:(?!-->).)*)-->[ \t]*\r?\n[ \t]*\Z", re.DOTALL)
-_CODE = re.compile(r"[<=]|linkwright:")
-_WORD = re.compile(r"[^\W\d_]{3,}")
+_COMMENT = lazy_pattern(r"<!--(.*?)-->", re.DOTALL)
+_ABOVE = lazy_pattern(r"<!--((?:(?!-->).)*)-->[ \t]*\r?\n[ \t]*\Z", re.DOTALL)
+_CODE = lazy_pattern(r"[<=]|linkwright:")
+_WORD = lazy_pattern(r"[^\W\d_]{3,}")
 _HEADINGS = frozenset(
     {
         *(

@@ -7,6 +7,7 @@ from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
 
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -20,9 +21,9 @@ _MAPS = frozenset({"map", "maps"})
 _TELLING = (".py", ".sh", ".bash", ".md", ".rst", ".txt", ".cpp", ".cc", ".hpp", ".h", ".in")
 _BUILD_FILES = frozenset({"setup.py", "CMakeLists.txt"})
 _LONGEST = 200_000
-_COMMENT = re.compile(r"#.*")
-_INSTALLS = re.compile(r"\binstall\s*\([^)]*\)", re.IGNORECASE)
-_MAKES = re.compile(
+_COMMENT = lazy_pattern(r"#.*")
+_INSTALLS = lazy_pattern(r"\binstall\s*\([^)]*\)", re.IGNORECASE)
+_MAKES = lazy_pattern(
     r"\bfile\s*\(\s*(?:DOWNLOAD|MAKE_DIRECTORY|WRITE|COPY|GENERATE|ARCHIVE_EXTRACT)\b"
     r"|\b(?:execute_process|configure_file|add_custom_command|add_custom_target|ExternalProject_\w+|FetchContent_\w+)\s*\(",
     re.IGNORECASE,

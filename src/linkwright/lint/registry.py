@@ -6,7 +6,6 @@ Those of other packages come the same way as ours; their codes have a prefix of 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from importlib import import_module
@@ -14,6 +13,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
 from linkwright.extensions import EntryPoint, extensions
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rule import Rule, Scope
 
@@ -26,8 +26,8 @@ GROUP = "linkwright.lint_rules"
 _OURS = "LW"
 _OF_PACKAGES = ("launch_", "package_")
 """How the names begin of our modules with rules about packages, and no others: a check of a file needs none of them."""
-_CODE = re.compile("[A-Z]{2,10}[0-9]{3}").fullmatch
-_NAME = re.compile("[a-z0-9]+(-[a-z0-9]+)*").fullmatch
+_CODE = lazy_pattern("[A-Z]{2,10}[0-9]{3}")
+_NAME = lazy_pattern("[a-z0-9]+(-[a-z0-9]+)*")
 
 
 def all_rules() -> tuple[Rule, ...]:
@@ -54,7 +54,7 @@ def find_rule(code_or_name: str) -> Rule | None:
     """The rule of a code or name, in any case; None where there is none."""
     key = code_or_name.strip().casefold()
     rule = _index(whole=False).get(key)
-    if rule is None and (key.startswith(_OURS.casefold()) or not _CODE(key.upper())):
+    if rule is None and (key.startswith(_OURS.casefold()) or not _CODE.fullmatch(key.upper())):
         return _index(whole=True).get(key)
     return rule
 
@@ -105,7 +105,7 @@ def _load(entry: EntryPoint, taken: set[str], *, is_ours: bool, whole: bool) -> 
     """
     found = [_one(rule) for module in _modules(entry.load(), is_ours, whole) for rule in _classes(module)]
     for rule in found:
-        if not _CODE(rule.code) or not _NAME(rule.name) or rule.code.startswith(_OURS) != is_ours:
+        if not _CODE.fullmatch(rule.code) or not _NAME.fullmatch(rule.name) or rule.code.startswith(_OURS) != is_ours:
             raise ValueError(f"malformed code or name: {rule.code}, {rule.name}")
         if rule.code in taken or rule.name in taken:
             raise ValueError(f"'{rule.code}' or '{rule.name}' is taken")

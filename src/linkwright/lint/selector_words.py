@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import re
-
 from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.registry import all_rules, find_rule
 from linkwright.lint.selectors import ALL
 
-_CODE = re.compile("[A-Z]+[0-9]{0,3}").fullmatch
+_CODE = lazy_pattern("[A-Z]+[0-9]{0,3}")
 
 
 def is_selector(word: str) -> bool:
     """Whether a word can select findings."""
     if word == ALL or find_rule(word) is not None:
         return True
-    if not _CODE(word):
+    if not _CODE.fullmatch(word):
         return False
     from linkwright.lint.explain import room_pages  # not above: most checks have no selectors
 

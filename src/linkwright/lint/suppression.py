@@ -13,6 +13,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, phrase
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.registry import find_rule
@@ -29,10 +30,10 @@ UNUSED = "LW001"
 UNKNOWN = "LW002"
 
 _VERB = r"linkwright:[ \t]*(?P<verb>ignore(?:-file)?)(?![\w-])"
-_IN_XML = re.compile(rf"<!--\s*{_VERB}(?P<selectors>[^(]*?)(?:\((?:(?!-->).)*\)\s*)?-->", re.DOTALL)
-_IN_TEXT = re.compile(rf"#[ \t]*{_VERB}(?P<selectors>[^(\n]*?)(?:\(.*)?$", re.MULTILINE)
-_NEXT = re.compile(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[.*?\]\]>|<(?P<tag>[^\s/>!?]+)|</", re.DOTALL)
-_SELECTOR = re.compile(r"[^\s,]+")
+_IN_XML = lazy_pattern(rf"<!--\s*{_VERB}(?P<selectors>[^(]*?)(?:\((?:(?!-->).)*\)\s*)?-->", re.DOTALL)
+_IN_TEXT = lazy_pattern(rf"#[ \t]*{_VERB}(?P<selectors>[^(\n]*?)(?:\(.*)?$", re.MULTILINE)
+_NEXT = lazy_pattern(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[.*?\]\]>|<(?P<tag>[^\s/>!?]+)|</", re.DOTALL)
+_SELECTOR = lazy_pattern(r"[^\s,]+")
 
 
 @dataclass(slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Joint
 from linkwright.urdf.values import number, numbers
@@ -29,7 +30,7 @@ def parts(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]
             yield joint, element, part
 
 
-_SIMULATORS = re.compile(r"gz|gazebo|ign|mujoco|webots|isaac|unity|drake|bullet", re.IGNORECASE)
+_SIMULATORS = lazy_pattern(r"gz|gazebo|ign|mujoco|webots|isaac|unity|drake|bullet", re.IGNORECASE)
 
 
 def is_for_simulation(subject: Subject) -> bool:

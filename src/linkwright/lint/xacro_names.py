@@ -7,16 +7,16 @@ other values is *open*: nobody can tell before evaluating it what it mentions.
 from __future__ import annotations
 
 import ast
-import re
 import warnings
 from collections.abc import Iterator
 from functools import lru_cache
 
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.xacro.expressions.lexer import Token, TokenKind, tokenize
 from linkwright.xacro.faults import Fault
 
-_IDENTIFIER = re.compile(r"[^\W\d]\w*")
+_IDENTIFIER = lazy_pattern(r"[^\W\d]\w*")
 _PASTED = "pasted_here__"
 DEPRECATED = {
     "load_yaml": "xacro.load_yaml",

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from linkwright.lean_patterns import lazy_pattern
+
 MANIFEST = "package.xml"
 
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
-_NAME = re.compile(r"<package\b[^>]*>.*?<name>\s*([^<\s]+)\s*</name>", re.DOTALL)
+_COMMENT = lazy_pattern(r"<!--.*?-->", re.DOTALL)
+_NAME = lazy_pattern(r"<package\b[^>]*>.*?<name>\s*([^<\s]+)\s*</name>", re.DOTALL)
 
 
 def package_name(folder: Path) -> str | None:

@@ -10,13 +10,14 @@ import keyword
 import re
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase, quoted, term
+from linkwright.lean_patterns import lazy_pattern
 
-_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_IDENTIFIER = lazy_pattern(r"[A-Za-z][A-Za-z0-9_]*")
 # A name as catkin_pkg accepts it, for the sake of old packages.
-_ACCEPTED = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*")
-_DEPENDENCY = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
+_ACCEPTED = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_-]*")
+_DEPENDENCY = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
 # An address as catkin_pkg, which colcon asks, accepts it: ASCII, with a top-level domain of two or more letters.
-_EMAIL = re.compile(r"[\w%+-]+(\.[\w%+-]+)*@[\w%-]+(\.[\w%-]+)*\.[A-Za-z]{2,}", re.ASCII)
+_EMAIL = lazy_pattern(r"[\w%+-]+(\.[\w%+-]+)*@[\w%-]+(\.[\w%-]+)*\.[A-Za-z]{2,}", re.ASCII)
 
 
 def check_package_name(name: str) -> list[Diagnostic]:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.packages.errors import bad_uri
 
-_DRIVE = re.compile(r"/?([A-Za-z]:[\\/])")
-_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):")
+_DRIVE = lazy_pattern(r"/?([A-Za-z]:[\\/])")
+_SCHEME = lazy_pattern(r"([A-Za-z][A-Za-z0-9+.-]+):")
 
 
 def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None) -> Path:

@@ -9,16 +9,17 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.xmltree import Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.positions import attribute_value_range
 from linkwright.xmltree.tinyxml import blanked, parse_as_tinyxml
 
 _READ_ALL_THE_SAME = phrase("urdfdom reads it all the same; xacro and other XML readers refuse the file")
-_LATE_DECLARATION = re.compile(r"\s+<\?xml\s[^>]*\?>")
+_LATE_DECLARATION = lazy_pattern(r"\s+<\?xml\s[^>]*\?>")
 # A blank after which a value goes on with a number or ends; in other values blanks do not matter. Each pattern starts
 # with a fixed character, which makes the search ten times as fast as one pattern for all three would be.
-_INSIDE_VALUE = {blank: re.compile(rf"""{blank}[-+0-9eE. ]*["']""") for blank in "\n\t\r"}
+_INSIDE_VALUE = {blank: lazy_pattern(rf"""{blank}[-+0-9eE. ]*["']""") for blank in "\n\t\r"}
 
 
 def parse_as_urdfdom(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 
 from linkwright.diagnostics import Diagnostic, did_you_mean, joined, phrase
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import TypeVar
 from linkwright.schema.rules import Version
 from linkwright.urdf.elements import MaterialTable, read_joint, read_link
@@ -21,7 +22,7 @@ from linkwright.urdf.schema import NEWEST_VERSION
 from linkwright.urdf.tree import find_root
 from linkwright.xmltree import Document, Element
 
-_INTEGER = re.compile(r"\s*([+-]?[0-9]+)").fullmatch
+_INTEGER = lazy_pattern(r"\s*([+-]?[0-9]+)")
 _OTHER_FORMATS = {
     "sdf": phrase("an SDF model"),
     "mujoco": phrase("a MuJoCo model"),
@@ -105,7 +106,7 @@ def _read_version(root: Element, findings: UrdfReport) -> Version:
     if written is None:
         return 1, 0
     parts = written.split(".")
-    numbers = [int(match[1]) for part in parts if (match := _INTEGER(part))]
+    numbers = [int(match[1]) for part in parts if (match := _INTEGER.fullmatch(part))]
     if len(parts) != 2 or len(numbers) != 2 or min(numbers) < 0:
         message = phrase("'version' of <robot> is not of the form x.y: '{written}'", written=written)
         findings.reject("URDF104", message, root, "version", hint=phrase("write 1.0, 1.1 or 1.2, or leave it out"))

@@ -15,6 +15,7 @@ from math import isfinite, isinf, radians
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.single import Quaternion
 from linkwright.geometry.vectors import Vector3
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import get_args
 from linkwright.schema import ValueType, Version
 from linkwright.urdf.model import JointType
@@ -39,7 +40,7 @@ _UNITS = {
     "kg": (phrase("the unit is not written"), 1.0),
     "g": (phrase("masses are in kilograms"), 0.001),
 }
-_WITH_UNIT = re.compile(rf"\s*({_DIGITS})\s*(\D+?)\s*").fullmatch
+_WITH_UNIT = lazy_pattern(rf"\s*({_DIGITS})\s*(\D+?)\s*")
 
 # Values repeat ("0 0 0", "1"): remembering them is worth a third of the reader's time.
 _REMEMBERED = 4096
@@ -108,7 +109,7 @@ def number_hint(text: str) -> Phrase | None:
         return phrase("URDF has no 'pi': write 3.14159..., or use xacro, where ${pi} works")
     if len(stripped.split()) > 1 and all(map(_reads, stripped.split())):
         return phrase("give one number")
-    united = _WITH_UNIT(text)
+    united = _WITH_UNIT.fullmatch(text)
     if united and united[2] in _UNITS:
         why, factor = _UNITS[united[2]]
         return phrase("{why}: '{value:.6g}'", why=why, value=float(united[1]) * factor)

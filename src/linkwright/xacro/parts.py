@@ -11,10 +11,10 @@ know more: here a tag that fails is left out, and the walk goes on. Two things k
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.xacro.expander import Directive, Expander, Site, is_final
 from linkwright.xacro.expansion import Expansion
 from linkwright.xacro.expressions.scope import Scope
@@ -31,14 +31,14 @@ from linkwright.xmltree import Document, Element, Text
 _GAP = "\0"
 """Name of the attribute, and content of the text, that mark a gap; XML allows neither."""
 _DEFINITIONS = frozenset({"xacro:arg", "xacro:insert_block", "xacro:macro", "xacro:property"})
-_FIXED = re.compile(r"\$\((?:find|env|optenv|cwd|dirname)\b[^()$]*\)")
+_FIXED = lazy_pattern(r"\$\((?:find|env|optenv|cwd|dirname)\b[^()$]*\)")
 """Substitutions that no name of the description has a part in."""
 _DECLARATIONS = frozenset({"xacro:arg", "xacro:include", "xacro:macro", "xacro:property"})
 _TRUE_BY_THEMSELVES = frozenset({"XAC101", "XAC102", "XAC301", "XAC304", "XAC407", "XAC412"})
 """Mistakes in the text of a tag or expression, whatever the names in it stand for."""
 _OF_THE_DEFINITION = frozenset({"XAC402", "XAC403", "XAC404", "XAC405", "XAC408", "XAC409"})
 """Mistakes of a call that may as well be one of the macro's definition; all calls have it then, and one tells it."""
-_OUTER_PROPERTY = re.compile(r"""<xacro:property\s[^>]*?\bscope\s*=""")
+_OUTER_PROPERTY = lazy_pattern(r"""<xacro:property\s[^>]*?\bscope\s*=""")
 
 
 def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:

@@ -7,6 +7,7 @@ from xml.parsers.expat import ExpatError
 from xml.parsers.expat import errors as expat_errors
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, foreign, phrase
+from linkwright.lean_patterns import lazy_pattern
 
 _CODE = expat_errors.codes
 _NO_ELEMENT = _CODE[expat_errors.XML_ERROR_NO_ELEMENTS]
@@ -20,23 +21,23 @@ _MISPLACED_DECLARATION = _CODE[expat_errors.XML_ERROR_MISPLACED_XML_PI]
 _SYNTAX = _CODE[expat_errors.XML_ERROR_SYNTAX]
 _UNCLOSED_CDATA = _CODE[expat_errors.XML_ERROR_UNCLOSED_CDATA_SECTION]
 
-_CLOSING_TAG = re.compile(r"</\s*([^\s>]*)\s*>?")
-_BARE_ATTRIBUTE = re.compile(r"([^\s=/>\"'<]+)\s*$")
-_UNQUOTED = re.compile(r"([^\s=/>\"'<]+)\s*=\s*$")
-_QUOTE_LEFT_OPEN = re.compile(r"""([^\s=/>"'<]+)\s*=\s*(["'])[^"'<>]*\s[^\s=/>"'<]+\s*=\s*\2$""")
+_CLOSING_TAG = lazy_pattern(r"</\s*([^\s>]*)\s*>?")
+_BARE_ATTRIBUTE = lazy_pattern(r"([^\s=/>\"'<]+)\s*$")
+_UNQUOTED = lazy_pattern(r"([^\s=/>\"'<]+)\s*=\s*$")
+_QUOTE_LEFT_OPEN = lazy_pattern(r"""([^\s=/>"'<]+)\s*=\s*(["'])[^"'<>]*\s[^\s=/>"'<]+\s*=\s*\2$""")
 """A value that ends in what looks like the next attribute: name="a type=" and so on."""
-_LONE_AMPERSAND = re.compile(r"&[^\s;&<>\"']*$")
+_LONE_AMPERSAND = lazy_pattern(r"&[^\s;&<>\"']*$")
 _TEMPLATES = (
     (
-        re.compile(r"<%.*?%>", re.DOTALL),
+        lazy_pattern(r"<%.*?%>", re.DOTALL),
         "ERB",
         phrase("run `erb TEMPLATE > FILE`, and give that file"),
     ),
-    (re.compile(r"\{[%#].*?[%#]\}", re.DOTALL), "Jinja", phrase("have Jinja make a file of it, and give that file")),
+    (lazy_pattern(r"\{[%#].*?[%#]\}", re.DOTALL), "Jinja", phrase("have Jinja make a file of it, and give that file")),
 )
 """What stands in templates, the name of their language, and what to do."""
-_DASHES_IN_COMMENT = re.compile(r"<!--(?:(?!-->).)*--$", re.DOTALL)
-_NAME = re.compile(r"[^\s=/>\"'&;<]+")
+_DASHES_IN_COMMENT = lazy_pattern(r"<!--(?:(?!-->).)*--$", re.DOTALL)
+_NAME = lazy_pattern(r"[^\s=/>\"'&;<]+")
 
 _CURVED_QUOTES = tuple("\u201c\u201d\u2018\u2019\u201e")
 _AS_FAR_BACK = 200

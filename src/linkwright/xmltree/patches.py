@@ -9,11 +9,12 @@ import re
 from collections.abc import Iterable, Sequence
 
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.xmltree.nodes import Element
 
-_TAG_NAME = re.compile(r"<[^\s/>]+")
-_START_TAG_REST = re.compile(r"""(?:[^"'>]|"[^"]*"|'[^']*')*>""")
-_MARKUP = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</[^>]*>|<", re.DOTALL)
+_TAG_NAME = lazy_pattern(r"<[^\s/>]+")
+_START_TAG_REST = lazy_pattern(r"""(?:[^"'>]|"[^"]*"|'[^']*')*>""")
+_MARKUP = lazy_pattern(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</[^>]*>|<", re.DOTALL)
 _STEP = "  "
 _UNSAFE = {"&": "&amp;", "<": "&lt;", '"': "&quot;"}
 

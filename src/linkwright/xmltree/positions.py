@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import re
 
-_TAG_NAME = re.compile(r"<[^\s/>]+")
-_ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
-_CHARACTER = re.compile(r"&[^;&<]*;|\r\n?|.", re.DOTALL)
+from linkwright.lean_patterns import lazy_pattern
+
+_TAG_NAME = lazy_pattern(r"<[^\s/>]+")
+_ATTRIBUTE = lazy_pattern(r"""\s*([^\s=/>"']+)\s*=\s*("[^"]*"|'[^']*')""")
+_CHARACTER = lazy_pattern(r"&[^;&<]*;|\r\n?|.", re.DOTALL)
 
 
 def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] | None:

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, Text
 
 _PRIVATE = 0xE000
@@ -20,10 +21,10 @@ _BLANKS = "\v\f"
 """Control characters that are blanks for C, and for TinyXML2."""
 _STAND_INS = {character: chr(_PRIVATE + ord(character)) for character in ("&", "<", *_CONTROLS)}
 _WRITTEN = str.maketrans({there: character for character, there in _STAND_INS.items()})
-_ANY = re.compile(f"[{''.join(_STAND_INS.values())}]")
-_OUTSIDE_TAGS = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
-_TAG = re.compile(r"""<[^\W\d][^\s=/>"'<]*""")
-_ATTRIBUTE = re.compile(r"""(\s*)([^\s=/>"'<]+)\s*=\s*("[^"]*"|'[^']*')""", re.ASCII)
+_ANY = lazy_pattern(f"[{''.join(_STAND_INS.values())}]")
+_OUTSIDE_TAGS = lazy_pattern(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
+_TAG = lazy_pattern(r"""<[^\W\d][^\s=/>"'<]*""")
+_ATTRIBUTE = lazy_pattern(r"""(\s*)([^\s=/>"'<]+)\s*=\s*("[^"]*"|'[^']*')""", re.ASCII)
 
 
 def stand_in(character: str) -> str:

@@ -14,18 +14,19 @@ from xml.parsers.expat.errors import XML_ERROR_TAG_MISMATCH, codes
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, SourceText, Span, phrase
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.xmltree.nodes import Document
 from linkwright.xmltree.reader import parse
 from linkwright.xmltree.stand_ins import REPAIRS, can_stand_in, put_back, stand_in, tags_alone
 
 _UNDECLARED, _AFTER_ROOT, _NOT_XML = "XML205", "XML207", "XML206"
-_OUTSIDE_TAGS = re.compile(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
+_OUTSIDE_TAGS = lazy_pattern(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
 COMMENT = "<!--[^-]*(?:-(?!->)[^-]*)*-->"
 """The pattern of one comment; with ``.*?`` one of several may also end at a later one, in exponentially many ways."""
-_BEFORE_ROOT = re.compile(rf"\A(?:\s*<\?xml\s[^>]*\?>)?(?:\s|{COMMENT})*([^<\s][^<]*)(?=<(?!\?xml\s))")
+_BEFORE_ROOT = lazy_pattern(rf"\A(?:\s*<\?xml\s[^>]*\?>)?(?:\s|{COMMENT})*([^<\s][^<]*)(?=<(?!\?xml\s))")
 """Text before the root element; a declaration that follows it is one mistake too many for TinyXML2, too."""
-_SECOND_DECLARATION = re.compile(r"\s*<\?xml\s[^>]*\?>\s*(?=(<\?xml\s[^>]*\?>))")
-_BARE_AMPERSAND = re.compile(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|amp|lt|gt|quot|apos);)")
+_SECOND_DECLARATION = lazy_pattern(r"\s*<\?xml\s[^>]*\?>\s*(?=(<\?xml\s[^>]*\?>))")
+_BARE_AMPERSAND = lazy_pattern(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|amp|lt|gt|quot|apos);)")
 _DEFINITION = "<!ENTITY"
 
 

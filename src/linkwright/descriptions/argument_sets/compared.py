@@ -6,12 +6,13 @@ import re
 from collections.abc import Iterable, Iterator
 
 from linkwright.descriptions.argument_sets.calling import ArgumentSet
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.xmltree import Document, Element
 
 _ARGUMENT = r"\$\(arg\s+([\w.-]+)\s*\)"
 _OPERAND = rf"""(?:['"]?{_ARGUMENT}['"]?|\barg\(\s*['"]([\w.-]+)['"]\s*\)|\b([A-Za-z_]\w*))"""
-_TEXT = re.compile(r"""'([^'$]+)'|"([^"$]+)\"""")
-_COMPARISON = re.compile(rf"""{_OPERAND}\s*(?:==\s*((?:'[^'$]+')|(?:"[^"$]+"))|in\s*[\[({{]([^\])}}]*))""")
+_TEXT = lazy_pattern(r"""'([^'$]+)'|"([^"$]+)\"""")
+_COMPARISON = lazy_pattern(rf"""{_OPERAND}\s*(?:==\s*((?:'[^'$]+')|(?:"[^"$]+"))|in\s*[\[({{]([^\])}}]*))""")
 _CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
 
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Callable, Iterator
 
 from linkwright.descriptions.editing.numbers import in_degrees, part_of_pi, shortest
 from linkwright.diagnostics import SourceText, Span
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_patterns import lazy_pattern
 
-_WORD = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|\S)+")
-_ONE_EXPRESSION = re.compile(r"\$\{([^{}]*)\}\Z|(\$\([^()]*\))\Z")
+_WORD = lazy_pattern(r"(?:\$\{[^}]*\}|\$\([^)]*\)|\S)+")
+_ONE_EXPRESSION = lazy_pattern(r"\$\{([^{}]*)\}\Z|(\$\([^()]*\))\Z")
 _OF_PI = frozenset({"pi", "radians", "degrees", "math"})
 _LOOSE = (ast.IfExp, ast.BoolOp, ast.Compare, ast.Lambda, ast.NamedExpr)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from math import pi, radians, sqrt
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
@@ -211,12 +211,12 @@ class OriginMissing(Rule):
 _PARTS_OF_PI = (1.0, 1 / 2, 1 / 3, 2 / 3, 1 / 4, 3 / 4, 3 / 2, 2.0)
 
 
-_DECIMAL = re.compile(r"[+-]?[0-9]+\.[0-9]{2,5}").fullmatch
+_DECIMAL = lazy_pattern(r"[+-]?[0-9]+\.[0-9]{2,5}")
 
 
 def _exact(word: str) -> str | None:
     """The part of pi that a rounded number stands for, with its sign; None where it stands for itself."""
-    if not _DECIMAL(word):
+    if not _DECIMAL.fullmatch(word):
         return None
     angle = float(word)
     digits = len(word.partition(".")[2])

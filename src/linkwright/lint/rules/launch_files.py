@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, nearest, phrase, quoted
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.made_files import is_made_later
 from linkwright.lint.rule import Rule, Scope
@@ -19,10 +20,10 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.launch_files import LaunchFile, SharedFile
 
-_FILE = re.compile(r"[^/]*\.[A-Za-z0-9]{1,8}$")
+_FILE = lazy_pattern(r"[^/]*\.[A-Za-z0-9]{1,8}$")
 
 
-_COMMENT = re.compile(r"#.*")
+_COMMENT = lazy_pattern(r"#.*")
 
 
 class LaunchRule(PackageRule):

@@ -21,6 +21,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.diagnostics.misspellings import misspelling_of
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.launch_files import LaunchFile
 
-_FIXED_FRAME = re.compile(r"^( *)Fixed Frame:[ \t]*(?P<name>\S[^\n#]*?)[ \t]*\r?$", re.MULTILINE)
+_FIXED_FRAME = lazy_pattern(r"^( *)Fixed Frame:[ \t]*(?P<name>\S[^\n#]*?)[ \t]*\r?$", re.MULTILINE)
 _USUAL_FRAMES = frozenset({"map", "odom", "world", "earth", "base_link", "base_footprint"})
 
 

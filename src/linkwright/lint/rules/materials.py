@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, Span, phrase
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.fix import remove_element
 from linkwright.lint.meshes import material_element
 from linkwright.lint.rule import Rule
@@ -16,7 +17,7 @@ from linkwright.urdf.elements import read_material
 from linkwright.urdf.report import UrdfReport
 from linkwright.xmltree import Element
 
-_UNSEEN = re.compile(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)
+_UNSEEN = lazy_pattern(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)
 
 _ALIKE = 0.1001
 """The largest difference of a channel, of 1 and with room for rounding, between colours that look alike."""

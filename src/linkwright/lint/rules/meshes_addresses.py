@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os.path
-import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, display_path, joined, phrase
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -16,11 +16,11 @@ from linkwright.packages import enclosing_package
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range
 
-_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):")
-HOME = re.compile(
+_SCHEME = lazy_pattern(r"([A-Za-z][A-Za-z0-9+.-]+):")
+HOME = lazy_pattern(
     r"(?:file://(?:localhost)?)?(/home/[^/]+|/Users/[^/]+|/root|[A-Za-z]:[\\/]Users[\\/][^\\/]+|/opt/ros/[^/]+)[\\/]"
 )
-_INSTALLED = re.compile(r".*?/opt/ros/[^/]+/share/(.+)")
+_INSTALLED = lazy_pattern(r".*?/opt/ros/[^/]+/share/(.+)")
 _MUJOCO, _HEAD = b"<mujoco", 4_000
 """The root of a model for MuJoCo, which stands among the first bytes of its file."""
 KNOWN = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx", ".3ds", ".mesh")

@@ -8,14 +8,15 @@ from math import radians
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.geometry.placement import Matrix, angle_between, rotation
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.meshes_addresses import written
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Box, Geometry, Joint, Mesh, parent_joints
 
-_OPTICAL = re.compile(r"(?P<stem>.*?)_?optical(_(frame|link|joint))?$")
+_OPTICAL = lazy_pattern(r"(?P<stem>.*?)_?optical(_(frame|link|joint))?$")
 _OPTICAL_ROTATION: Matrix = ((0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
-_CAMERA = re.compile("cam|rgb|depth|colou?r|infra|stereo|eye|kinect|realsense|zed|oak|sensor|image", re.IGNORECASE)
+_CAMERA = lazy_pattern("cam|rgb|depth|colou?r|infra|stereo|eye|kinect|realsense|zed|oak|sensor|image", re.IGNORECASE)
 _TOLERANCE = radians(2.0)
 _TINY = 0.05
 _HUMANOID = ("base_link", "torso", "l_wrist", "r_wrist", "l_gripper", "r_gripper", "l_sole", "r_sole", "gaze")

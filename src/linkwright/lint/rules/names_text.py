@@ -6,12 +6,13 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase, term
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.xmltree import Element
 
-_USUAL = re.compile(r"[A-Za-z0-9_./\- ]*")
-_DOUBLED = re.compile(r"(?:^|.*[_-])(link|joint|frame)[_-]\1$", re.IGNORECASE)
+_USUAL = lazy_pattern(r"[A-Za-z0-9_./\- ]*")
+_DOUBLED = lazy_pattern(r"(?:^|.*[_-])(link|joint|frame)[_-]\1$", re.IGNORECASE)
 
 
 def named(subject: Subject) -> Iterator[tuple[str, str, Element]]:

@@ -15,11 +15,12 @@ from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase
 from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.vectors import dot, length, subtracted
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Collision, Cylinder, Joint, Link, Robot, Vector3, Visual
 
-_NO_WHEEL = re.compile(
+_NO_WHEEL = lazy_pattern(
     r"steer|swivel|knuckle|suspension|caster|castor|drop|arm|hub|axle|mount|fork|plate|holder|base|shaft|rocker|bogie"
     r"|pivot|roller|turn|rotate|yaw|slipping|cover|support|bracket|motor|encoder|arch|guard",
     re.IGNORECASE,

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from keyword import iskeyword
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rules.package_manifest import ManifestRule, PackageRule
 from linkwright.packages.naming import check_package_name, departure_from_rep, is_accepted_name, is_email
@@ -15,10 +16,10 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.package_xml import Manifest
 
-_PLACEHOLDER = re.compile(
+_PLACEHOLDER = lazy_pattern(
     r"\btodo\b|\bfixme\b|\bchangeme\b|your[ _-]?(name|package|description)|package description here", re.IGNORECASE
 )
-_PLACEHOLDER_EMAIL = re.compile(
+_PLACEHOLDER_EMAIL = lazy_pattern(
     r"@(todo\.todo|example\.(com|org|net)|todo\.com|email\.com|domain\.(com|tld))$|^(you|user|your\.?(name|email)|me)@",
     re.IGNORECASE,
 )

@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.made_files import is_ignored_by_git, is_made_by_cmake, submodule_of
 from linkwright.lint.rules.package_manifest import PackageRule
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from linkwright.packages.readers.cmake import CMakeFile
     from linkwright.packages.readers.setup_py import Installed, SetupFile
 
-_SHARED = re.compile(
+_SHARED = lazy_pattern(
     r".*\.(urdf|xacro|sdf|world|rviz|stl|dae|obj|glb|gltf|launch\.py|launch\.xml|launch\.yaml|srdf|yaml)$",
     re.IGNORECASE,
 )
@@ -30,8 +31,8 @@ _USUAL = frozenset(
     }
 )
 """What the folders are called whose files belong to what is installed; others may hold templates or sources."""
-_SETTINGS = re.compile(r"(?<!\.launch)\.(rviz|yaml)$", re.IGNORECASE)
-_NOT_SHARED = re.compile(r"(^|/)(test|tests|docs?|scripts?|\w*_py|src|include|resource|ci|docker)(/|$)")
+_SETTINGS = lazy_pattern(r"(?<!\.launch)\.(rviz|yaml)$", re.IGNORECASE)
+_NOT_SHARED = lazy_pattern(r"(^|/)(test|tests|docs?|scripts?|\w*_py|src|include|resource|ci|docker)(/|$)")
 
 
 class PatternMatchesNothing(PackageRule):

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rules.package_install import checkout_hint, near_file
 from linkwright.lint.rules.package_manifest import PackageRule
@@ -14,9 +15,9 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
 
 _MARKERS = "share/ament_index/resource_index/packages"
-_DRIVER_OF_WEBOTS = re.compile(r"^[ \t]+def init\(self, *\w+, *\w+\)", re.MULTILINE)
+_DRIVER_OF_WEBOTS = lazy_pattern(r"^[ \t]+def init\(self, *\w+, *\w+\)", re.MULTILINE)
 """A class that webots_ros2_driver loads by its name; nobody runs the executable that its tutorial declares for it."""
-_SCRIPT_FOLDERS = re.compile(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*\r?$", re.MULTILINE)
+_SCRIPT_FOLDERS = lazy_pattern(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*\r?$", re.MULTILINE)
 
 
 class SetupSyntaxError(PackageRule):

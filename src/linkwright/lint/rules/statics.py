@@ -14,13 +14,14 @@ from linkwright.diagnostics import Diagnostic, Note, Span, phrase
 from linkwright.geometry.placement import Placement, placement, turned
 from linkwright.geometry.polygon import turn
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.names_wheels import joints_above, wheels
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Cylinder, Link, Robot, Sphere, Vector3
 
-_CASTER = re.compile(r"cast(?:e|o)r|ball_?wheel", re.IGNORECASE)
+_CASTER = lazy_pattern(r"cast(?:e|o)r|ball_?wheel", re.IGNORECASE)
 _LEVEL = 0.2
 """The sine up to which a wheel's axis counts as level."""
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, phrase, quoted
 from linkwright.diagnostics.misspellings import misspelling_of
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lint.extension_names import INTERFACES, OF_JOINTS, OF_LINKS
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
@@ -14,7 +14,7 @@ from linkwright.lint.subject import Subject
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 
-_NUMBER = re.compile(r"\d+")
+_NUMBER = lazy_pattern(r"\d+")
 _MISSED = frozenset({"sensor", "plugin", "preserveFixedJoint", "disableFixedJointLumping"})
 """What somebody misses when it does nothing, unlike a colour."""
 _UNFILLED = frozenset("${}")

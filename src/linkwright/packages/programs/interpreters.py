@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import shlex
 import shutil
 import subprocess
@@ -11,7 +10,9 @@ import sys
 from functools import cache
 from pathlib import Path
 
-_VERSION = re.compile(r"python(\d+)\.(\d+)")
+from linkwright.lean_patterns import lazy_pattern
+
+_VERSION = lazy_pattern(r"python(\d+)\.(\d+)")
 _ASK_SECONDS = 5.0
 
 

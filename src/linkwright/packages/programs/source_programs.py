@@ -17,6 +17,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Any
 from linkwright.packages.readers.entry_points import (
     LINE,
@@ -28,7 +29,7 @@ from linkwright.packages.readers.entry_points import (
     text_of,
 )
 
-_PYTHON_PACKAGE = re.compile(r"^\s*ament_python_install_package\s*\(", re.MULTILINE | re.IGNORECASE)
+_PYTHON_PACKAGE = lazy_pattern(r"^\s*ament_python_install_package\s*\(", re.MULTILINE | re.IGNORECASE)
 BUILD_FILES = ("setup.py", "setup.cfg", "pyproject.toml", "CMakeLists.txt")
 NOT_FOR_PROGRAMS = frozenset({"setup", "conftest", "test", "tests"})
 _ASK_SECONDS = 10.0

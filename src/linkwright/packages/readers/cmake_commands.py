@@ -6,7 +6,7 @@ read; what they install is not known here.
 
 from __future__ import annotations
 
-import re
+from linkwright.lean_patterns import lazy_pattern
 
 _OF_CMAKE = frozenset(
     {
@@ -23,7 +23,7 @@ _OF_CMAKE = frozenset(
         *("try_compile", "try_run", "unset", "variable_watch"),
     }
 )
-_OF_FAMILIES = re.compile(
+_OF_FAMILIES = lazy_pattern(
     r"(cmake|ctest|check|find|fetchcontent|externalproject|pkg|set|get|target|qt[56]?|pybind11|protobuf|gz_find|export"
     r"|ament|rosidl|catkin|rclcpp|pluginlib|roslint|roslaunch|generate)_\w+"
     r"|python3?_add_\w+|moveit_package|xacro_add_files|add_(message|service|action)_files"

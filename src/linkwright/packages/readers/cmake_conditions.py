@@ -6,9 +6,10 @@ import re
 from collections.abc import Callable, MutableMapping, Sequence
 
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.packages.readers.cmake_syntax import is_open
 
-_NUMBER = re.compile(r"[+-]?\d+(\.\d*)?")
+_NUMBER = lazy_pattern(r"[+-]?\d+(\.\d*)?")
 YES = frozenset({"1", "ON", "YES", "TRUE", "Y"})
 _NO = frozenset({"", "0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND"})
 _ORDERS: dict[str, Callable[[int], bool]] = {

@@ -18,6 +18,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.packages.ament import ROS_VARIABLES
 from linkwright.packages.readers.cmake_conditions import YES, Condition, Word
 from linkwright.packages.readers.cmake_syntax import ENDS, Statement, Token, branches, end_of_block, is_open, statements
@@ -31,8 +32,8 @@ from linkwright.packages.readers.cmake_values import (
     version_variables,
 )
 
-_VARIABLE = re.compile(r"\$\{([A-Za-z0-9_.+/-]+)\}")
-_ENVIRONMENT = re.compile(r"\$ENV\{(\w+)\}")
+_VARIABLE = lazy_pattern(r"\$\{([A-Za-z0-9_.+/-]+)\}")
+_ENVIRONMENT = lazy_pattern(r"\$ENV\{(\w+)\}")
 _DEEPEST = 20
 _MOST_COMMANDS = 20_000
 _LONGEST_TEXT = 1_000_000

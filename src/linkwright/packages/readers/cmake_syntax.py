@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import SourceText
 from linkwright.lean_dataclasses import dataclass
+from linkwright.lean_patterns import lazy_pattern
 
-_PIECE = re.compile(
+_PIECE = lazy_pattern(
     r"""
     (?P<blank>\s+)
   | (?P<comment>\#\[(?P<level>=*)\[.*?\](?P=level)\] | \#[^\n]*)
@@ -19,8 +20,8 @@ _PIECE = re.compile(
     """,
     re.VERBOSE | re.DOTALL,
 )
-_OPEN = re.compile(r"\$(\{|ENV\{|<)")
-_ESCAPED = re.compile(r"\\([^A-Za-z0-9;])")
+_OPEN = lazy_pattern(r"\$(\{|ENV\{|<)")
+_ESCAPED = lazy_pattern(r"\\([^A-Za-z0-9;])")
 ENDS = {
     "if": "endif",
     "foreach": "endforeach",

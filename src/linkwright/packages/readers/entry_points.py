@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import ast
-import re
 import sys
 from contextlib import suppress
 from pathlib import Path
 
 from linkwright.lean_dataclasses import NamedTuple
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Any
 
 PROGRAMS = "console_scripts"
 """The group of the programs that a package installs."""
 
-LINE = re.compile(r"\s*([^\s=]+)\s*=\s*([\w.]+)\s*(?::\s*([\w.]+))?")
+LINE = lazy_pattern(r"\s*([^\s=]+)\s*=\s*([\w.]+)\s*(?::\s*([\w.]+))?")
 """Name, module and attribute of an entry point; the attribute may be missing."""
 
 

@@ -14,11 +14,12 @@ from glob import glob
 from itertools import chain
 from pathlib import Path, PurePosixPath
 
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Any
 
 _MOST_ITEMS = 20_000
 _LONGEST_TEXT = 4096
-_WIDE = re.compile(r"\d{3}|\*")
+_WIDE = lazy_pattern(r"\d{3}|\*")
 
 METHODS: dict[type, frozenset[str]] = {
     kind: frozenset(names.split())

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, Span, did_you_mean, phrase
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.scope import Scope
@@ -23,7 +24,7 @@ from linkwright.xacro.tracing.traced import TracedSession, expand_traced
 from linkwright.xmltree import Document, Element, Text
 
 _MOST_FILES = 1_000
-_USE = re.compile(r"\$\(\s*arg\s+(?P<plain>[^\s()$]+)\s*\)|\bxacro\.arg\(\s*(['\"])(?P<called>[^'\"]*)\2\s*\)")
+_USE = lazy_pattern(r"\$\(\s*arg\s+(?P<plain>[^\s()$]+)\s*\)|\bxacro\.arg\(\s*(['\"])(?P<called>[^'\"]*)\2\s*\)")
 
 
 @dataclass(frozen=True, slots=True)

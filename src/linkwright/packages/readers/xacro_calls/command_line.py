@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.packages.readers.xacro_calls.texts import Open, Share, Text, joined, literal
 
-_PROGRAM = re.compile(r"(^|/)xacro(\.py)?$")
-_NAME = re.compile(r"[A-Za-z_][\w.-]*:=")
-_END = re.compile(r"^(\d?>.*|[|;]|&&)$")
+_PROGRAM = lazy_pattern(r"(^|/)xacro(\.py)?$")
+_NAME = lazy_pattern(r"[A-Za-z_][\w.-]*:=")
+_END = lazy_pattern(r"^(\d?>.*|[|;]|&&)$")
 _WITH_VALUE = frozenset({"-o", "--output"})
 
 

@@ -7,13 +7,14 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import LinkwrightError, SourceText, Span
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Any
 from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, launch_argument
 from linkwright.packages.readers.xacro_calls.command_line import xacro_command
 from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Open, Share, Text, literal
 from linkwright.xmltree import Element, parse
 
-_WORD = re.compile(r"\s*(\S+)\s*(.*)", re.DOTALL)
+_WORD = lazy_pattern(r"\s*(\S+)\s*(.*)", re.DOTALL)
 _ARGUMENTS = frozenset({"var", "arg"})
 _SHARES = frozenset({"find-pkg-share", "find"})
 

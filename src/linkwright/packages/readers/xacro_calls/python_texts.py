@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Mapping, Sequence
 
 from linkwright.lean_dataclasses import dataclass, field
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.lean_typing import Union
 from linkwright.packages.readers.python_values import argument_of, called_name
 from linkwright.packages.readers.xacro_calls.call import CallingFile, launch_argument
@@ -36,7 +36,7 @@ _PASSING = frozenset(
 """Functions that return what they are given, or what stands for it."""
 _METHODS = frozenset({"perform", "as_posix", "find", "strip", "resolve", "absolute", "items", "copy", "lower"})
 """Methods that return what they are called on, or what stands for it."""
-_FIELD = re.compile(r"\{(\w*)\}")
+_FIELD = lazy_pattern(r"\{(\w*)\}")
 
 
 @dataclass(frozen=True, slots=True)
