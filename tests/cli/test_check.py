@@ -7,6 +7,8 @@ import subprocess
 import sys
 
 from linkwright.cli import main
+from linkwright.cli.check import without_options
+from linkwright.cli.command import parser_for
 from tests.geometry.test_mesh_faults import COLLADA
 from tests.imports import loaded_by
 from tests.places import PACKAGE
@@ -62,6 +64,21 @@ def test_checking_a_robot_with_masses_and_a_small_mesh_loads_no_arrays(tmp_path)
     assert "the collision mesh 'part.stl' of link 'stl' is not watertight" in done.stderr
     loaded = set(done.stdout.split())
     assert not {"dataclasses", "inspect", "numpy", "pkgutil", "typing", "linkwright.xacro.engine"} & loaded
+
+
+def test_checking_a_plain_robot_loads_nothing_of_xacro_and_no_parser_of_command_lines():
+    words = ["check", str(PACKAGE / "urdf" / "mbot_base.urdf")]
+    loaded = loaded_by(f"from linkwright.cli import main; main({words})")
+    assert "linkwright.lint.rules.xacro_tags" in loaded
+    assert (
+        not {"argparse", "ast", "gettext", "typing", "linkwright.lint.xacro_facts", "linkwright.xacro.macros"} & loaded
+    )
+
+
+def test_a_command_line_without_options_asks_for_the_same_without_a_parser():
+    words = ["robot.urdf", "a:=1"]
+    assert vars(without_options(words)) == vars(parser_for("check").parse_args(words))
+    assert without_options([]) is None
 
 
 def test_xacro_is_expanded_first(capsys):

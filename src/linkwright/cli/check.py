@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
@@ -26,9 +26,11 @@ from linkwright.diagnostics.alike import alike_together
 from linkwright.diagnostics.formats import FORMATS, format_diagnostics
 from linkwright.diagnostics.translation import localized
 from linkwright.lean_dataclasses import dataclass, field
-from linkwright.lean_typing import TYPE_CHECKING, TypeAlias
+from linkwright.lean_typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
+    import argparse
+
     from linkwright.descriptions.argument_sets import ArgumentSet, ArgumentSets
     from linkwright.lint.apply import Mended
     from linkwright.lint.contexts import Contexts
@@ -39,6 +41,20 @@ if TYPE_CHECKING:
 
 
 _USAGE = 2
+_DEFAULTS: dict[str, Any] = {
+    "all": False,
+    "config": None,
+    "diff": False,
+    "fix": False,
+    "format": "text",
+    "ignore": None,
+    "package": False,
+    "select": None,
+    "statistics": False,
+    "strict": False,
+    "unsafe_fixes": False,
+}
+"""What holds without an option."""
 _Found: TypeAlias = "dict[tuple[str, Span | None, str], Diagnostic]"
 
 
@@ -57,7 +73,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="check too the packages that the files lie in, as is done for folders",
     )
     parser.add_argument("--all", action="store_true", help="print each finding, not the first of those that are alike")
-    parser.add_argument("--format", choices=FORMATS, default="text", help="how to print what is found (default: text)")
+    parser.add_argument("--format", choices=FORMATS, help="how to print what is found (default: text)")
     parser.add_argument("--strict", action="store_true", help="warnings make the exit status 1 too")
     parser.add_argument("--select", metavar="RULES", action="append", help="report only these, such as LW2,axis-zero")
     parser.add_argument("--ignore", metavar="RULES", action="append", help="do not report these")
@@ -66,9 +82,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fix", action="store_true", help="mend what can be mended safely, in the files")
     parser.add_argument("--unsafe-fixes", action="store_true", help="mend too what may change the meaning")
     parser.add_argument("--diff", action="store_true", help="print what the fixes would change, and change nothing")
+    parser.set_defaults(**_DEFAULTS)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def without_options(words: list[str]) -> SimpleNamespace | None:
+    """The arguments that files, folders and values give; None where there are none."""
+    return SimpleNamespace(words=words, **_DEFAULTS) if words else None
+
+
+def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     """Check; the tree and findings in forms for programs go to standard output, findings as text to standard error."""
     paths = [Path(word) for word in arguments.words if ":=" not in word]
     if not paths:

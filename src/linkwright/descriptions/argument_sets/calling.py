@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
@@ -12,6 +11,7 @@ from pathlib import Path
 from linkwright.descriptions.argument_sets.workspace import CallingFiles
 from linkwright.diagnostics import Span
 from linkwright.lean_dataclasses import dataclass, replace
+from linkwright.lean_patterns import lazy_pattern
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.readers.xacro_calls.call import (
     CallingFile,
@@ -35,7 +35,7 @@ from linkwright.packages.readers.xacro_calls.texts import (
 
 _DEEPEST = 4
 _MOST_LAUNCHES = 16
-_MARK = re.compile("\0([^\0]*)\0")
+_MARK = lazy_pattern("\0([^\0]*)\0")
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,6 +267,8 @@ def _unquoted(value: str) -> str:
 
 def _words(line: str) -> list[str]:
     """The words of a piece of a command line, without quotes."""
+    import shlex  # here: few pieces have quotes
+
     try:
         return shlex.split(line)
     except ValueError:

@@ -6,13 +6,14 @@ from collections.abc import Iterator
 from itertools import islice
 
 from linkwright.diagnostics import Diagnostic, phrase
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rules.xacro_rule import XacroRule
-from linkwright.lint.xacro_facts import FileFacts, XacroFacts
-from linkwright.lint.xacro_names import DEPRECATED, is_constant
-from linkwright.xacro.faults import attribute_part
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range, raw_offset
+
+if TYPE_CHECKING:
+    from linkwright.lint.xacro_facts import FileFacts, XacroFacts
 
 
 class DeprecatedFunction(XacroRule):
@@ -43,6 +44,8 @@ class DeprecatedFunction(XacroRule):
     replaces = ("XAC507",)
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        from linkwright.lint.xacro_names import DEPRECATED
+
         taken = {definition.name for file in facts.files.values() for definition in file.properties}
         for file in facts.files.values():
             for use in file.uses:
@@ -53,6 +56,9 @@ class DeprecatedFunction(XacroRule):
                         yield self._found(use.element, use.attribute, call.name, call.offset)
 
     def _found(self, element: Element, attribute: str, name: str, at: int) -> Diagnostic:
+        from linkwright.lint.xacro_names import DEPRECATED
+        from linkwright.xacro.faults import attribute_part
+
         better = DEPRECATED[name]
         span = attribute_part(element, attribute, at, at + len(name))
         source = element.source
@@ -104,6 +110,8 @@ class ConstantCondition(XacroRule):
     name = "constant-condition"
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        from linkwright.lint.xacro_names import is_constant
+
         for file in facts.own.values():
             for element in islice(file.document.root.walk(), 1, None):
                 if element.tag not in ("xacro:if", "xacro:unless"):

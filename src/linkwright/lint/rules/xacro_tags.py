@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Iterator
 from itertools import product
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.lint.dependencies import would_make_a_circle
+from linkwright.lean_patterns import lazy_pattern
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import Fix, add_attribute, rename_element, replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.lint.subject import Subject
-from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
 from linkwright.schema import ElementRule
 from linkwright.urdf.schema import ROBOT
-from linkwright.xacro.faults import attribute_part
 from linkwright.xmltree import Element
 
+if TYPE_CHECKING:
+    from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
+
 ADDRESS = "http://www.ros.org/wiki/xacro"
-_OLD_ADDRESSES = re.compile(r"https?://(www\.)?ros\.org/(wiki/xacro|xacro)/?(#interface)?")
+_OLD_ADDRESSES = lazy_pattern(r"https?://(www\.)?ros\.org/(wiki/xacro|xacro)/?(#interface)?")
 _NEEDED: dict[str, tuple[str, ...]] = {
     "property": ("name",),
     "include": ("filename",),
@@ -33,7 +34,7 @@ _NEEDED: dict[str, tuple[str, ...]] = {
 }
 _CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
 _FOREIGN = frozenset({"gazebo", "plugin", "ros2_control", "sensor", "world", "sdf", "transmission"})
-_ABSOLUTE = re.compile(r"(/|~|file:///|[A-Za-z]:[\\/])")
+_ABSOLUTE = lazy_pattern(r"(/|~|file:///|[A-Za-z]:[\\/])")
 
 
 class XacroPrefixMissing(Rule):
@@ -305,6 +306,9 @@ class UndeclaredPackage(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         if subject.expansion is None:
             return
+        from linkwright.lint.dependencies import would_make_a_circle
+        from linkwright.xacro.faults import attribute_part
+
         facts = subject.xacro
         package = facts.package
         if package is None or package.manifest is None:

@@ -15,19 +15,23 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
 from linkwright.diagnostics.misspellings import misspelling_of
+from linkwright.lean_patterns import lazy_pattern
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.fix import remove_element
 from linkwright.lint.rules.xacro_rule import XacroRule
-from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, parameter_span
 from linkwright.xmltree import Element
 
-_SPEAKING = re.compile(r"\b(?:fatal|error|warning|message)\s*\(")
+if TYPE_CHECKING:
+    from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
+
+_SPEAKING = lazy_pattern(r"\b(?:fatal|error|warning|message)\s*\(")
 """Functions that are called for what they do."""
 
 _CONSTANTS = (pi / 4, pi / 2, pi, 2 * pi, pi / 180, 180 / pi)
 _ROUNDED = 6e-4
 """How far 3.14 or 1.57 may be from the constant that they stand for."""
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
-_CALL = re.compile(r"<xacro:([\w.-]+)")
+_COMMENT = lazy_pattern(r"<!--.*?-->", re.DOTALL)
+_CALL = lazy_pattern(r"<xacro:([\w.-]+)")
 
 
 class UnusedProperty(XacroRule):
@@ -262,6 +266,8 @@ class UnusedMacroParameter(XacroRule):
                 yield from (each for name, each in self._of_macro(macro, file, facts) if name not in shared)
 
     def _of_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
+        from linkwright.lint.xacro_facts import parameter_span
+
         used, blocks, is_open = _used_inside(macro.element, file)
         calls_others = bool(file.calls_by_macro.get(id(macro.element)))
         for parameter in file.parameters(macro.element):

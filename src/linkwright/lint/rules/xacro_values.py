@@ -6,11 +6,13 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Span, phrase
+from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.lint.rules.xacro_rule import XacroRule
-from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, is_global, parameter_span
-from linkwright.lint.xacro_names import DEPRECATED
 from linkwright.xacro.expressions.literals import literal
 from linkwright.xmltree import Element
+
+if TYPE_CHECKING:
+    from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
 
 _NAMES = frozenset({"name", "link", "joint", "reference", "filename", "joint1", "joint2", "frame", "parent", "child"})
 
@@ -178,6 +180,8 @@ class ShadowedProperty(XacroRule):
     default = False
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        from linkwright.lint.xacro_facts import parameter_span
+
         outer: dict[str, Definition] = {}
         for file in facts.files.values():
             for definition in file.properties:
@@ -235,6 +239,9 @@ class ParameterHidesGlobal(XacroRule):
     default = False
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
+        from linkwright.lint.xacro_facts import is_global, parameter_span
+        from linkwright.lint.xacro_names import DEPRECATED
+
         for file in facts.own.values():
             for macro in file.macros:
                 for parameter in file.parameters(macro.element):
