@@ -32,6 +32,10 @@ SINGLES = 9
 STARTS = 11
 LARGEST = 4
 COLLECTION_PASSES = 3
+_FOUND = "found_description"
+_FINDING = f"""<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <link name="a"><visual><geometry><mesh filename="$(find {_FOUND})/a.stl"/></geometry></visual></link>
+</robot>"""
 FEWEST_LINES = 15
 """Less is a file of macros, and no robot."""
 PEER = "xacro"
@@ -157,6 +161,8 @@ def _largest(robots: list[Model], engine: Engine) -> list[Model]:
 
 def _whole_commands(large: Model, folder: Path) -> list[Row]:
     prefix, stand_in = _prefix(large, folder), _ament_index(folder)
+    (prefix / "share" / _FOUND).mkdir()
+    (prefix / "share" / "ament_index" / "resource_index" / "packages" / _FOUND).touch()
     environment = {"AMENT_PREFIX_PATH": str(prefix), "PYTHONPATH": str(stand_in)}
     peer = peers.command(PEER)
     values = [f"{name}:={value}" for name, value in large.arguments.items()]
@@ -164,6 +170,8 @@ def _whole_commands(large: Model, folder: Path) -> list[Row]:
     for what, words, target in (
         (f"command, small model ({SMALL.name})", [str(SMALL)], "60 ms over a bare interpreter"),
         (f"command, large model ({large.name})", [large.path, *values], "half of xacro's"),
+        ("command, file without content", [str(_written(folder, "empty", "<robot/>"))], "no slower than xacro"),
+        ("command, file with $(find)", [str(_written(folder, "find", _FINDING))], "no slower than xacro"),
     ):
         calls = {
             "ours": [LINKWRIGHT, "xacro", *words],
@@ -178,6 +186,12 @@ def _whole_commands(large: Model, folder: Path) -> list[Row]:
         assert mine is not None
         found.append(Row(what.replace("command", "memory"), mine, "MB", "at most twice xacro's", peaks))
     return found
+
+
+def _written(folder: Path, name: str, text: str) -> Path:
+    path = folder / f"{name}.xacro"
+    path.write_text(text, encoding="utf-8")
+    return path
 
 
 def _prefix(model: Model, folder: Path) -> Path:
