@@ -118,10 +118,10 @@ def _leave_output() -> None:
 
 
 def _print(diagnostics: Iterable[Diagnostic]) -> None:
-    from contextlib import suppress  # which is slow to import, and seldom needed
-
-    with suppress(OSError):
+    try:  # noqa: SIM105 - contextlib takes long to import
         print_diagnostics(diagnostics, sys.stderr)
+    except OSError:
+        pass
 
 
 def say(text: str) -> None:

@@ -107,6 +107,8 @@ def definition_elsewhere(
     source: SourceText, tag: str, name: str, prefix: str = "xacro:", used_at: int | None = None
 ) -> Elsewhere | None:
     """Return where a file defines a name, when that is not in effect where it is wanted, at an offset."""
+    if f"<{prefix}{tag}" not in source.text:
+        return None  # without compiling the patterns below
     text = re.sub(_COMMENT, lambda comment: " " * len(comment[0]), source.text)
     pattern = rf"""<{prefix}{tag}\s(?:[^>"']|"[^"]*"|'[^']*')*?\bname\s*=\s*["']{re.escape(name)}["']"""
     match = re.search(pattern, text)
