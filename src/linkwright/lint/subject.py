@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.descriptions import Description
 from linkwright.diagnostics import LinkwrightError
-from linkwright.lean_typing import TYPE_CHECKING
+from linkwright.lean_typing import TYPE_CHECKING, Any, TypeVar
 from linkwright.lint.settings import Settings
 from linkwright.urdf import Inertial, Joint, Link, Robot
 from linkwright.xmltree import Document, Element

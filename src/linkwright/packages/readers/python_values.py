@@ -10,6 +10,7 @@ import ast
 import warnings
 from collections.abc import Iterator, Sequence
 from enum import Enum
+from functools import cached_property
 
 from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.lean_dataclasses import dataclass
