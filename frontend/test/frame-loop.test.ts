@@ -1,5 +1,5 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { FrameLoop } from "../src/scene/frame-loop";
+import { FINEST, FrameLoop } from "../src/scene/frame-loop";
 
 let now = 0;
 let waiting: (() => void)[] = [];
@@ -41,6 +41,29 @@ describe("the frame loop", () => {
     run(5000);
     expect(loop.framesDrawn).toBe(drawn);
     expect(loop.framesPerSecond(now)).toBeNull();
+  });
+
+  it("draws nothing while it is held, and then what was due", () => {
+    const draw = vi.fn();
+    const loop = new FrameLoop(draw, true);
+    loop.invalidate();
+    loop.redraw(FINEST);
+    run(1000);
+    expect(draw).not.toHaveBeenCalled();
+    expect(loop.settled).toBe(false);
+    loop.release();
+    run(100);
+    expect(draw).toHaveBeenCalledTimes(1);
+    loop.redraw(FINEST);
+    expect(draw).toHaveBeenCalledTimes(2);
+  });
+
+  it("shows what is beside the scene while it is held", () => {
+    const loop = new FrameLoop(() => undefined, true);
+    const show = vi.fn();
+    loop.beside(show);
+    run(100);
+    expect(show).toHaveBeenCalledTimes(1);
   });
 
   it("does not draw the first frames more coarsely for the time that programs take to be compiled", () => {

@@ -42,6 +42,27 @@ def noise(width: int, height: int) -> Any:
     return message
 
 
+_HELD = """
+  const told = new Promise((done) => (window.tell = done));
+  window.WebSocket = class extends WebSocket {
+    set onmessage(take) { super.onmessage = async (event) => { await told; take(event); }; }
+  };
+"""
+"""For a page before its scripts: what the server says is heard when `tell` is called."""
+
+_WAITING = """async () => {
+  for (let frame = 0; frame < 10; frame++) await new Promise(requestAnimationFrame);
+  const canvas = document.querySelector(".canvas-box canvas");
+  const timings = document.getAnimations().map(({ effect }) => effect.getTiming());
+  return {
+    frames: linkwright.framesDrawn,
+    canvas: getComputedStyle(canvas).visibility,
+    behind: getComputedStyle(canvas.parentElement).backgroundColor,
+    moving: timings.filter(({ iterations, delay }) => iterations === Infinity && delay < 1000).length,
+  };
+}"""
+
+
 class Through:
     """The address of a viewer through a slow line."""
 
@@ -93,6 +114,21 @@ def test_a_line_that_is_quick_says_nothing(live, open_page):
         viewer.publish("/cloud", heavy)
     until(page, "lw.displays[0].drawn?.points === 100000")
     until(page, "document.querySelector('.line-notice').hidden")
+
+
+def test_nothing_is_drawn_before_the_displays_are_known(live, browser):
+    """Each frame of a waiting page is one less of the robot's where no graphics card draws."""
+    viewer = live(SENSES)
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    context.add_init_script(_HELD)
+    page = context.new_page()
+    page.goto(viewer.url)
+    until(page, "lw.framesDrawn >= 0")
+    assert page.evaluate(_WAITING) == {"frames": 0, "canvas": "hidden", "behind": "rgb(48, 48, 48)", "moving": 0}
+    page.evaluate("tell()")
+    until(page, "lw.framesDrawn > 0")
+    until(page, "getComputedStyle(document.querySelector('.canvas-box canvas')).visibility === 'visible'")
+    context.close()
 
 
 def test_nothing_is_fetched_from_outside_of_the_server(live, browser):

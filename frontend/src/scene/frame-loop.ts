@@ -61,7 +61,14 @@ export class FrameLoop {
   private recent: number[] = [];
   private count = 0;
 
-  constructor(private readonly draw: (detail: Detail) => void) {}
+  /**
+   * @param held whether nothing is drawn before `release`: to a software renderer a frame of an empty scene is as much
+   * work as one of a robot, which would be drawn later by that.
+   */
+  constructor(
+    private readonly draw: (detail: Detail) => void,
+    private held = false,
+  ) {}
 
   /** Nothing changed since the last frame, beside the scene neither, and that was a fine one. */
   get settled(): boolean {
@@ -81,6 +88,17 @@ export class FrameLoop {
   framesPerSecond(nowMs: number): number | null {
     this.recent = this.recent.filter((at) => nowMs - at < 1000);
     return nowMs - this.drawnAt > IDLE_AFTER_MS ? null : this.recent.length;
+  }
+
+  /** There is something to draw. */
+  release(): void {
+    this.held = false;
+    if (this.requestedAt !== null) this.askForTick();
+  }
+
+  /** Draws at once what a canvas showed before its size changed, which emptied it: it would flicker until the next frame. */
+  redraw(detail: Detail): void {
+    if (!this.held) this.draw(detail);
   }
 
   /** Something changed: a frame is due. */
@@ -116,7 +134,7 @@ export class FrameLoop {
     const besides = [...this.besides];
     this.besides.clear();
     for (const show of besides) show();
-    if (this.requestedAt === null) return;
+    if (this.requestedAt === null || this.held) return;
     if (this.count >= FIRST_FRAMES) this.judge(now - Math.max(this.requestedAt, due));
     this.requestedAt = null;
     // The first frame must come soon.

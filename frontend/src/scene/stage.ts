@@ -43,7 +43,7 @@ interface DrawnDisplay {
 export class Stage {
   readonly viewport: Viewport;
   readonly picker: Picker;
-  readonly loop = new FrameLoop((detail) => this.draw(detail));
+  readonly loop = new FrameLoop((detail) => this.draw(detail), true);
   private readonly meshes: MeshLibrary;
   private readonly drawings = new Map<string, DrawnDisplay>();
   private readonly outline: Outline;
@@ -72,8 +72,7 @@ export class Stage {
     standIns: StandIns | null = null,
   ) {
     this.meshes = new MeshLibrary(session.meshProgress, files, standIns);
-    // A resized canvas is empty until it is drawn: at once, or it would flicker.
-    this.viewport = new Viewport(container, () => this.draw(UNSMOOTHED));
+    this.viewport = new Viewport(container, () => this.loop.redraw(UNSMOOTHED));
     this.room = new FreeRoom(this.viewport, () => this.boundsOfRobots(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
     this.picker = new Picker(this.viewport, session, () => this.enabled());
     this.outline = new Outline(this.viewport);
@@ -232,6 +231,7 @@ export class Stage {
     }
     this.globalOptionsChanged();
     this.selectionChanged();
+    if (this.session.displays.known) this.loop.release();
   }
 
   private propertiesChanged(display: DisplayState): void {

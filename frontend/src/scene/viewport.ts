@@ -64,6 +64,8 @@ export class Viewport {
     this.perspective.matrixAutoUpdate = this.orthographic.matrixAutoUpdate = false;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.scene.add(this.ambient, this.headlight, this.headlight.target);
+    // Before anything is drawn it is black, and its box is seen in its place.
+    this.canvas.style.visibility = "hidden";
     container.prepend(this.canvas);
     new ResizeObserver(() => {
       this.fit();
@@ -142,6 +144,7 @@ export class Viewport {
     const draw = (): void => this.renderer.render(this.scene, this.camera);
     if (fine) this.smoothing.render(this.renderer, draw);
     else draw();
+    this.canvas.style.visibility = "";
   }
 
   /** The scene as PNG, so many times as large as the canvas, or as large as the graphics can. */
