@@ -55,7 +55,7 @@ def models(folder: Path) -> list[Model]:
 def collected(folder: Path) -> list[Model]:
     """The descriptions below a folder, such as checkouts of public repositories, each with all packages there."""
     packages: dict[str, str] = {}
-    for path in sorted(folder.rglob("package.xml")):
+    for path in filter(Path.is_file, sorted(folder.rglob("package.xml"))):  # a checkout may have dangling links
         name = re.search(r"<name>\s*([\w-]+)\s*</name>", path.read_text(encoding="utf-8", errors="replace"))
         if name:
             packages.setdefault(name[1], str(path.parent))
