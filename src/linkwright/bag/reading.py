@@ -307,6 +307,18 @@ class BagReader:
         self.close()
 
 
+def open_recording(path: str | Path) -> BagReader:
+    """Open a recording of topics, in MCAP or SQLite, to read its messages.
+
+    Args:
+        path: see `BagReader`; close the reader, or use it in a ``with`` statement.
+
+    Raises:
+        LinkwrightError: see `BagReader`.
+    """
+    return BagReader(path)
+
+
 def _ignore_profiles_of_files(storage: Any) -> None:
     """Let the library find the topics of ``metadata.yaml`` in the files, of which it wants the same profiles.
 

@@ -1,9 +1,10 @@
 """The one way from a file, or a text that is not saved yet, to a robot or world, its origins and its findings."""
 
-from linkwright.descriptions.description import TEXT_NAME, Description
+from linkwright.descriptions.description import Description
 from linkwright.descriptions.library import DescriptionLibrary
 from linkwright.descriptions.service import Packages, examine, is_xacro, load
 from linkwright.descriptions.worlds import WorldDescription, examine_world, is_world
+from linkwright.diagnostics.source import TEXT_NAME
 
 __all__ = [
     "TEXT_NAME",

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from linkwright.xacro import Expansion
     from linkwright.xacro.tracing.provenance import Provenance
 
-TEXT_NAME = "<robot_description>"
-"""What stands in messages for the file of a description that is given as a text."""
-
 TRUE_OF_PARTS = frozenset(
     {
         *("URDF101", "URDF102", "URDF110", "URDF120", "URDF121", "URDF122", "URDF123", "URDF124", "URDF130"),

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import OrderedDict
 from pathlib import Path
 
-from linkwright.descriptions.description import TEXT_NAME, Description
+from linkwright.descriptions.description import Description
 from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics.source import TEXT_NAME
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading, read

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from linkwright.descriptions.description import TEXT_NAME, TRUE_OF_PARTS, Description
+from linkwright.descriptions.description import TRUE_OF_PARTS, Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, has_errors, phrase
+from linkwright.diagnostics.source import TEXT_NAME
 from linkwright.lean_typing import TYPE_CHECKING, Union
 from linkwright.urdf import Reading, Robot, read
 from linkwright.urdf.plaintext import parse_as_urdfdom

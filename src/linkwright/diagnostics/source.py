@@ -10,6 +10,9 @@ from bisect import bisect_right
 
 from linkwright.lean_dataclasses import NamedTuple
 
+TEXT_NAME = "<robot_description>"
+"""The name, in messages, of a description that is given as a text."""
+
 
 class Span(NamedTuple):
     """A place in a file: lines and columns count from 1, columns count characters, the end is exclusive."""

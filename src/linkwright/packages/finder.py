@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from pathlib import Path
 
-import linkwright
 from linkwright.diagnostics import Phrase, did_you_mean, display_path, is_misspelt, joined, phrase
 from linkwright.packages import ament, uri
 from linkwright.packages.ament import install_prefix
@@ -270,7 +269,7 @@ class PackageFinder:
 
 def shipped_folder() -> Path | None:
     """Where the packages shipped with us lie: in the wheel, or in the repository of an editable install."""
-    package = Path(linkwright.__file__).parent
+    package = Path(__file__).parents[1]
     for folder in (package / "robots", package.parents[1] / "robots"):
         if folder.is_dir():
             return folder

@@ -10,7 +10,6 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-import linkwright
 from linkwright.extensions import extensions
 from linkwright.packages.ament import install_prefix, share_in_prefix
 from linkwright.packages.manifest import MANIFEST
@@ -31,7 +30,7 @@ def substituted_share(name: str) -> Path | None:
 @cache
 def _known_in_part() -> frozenset[str]:
     """The packages of which we have modules, messages or nodes."""
-    ours = Path(linkwright.__file__).parent
+    ours = Path(__file__).parents[1]
     found = {file.stem for folder in ("standins/tables", "messages/data") for file in (ours / folder).glob("*.txt")}
     for group in ("linkwright.nodes", "linkwright.components"):
         found.update(name.partition("/")[0] for name in extensions(group))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from linkwright.diagnostics.source import TEXT_NAME
 from linkwright.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.expansion import Expansion
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def expand(
-    path: str | Path,
+    path_or_text: str | Path,
     arguments: Mapping[str, str] | None = None,
     *,
     packages: PackageSource = None,
@@ -31,20 +32,24 @@ def expand(
     """Expand a xacro file, as ros/xacro 2.1 does; a plain URDF file comes out as it is.
 
     Args:
-        path: the file; relative paths in it are relative to its folder, and it is named in the banner as given here.
+        path_or_text: the file, or a text, which is known by its ``<``. Relative paths in a file are relative to its
+            folder, those in a text to `root_dir`. The banner has the path as given here.
         arguments: name -> value of the arguments (``name:=value``); they win over the defaults in the file.
         packages: where ``$(find name)`` looks: an object with ``share(name)``, such as a `PackageFinder`, or a mapping
             from package to share folder that is looked at before the surroundings of the file.
         text: the text to take for that of the file, such as one that is not saved yet.
         limits: bounds for the expansion.
-        root_dir: the folder that relative paths, `path` among them, are in; the current one if None.
+        root_dir: the folder that relative paths start from; the current one if None.
         overlay: texts that stand for those of files, included ones and YAML files among them.
 
     Raises:
         LinkwrightError: what is wrong, each mistake with its place, the macro calls and includes that led there, and
             a hint.
     """
-    inputs = Inputs(str(path), arguments or {}, packages, text, limits or Limits(), str(root_dir or ""), overlay)
+    name = str(path_or_text)
+    if text is None and isinstance(path_or_text, str) and "<" in path_or_text:
+        name, text = TEXT_NAME, path_or_text
+    inputs = Inputs(name, arguments or {}, packages, text, limits or Limits(), str(root_dir or ""), overlay)
     session = inputs.session()
     document = main_document(session, text)
     with room_for(session.limits):

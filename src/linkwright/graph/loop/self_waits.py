@@ -15,7 +15,6 @@ from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any, Protocol
 
-import linkwright
 from linkwright.graph.loop.callback_groups import MutuallyExclusiveCallbackGroup
 
 STRICT = "strict_callback_groups"
@@ -24,7 +23,7 @@ STRICT = "strict_callback_groups"
 RUNNER = "callback_of"
 """The name of the local variable by which a function that runs callbacks holds the entity that it runs one of."""
 
-_OURS = str(Path(linkwright.__file__).parent) + os.sep
+_OURS = str(Path(__file__).parents[2]) + os.sep
 _told: set[tuple[CodeType, str]] = set()
 
 

@@ -14,13 +14,12 @@ from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any, TypeVar
 
-import linkwright
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, SourceText, Span
 from linkwright.launch.errors.exceptions import as_ros_error
 
 T = TypeVar("T", bound="Placed")
 
-_OURS = str(Path(linkwright.__file__).parent) + os.sep
+_OURS = str(Path(__file__).parents[2]) + os.sep
 _SHIPPED_PACKAGES = _OURS + "robots" + os.sep
 _STARTERS = (_OURS + "cli" + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
 """Folders of the programs that our own code may have been started by: the command line, the event loop."""

@@ -10,7 +10,6 @@ import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 
-import linkwright
 from linkwright.packages.cache import cache_folder
 from linkwright.packages.programs.child_python import python_command
 from linkwright.packages.readers.entry_points import EntryPoint
@@ -54,7 +53,7 @@ def script_for_ours(package: str, name: str) -> Path:
         f"    sys.exit(main({package!r}, {name!r}, sys.argv[1:]))",
         "",
     ]
-    return _kept(package, name, linkwright.__file__, "\n".join(lines))
+    return _kept(package, name, __file__, "\n".join(lines))
 
 
 def _kept(package: str, name: str, origin: str, text: str) -> Path:

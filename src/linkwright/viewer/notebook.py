@@ -1,0 +1,78 @@
+"""A robot in a cell of a notebook, with a slider for each joint.
+
+The cell holds the page that ``linkwright export`` writes, in a frame of its own. It needs no server and no network, so
+it also works in saved notebooks, and wherever notebooks run: Jupyter, VS Code, marimo (decision 0113).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+
+from linkwright.descriptions import DescriptionLibrary, examine
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.packages import PackageFinder
+from linkwright.urdf import Robot, save
+from linkwright.viewer.features.export.html import html_of
+from linkwright.viewer.features.export.snapshot import no_robot
+from linkwright.viewer.model_snapshot import snapshot_of_model
+
+_FRAME = (
+    '<iframe title="{title}" srcdoc="{page}" style="width: 100%; height: {height}px; border: 0" '
+    'allow="fullscreen"></iframe>'
+)
+
+
+@dataclass(frozen=True)
+class RobotCell:
+    """The output of a notebook's cell that shows a robot.
+
+    Attributes:
+        name: the robot's name.
+        page: the HTML document that shows it.
+        height: of the cell, in pixels.
+        diagnostics: the findings about the description.
+    """
+
+    name: str
+    page: str
+    height: int
+    diagnostics: tuple[Diagnostic, ...]
+
+    def _repr_html_(self) -> str:
+        return _FRAME.format(title=escape(self.name), page=escape(self.page), height=self.height)
+
+
+def show(
+    robot: str | Path | Robot,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    height: int = 480,
+) -> RobotCell:
+    """Show a robot in a cell of a notebook, as the value of its last line.
+
+    Args:
+        robot: a path to a URDF or xacro file, a text, or a `Robot` that was loaded.
+        arguments: values for the file's ``<xacro:arg>``.
+        height: of the cell, in pixels.
+
+    Raises:
+        LinkwrightError: the description cannot be read or expanded, or has no robot.
+    """
+    library = DescriptionLibrary()
+    source = save(robot) if isinstance(robot, Robot) else robot
+    is_text = isinstance(source, str) and "<" in source
+    folders = [Path.cwd()] if is_text else [Path(source).absolute().parent, Path.cwd()]
+    finder = PackageFinder(start=folders)
+    description = examine(source, arguments=arguments, packages=finder)
+    shown = description.robot
+    if shown is None or not shown.root:
+        raise LinkwrightError(*description.diagnostics) if description.diagnostics else no_robot()
+    text = library.remember(description)
+    with ThreadPoolExecutor(1) as thread:  # a notebook's own thread runs an event loop already
+        snapshot = thread.submit(snapshot_of_model, text, shown, library, finder).result()
+    page = html_of(snapshot).decode("utf-8")
+    return RobotCell(shown.name, page, height, (*description.diagnostics, *snapshot.problems))

@@ -1,0 +1,101 @@
+"""`linkwright.show` in a notebook: a cell of JupyterLab has the robot, with sliders that move it."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import subprocess
+import sys
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+from linkwright import show
+from linkwright.diagnostics import LinkwrightError
+from tests.browser.conftest import becomes, state
+from tests.waiting import wait_until
+
+ARM = """<robot name="arm">
+  <link name="base"/>
+  <link name="tip"><visual><geometry><box size="0.2 0.1 0.1"/></geometry></visual></link>
+  <joint name="shoulder" type="revolute">
+    <parent link="base"/>
+    <child link="tip"/>
+    <axis xyz="0 1 0"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/>
+  </joint>
+</robot>"""
+TOKEN = "test"
+
+
+@pytest.fixture
+def lab(tmp_path: Path):
+    """The address of a JupyterLab with a notebook that shows a robot."""
+    cell = {
+        "cell_type": "code",
+        "execution_count": None,
+        "id": "robot",
+        "metadata": {},
+        "outputs": [],
+        "source": f"import linkwright\nlinkwright.show({ARM!r})",
+    }
+    kernel = {"name": "python3", "display_name": "Python 3"}
+    notebook = {"cells": [cell], "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
+    (tmp_path / "robot.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
+    words = [
+        *(sys.executable, "-m", "jupyterlab", "--no-browser", "--ip=127.0.0.1", "--port=0", "--allow-root"),
+        *(f"--IdentityProvider.token={TOKEN}", f"--ServerApp.root_dir={tmp_path}"),
+    ]
+    folders = {f"JUPYTER_{name}_DIR": str(tmp_path / name) for name in ("CONFIG", "RUNTIME", "DATA")}
+    with (tmp_path / "lab.log").open("w") as log:
+        process = subprocess.Popen(
+            words,
+            env={**os.environ, **folders, "HOME": str(tmp_path)},
+            stdout=log,
+            stderr=subprocess.STDOUT,
+        )
+
+    def address() -> str:
+        """The server's address once it answers, from the file that it writes; empty before."""
+        assert process.poll() is None, (tmp_path / "lab.log").read_text()
+        for file in (tmp_path / "RUNTIME").glob("jpserver-*.json"):
+            found: str = json.loads(file.read_text())["url"]
+            with contextlib.suppress(OSError):
+                urllib.request.urlopen(f"{found}api?token={TOKEN}").close()
+                return found
+        return ""
+
+    try:
+        wait_until(address, what="JupyterLab", pause=0.1)
+        yield f"{address()}lab/tree/robot.ipynb?token={TOKEN}"
+    finally:
+        process.terminate()
+        process.wait()
+
+
+def test_a_cell_of_jupyterlab_shows_the_robot_and_its_slider_moves_it(browser, lab):
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    page.goto(lab)
+    page.locator(".jp-Cell .cm-content").first.click()
+    page.keyboard.press("Shift+Enter")
+    frame = page.wait_for_selector("iframe[title=arm]").content_frame()
+    becomes(lambda: frame.evaluate("() => window.linkwright?.ready === true"), True)
+    level = highest(frame)
+    frame.get_by_role("slider").first.fill("0.5")
+    becomes(lambda: highest(frame) > level + 0.01, True)
+    page.close()
+
+
+def highest(frame) -> float:
+    """Return the height of the highest point of the tip, in metres."""
+    robot = next(display for display in state(frame, "displays") if display["class"].endswith("RobotModel"))
+    (visual,) = robot["drawn"]["links"]["tip"]["visuals"]
+    return visual["bounds"]["max"][2]
+
+
+def test_a_description_without_a_robot_raises_what_is_wrong():
+    with pytest.raises(LinkwrightError) as raised:
+        show("<robot name='a'><joint/></robot>")
+    assert raised.value.diagnostics
