@@ -188,7 +188,7 @@ $(RELEASE_TOOLS)/.ready: | $(UV)
 	touch $@
 
 docs: $(VENV)/.dev
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict  # --quiet would let warnings pass
 
 page: $(VENV)/.dev
 	$(BIN)/python tools/build_page.py

@@ -1,0 +1,175 @@
+"""The documentation as a site: its parts, its two languages, their search, and links that lead nowhere."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from tests.docs.pages import DOCS
+from tests.places import REPOSITORY
+
+SETTINGS = yaml.safe_load((REPOSITORY / "mkdocs.yml").read_text(encoding="utf-8"))
+
+PAGES = {
+    "index.md": "# Home\n\n[More](more.md#part) and [a rule](rules/one.md).\n",
+    "more.md": "# More of it\n\n## Part\n\nThe inertia of a wheel.\n",
+    "rules.md": "# Rules\n",
+    "rules/one.md": "# A rule\n",
+    "zh/index.md": "# 首页\n\n[更多](more.md#part)\n",
+    "zh/more.md": "# 更多内容\n\n## 部分 {#part}\n\n车轮的惯量。\n",
+    "zh/rules.md": "# 规则\n",
+}
+NAVIGATION = [
+    {"Home": "index.md"},
+    {"Tutorials": ["more.md"]},
+    {"Reference": [{"All rules": "rules.md"}, "rules/one.md"]},
+]
+
+
+def entries(items: list[Any]) -> Iterator[tuple[str, str]]:
+    """Each title and page of a navigation; sections have no page, and pages may lack a title."""
+    for item in items:
+        title, below = next(iter(item.items())) if isinstance(item, dict) else ("", item)
+        if isinstance(below, list):
+            yield title, ""
+            yield from entries(below)
+        else:
+            yield title, below
+
+
+def build(settings: Path, site: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--config-file", settings, "--site-dir", site],
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture
+def small_site(tmp_path):
+    """Build a site of a few pages with the settings of ours, some pages changed; returns its folder and the outcome."""
+
+    def build_small(**changed: str) -> tuple[Path, subprocess.CompletedProcess[str]]:
+        for name, text in {**PAGES, **{f"{name}.md": text for name, text in changed.items()}}.items():
+            (tmp_path / "docs" / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / "docs" / name).write_text(text, encoding="utf-8")
+        settings = {
+            "INHERIT": str(REPOSITORY / "mkdocs.yml"),
+            "hooks": [str(REPOSITORY / hook) for hook in SETTINGS["hooks"]],
+            "nav": NAVIGATION,
+        }
+        file = tmp_path / "mkdocs.yml"
+        file.write_text(yaml.safe_dump(settings), encoding="utf-8")
+        return tmp_path / "site", build(file, tmp_path / "site")
+
+    return build_small
+
+
+def tabs(page: Path) -> list[str]:
+    found = re.search(r'<nav class="md-tabs".*?</nav>', page.read_text(encoding="utf-8"), re.DOTALL)
+    assert found is not None
+    return [text.strip() for text in re.findall(r'class="md-tabs__link">\s*(.*?)\s*</a>', found[0], re.DOTALL)]
+
+
+def languages(page: Path) -> dict[str, str]:
+    """Where the selector of the language leads to."""
+    text = page.read_text(encoding="utf-8")
+    links = re.findall(r'<a href="([^"]+)" hreflang="(\w+)" class="md-select__link"', text)
+    return {language: os.path.relpath(page.parent / link, page.parent.parent) for link, language in links}
+
+
+def test_the_site_is_divided_by_what_readers_want() -> None:
+    assert [title for item in SETTINGS["nav"] for title in item] == [
+        "Home",
+        "Tutorials",
+        "How-to guides",
+        "Reference",
+        "Explanation",
+    ]
+
+
+def test_each_english_page_is_listed_once() -> None:
+    listed = Counter(page for _, page in entries(SETTINGS["nav"]) if page)
+    there = {path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md") if "zh" not in path.parts}
+    assert dict(listed) == dict.fromkeys((name for name in there if not name.startswith("decisions/0")), 1)
+
+
+def test_each_title_of_the_navigation_has_a_chinese_one() -> None:
+    assert {title for title, _ in entries(SETTINGS["nav"]) if title} == set(SETTINGS["extra"]["chinese"])
+
+
+def test_a_page_leads_to_its_sister_and_back(small_site) -> None:
+    site, done = small_site()
+    assert done.returncode == 0, done.stderr
+    assert tabs(site / "more.html") == ["Home", "Tutorials", "Reference"]
+    assert tabs(site / "zh" / "more.html") == ["首页", "教程", "参考"]
+    assert languages(site / "zh" / "more.html") == {"en": "more.html", "zh": "zh/more.html"}
+    assert {link.rpartition("site/")[2] for link in languages(site / "more.html").values()} == {
+        "more.html",
+        "zh/more.html",
+    }
+    assert '<html lang="zh"' in (site / "zh" / "more.html").read_text(encoding="utf-8")
+    assert '<html lang="en"' in (site / "more.html").read_text(encoding="utf-8")
+
+
+def test_a_page_without_a_sister_leads_to_the_page_of_its_folder(small_site) -> None:
+    site, done = small_site()
+    assert done.returncode == 0, done.stderr
+    assert languages(site / "rules" / "one.html") == {"en": "rules/one.html", "zh": "zh/rules.html"}
+
+
+def test_each_language_has_a_search_of_its_own(small_site) -> None:
+    site, done = small_site()
+    assert done.returncode == 0, done.stderr
+    english, chinese = (
+        json.loads((site / folder / "search" / "search_index.json").read_text(encoding="utf-8"))
+        for folder in ("", "zh")
+    )
+    assert {entry["location"].partition("#")[0] for entry in english["docs"]} == {
+        "index.html",
+        "more.html",
+        "rules.html",
+        "rules/one.html",
+    }
+    assert {entry["location"].partition("#")[0] for entry in chinese["docs"]} == {
+        "index.html",
+        "more.html",
+        "rules.html",
+    }
+    words = [word for entry in chinese["docs"] for word in entry["text"].split("\u200b")]
+    assert {"车轮", "惯量"} <= set(words)
+    assert '"base": "../zh/"' in (site / "zh" / "more.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("changed", "reason"),
+    [
+        ({"more": "# More of it\n\n## Another part\n"}, "#part"),
+        ({"index": "# Home\n\n[gone](gone.md)\n"}, "gone.md"),
+        ({"zh/index": "# 首页\n\n[没有](../gone.md)\n"}, "gone.md"),
+        ({"forgotten": "# A page that is not listed\n"}, "forgotten.md"),
+    ],
+    ids=["anchor", "page", "page in Chinese", "page not listed"],
+)
+def test_what_leads_nowhere_fails_the_build(small_site, changed, reason) -> None:
+    _, done = small_site(**changed)
+    assert done.returncode == 1
+    assert reason in done.stderr
+
+
+def test_all_pages_can_be_built(tmp_path) -> None:
+    done = build(REPOSITORY / "mkdocs.yml", tmp_path / "site")
+    assert done.returncode == 0, done.stderr
+    assert len(list((tmp_path / "site").rglob("*.html"))) > 100
