@@ -148,6 +148,7 @@ check: $(VENV)/.dev
 	$(BIN)/python tools/message_stubs.py --check
 	$(BIN)/python tools/compatibility.py --check
 	$(BIN)/python tools/command_reference.py --check
+	$(BIN)/python tools/page_tables.py --check
 	$(BIN)/python tools/catalogues.py check
 	$(BIN)/python tools/rule_reference.py --check
 	$(BIN)/python tools/language_reference.py --check

@@ -1,0 +1,55 @@
+"""Tables of pages that list what the code knows are generated and current."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from linkwright.cli.command import VERBS
+from linkwright.diagnostics.extras import APART, EXTRAS
+from tests.docs.pages import DOCS
+from tests.repository_tools import load_tool
+from tests.toml_files import PROJECT
+
+
+@pytest.fixture(scope="module")
+def tool():
+    return load_tool("page_tables")
+
+
+def test_the_pages_are_current(tool) -> None:
+    assert tool.main(["--check"]) == 0, "run tools/page_tables.py"
+
+
+def test_a_stale_table_is_found_and_mended(tool, tmp_path, monkeypatch) -> None:
+    page = tmp_path / "index.md"
+    page.write_text("before\n<!-- table: extras -->\nold\n<!-- end of table -->\nafter\n", encoding="utf-8")
+    monkeypatch.setattr(tool, "PAGES", (page,))
+    assert tool.main(["--check"]) == 1
+    assert tool.main([]) == 0
+    assert tool.main(["--check"]) == 0
+    text = page.read_text(encoding="utf-8")
+    assert "old" not in text
+    assert text.startswith("before\n")
+    assert text.endswith("\nafter\n")
+
+
+@pytest.mark.parametrize("folder", ["", "zh"])
+def test_the_index_lists_each_command(folder) -> None:
+    page = (DOCS / folder / "index.md").read_text(encoding="utf-8")
+    assert re.findall(r"^\| \[`linkwright (\w+)`\]", page, re.MULTILINE) == list(VERBS)
+
+
+def test_each_extra_has_a_purpose_and_packages(tool) -> None:
+    assert set(tool.EXTRAS) == set(EXTRAS)
+    table = tool.extras(chinese=False)
+    assert {name for name in EXTRAS if re.search(rf"`{name}` \| .*; not in `all` \|", table)} == APART
+    for name, extra in tool.EXTRAS.items():
+        assert any(line.startswith(extra.main) for line in PROJECT["optional-dependencies"][name]), name
+
+
+def test_where_there_is_no_wheel_of_dds_the_table_has_a_dash(tool) -> None:
+    rows = dict(line.strip("| ").split(" | ", 1) for line in tool.systems(chinese=False).splitlines())
+    assert rows["`dds`"] == "3.10–3.13 | – | 3.10–3.13 | – | 3.10–3.13"
+    assert "`zenoh`" not in rows

@@ -1,0 +1,202 @@
+"""Bring the tables of pages up to date that list what the code knows: commands, extras, and where extras can be had.
+
+Usage: python tools/page_tables.py [--check]
+
+A table stands between the comments ``<!-- table: NAME -->`` and ``<!-- end of table -->``, in the language of its page.
+The commands and their texts are those of the help, the packages and their markers those of ``pyproject.toml``.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from packaging.requirements import Requirement
+
+from linkwright.cli.command import GROUPS, VERBS, parser_for
+from linkwright.cli.language import said_in_help
+from linkwright.diagnostics.translation import set_language
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from command_reference import describe
+
+ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
+PAGES = tuple(DOCS / folder / name for folder in ("", "zh") for name in ("index.md", "getting-started.md"))
+
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+_TABLE = re.compile(r"(?<=<!-- table: )(\w+) -->\n.*?(?=<!-- end of table -->)", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Extra:
+    """What an extra is for.
+
+    Attributes:
+        main: the package that it is of no use without.
+        english: its purpose, as a phrase.
+        chinese: the same in Chinese.
+    """
+
+    main: str
+    english: str
+    chinese: str
+
+
+EXTRAS = {
+    "dds": Extra(
+        "cyclonedds",
+        "other processes: `linkwright topic`, `node`, `service`, executables of your packages, ROS 2 robots",
+        "与其他进程通信：`linkwright topic`、`node`、`service` 等命令，自己功能包的可执行文件，运行 ROS 2 的机器人",
+    ),
+    "zenoh": Extra(
+        "eclipse-zenoh",
+        "the same over Zenoh, as `rmw_zenoh_cpp`, and where DDS has no wheel",
+        "同样的通信，但经由 Zenoh，与 `rmw_zenoh_cpp` 相同；也用于 DDS 没有 wheel 的系统",
+    ),
+    "sim": Extra(
+        "mujoco", "simulation: `linkwright sim`, `drive`, `dataset`", "仿真：`linkwright sim`、`drive`、`dataset`"
+    ),
+    "navigation": Extra("scipy", "mapping, localization, planning", "建图、定位、路径规划"),
+    "vision": Extra("onnxruntime", "object detectors", "目标检测"),
+    "voice": Extra("vosk", "speech engines, the system's microphone", "语音引擎、系统麦克风"),
+    "bag": Extra(
+        "rosbags", "recordings: `linkwright bag`, recordings in the page", "录制：`linkwright bag`，在页面里回放"
+    ),
+    "image": Extra(
+        "pillow", "compressed images in the page, textures in exports", "页面里的压缩图像，导出文件里的纹理"
+    ),
+    "mesh": Extra(
+        "trimesh",
+        "exports; glTF and unusual mesh files in `linkwright inertia` and `check`",
+        "导出；`linkwright inertia` 和 `check` 读取 glTF 和少见的网格文件",
+    ),
+    "diagram": Extra("pygraphviz", "PDF and SVG of `linkwright diagram`", "`linkwright diagram` 的 PDF 和 SVG"),
+    "colcon": Extra(
+        "colcon-common-extensions",
+        "`colcon build` in `linkwright shell`",
+        "在 `linkwright shell` 里运行 `colcon build`",
+    ),
+    "parquet": Extra("pyarrow", "Parquet tables of `linkwright sweep`", "`linkwright sweep` 的 Parquet 表格"),
+    "ray": Extra("ray", "`linkwright sweep` on a cluster", "在集群上运行 `linkwright sweep`"),
+    "train": Extra("torch", "`linkwright vision train`", "`linkwright vision train`"),
+}
+"""The extras in the order in which readers meet them."""
+
+SYSTEMS = {
+    "Linux x86-64": ("linux", "x86_64"),
+    "Linux ARM64": ("linux", "aarch64"),
+    "macOS Apple silicon": ("darwin", "arm64"),
+    "macOS Intel": ("darwin", "x86_64"),
+    "Windows": ("win32", "AMD64"),
+}
+"""Name of a system -> its ``sys_platform`` and ``platform_machine``."""
+
+PYTHONS = [words[-1] for line in PROJECT["classifiers"] if re.fullmatch(r"3\.\d+", (words := line.split(" :: "))[-1])]
+"""The versions of Python that Linkwright is made for, oldest first."""
+
+
+def refreshed(page: str, chinese: bool) -> str:
+    """The text of a page with each table as it is now."""
+    return _TABLE.sub(lambda match: f"{match[1]} -->\n\n{TABLES[match[1]](chinese)}\n\n", page)
+
+
+def commands(chinese: bool) -> str:
+    """The commands in their groups, each with what the help says of it and a link to its reference."""
+    set_language("zh" if chinese else "en")
+    try:
+        title = "用途" if chinese else "what it does"
+        return "\n\n".join(
+            "\n".join([f"| {_capital(said_in_help(group))} | {title} |", "| --- | --- |", *map(_command, verbs)])
+            for group, verbs in GROUPS.items()
+        )
+    finally:
+        set_language(None)
+
+
+def extras(chinese: bool) -> str:
+    """What each extra is for, and the packages that it brings."""
+    rows = ["| 可选部分 | 用途 | 安装的包 |" if chinese else "| extra | for | brings |", "| --- | --- | --- |"]
+    together = {name for requirement in _required("all") for name in requirement.extras}
+    apart = "；不在 `all` 里" if chinese else "; not in `all`"
+    for name, extra in EXTRAS.items():
+        purpose = (extra.chinese if chinese else extra.english) + ("" if name in together else apart)
+        brought = dict.fromkeys(each.name for each in _required(name) if each.name != PROJECT["name"])
+        own = [f"`{other}`" for each in _required(name) for other in sorted(each.extras)]
+        rows.append(f"| `{name}` | {purpose} | {('、' if chinese else ', ').join([*own, *brought])} |")
+    return "\n".join(rows)
+
+
+def systems(chinese: bool) -> str:
+    """Which versions of Python an extra has packages for, for those that do not have them everywhere."""
+    rows = [f"| {'可选部分' if chinese else 'extra'} | {' | '.join(SYSTEMS)} |", f"| --- |{' --- |' * len(SYSTEMS)}"]
+    every = f"{PYTHONS[0]}–{PYTHONS[-1]}"
+    for name, extra in EXTRAS.items():
+        cells = [_span(extra.main, *system) for system in SYSTEMS.values()]
+        if set(cells) != {every}:
+            rows.append(f"| `{name}` | {' | '.join(cells)} |")
+    return "\n".join(rows)
+
+
+TABLES: dict[str, Callable[[bool], str]] = {"commands": commands, "extras": extras, "systems": systems}
+
+
+def _command(name: str) -> str:
+    first = next(describe(parser_for(name), "")).partition("\n")[0].removeprefix("## ").strip()
+    return f"| [`linkwright {name}`](commands.md#{first.replace(' ', '-')}) | {said_in_help(VERBS[name])} |"
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _required(extra: str) -> Iterator[Requirement]:
+    """The requirements of an extra, in the order in which they are listed."""
+    return map(Requirement, PROJECT["optional-dependencies"][extra])
+
+
+def _span(main: str, platform: str, machine: str) -> str:
+    """The versions of Python for which a package is asked for on a system, as ``3.10–3.13``, or a dash."""
+    listed = [
+        requirement
+        for extra in EXTRAS
+        for requirement in _required(extra)
+        if requirement.name == main or requirement.name.startswith(f"{main}-")
+    ]
+    there = [
+        version
+        for version in PYTHONS
+        if any(
+            requirement.marker is None
+            or requirement.marker.evaluate(
+                {"python_version": version, "sys_platform": platform, "platform_machine": machine}
+            )
+            for requirement in listed
+        )
+    ]
+    return f"{there[0]}–{there[-1]}" if there else "–"
+
+
+def main(words: Sequence[str]) -> int:
+    """Write the pages, or with ``--check`` say whether they are current."""
+    status = 0
+    for page in PAGES:
+        before = page.read_text(encoding="utf-8")
+        after = refreshed(before, page.parent.name == "zh")
+        if before != after and "--check" in words:
+            print(f"{page} is stale: run python tools/page_tables.py", file=sys.stderr)
+            status = 1
+        elif before != after:
+            page.write_text(after, encoding="utf-8", newline="\n")
+    return status
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
