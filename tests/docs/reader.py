@@ -25,7 +25,7 @@ PATIENCE = 90.0
 """Seconds to wait for anything; a busy machine is slow."""
 
 _PROMPT = re.compile(r"\[status (\d+)\]\r?\n")
-_PAGE = re.compile(r"linkwright (launch|sim|view) |ros2 launch ")
+_PAGE = re.compile(r"linkwright (launch|sim|view|drive(?!.* --(show|write)$)) |ros2 launch ")
 _ANY_PAGE = "Viewer: http://"
 _BAD = re.compile(r"Traceback|\[ERROR\]|\[FATAL\]|^error")
 
