@@ -261,7 +261,7 @@ def write(block: Block, folder: Path) -> None:
     """Write a block with a title into the file that the page names; ``FILE, more`` adds to one."""
     path = folder / block.title.removesuffix(", more")
     if path == folder / block.title:
-        path.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(block.text, encoding="utf-8")
         return
     text = path.read_text(encoding="utf-8")

@@ -6,10 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import yaml
 
 from tests.docs.pages import DOCS, blocks
 from tests.docs.reader import Known
 
+CHECK = "linkwright check --strict src"
 PUBLISH = 'linkwright topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.3}, angular: {z: 0.5}}"'
 
 
@@ -29,3 +31,36 @@ def test_a_urdf_without_masses_is_driven_and_put_into_a_world(follow: Callable[.
     assert cart.count("<mass ") == 4
     assert "libgazebo_ros_diff_drive.so" in cart
     assert (home / "yard.world").is_file()
+
+
+@pytest.mark.slow
+def test_a_finding_fails_the_check_and_is_mended(follow: Callable[..., Path]) -> None:
+    home = follow(
+        DOCS / "howto-ci.md",
+        {
+            CHECK: Known(complains="LW201", may_fail=True, goes_on=False),
+            "linkwright check --diff --unsafe-fixes src": Known(
+                shows='+    <limit lower="-1.57"', may_fail=True, goes_on=False
+            ),
+        },
+    )
+    assert '<limit lower="-1.57" upper="1.57"' in (home / "src" / "arm.urdf").read_text(encoding="utf-8")
+    assert (home / "linkwright.sarif").is_file()
+
+
+def test_the_workflow_and_the_hook_run_what_the_page_shows() -> None:
+    files = {
+        block.title: yaml.safe_load(block.text)
+        for block in blocks(DOCS / "howto-ci.md")
+        if "yaml" in block.title or "yml" in block.title
+    }
+    shown = [
+        line for block in blocks(DOCS / "howto-ci.md") if block.language == "bash" for line in block.text.splitlines()
+    ]
+    steps = files[".github/workflows/check.yml"]["jobs"]["descriptions"]["steps"]
+    assert [step["run"] for step in steps if "linkwright check" in step.get("run", "")] == [
+        "linkwright check --strict --format github src"
+    ]
+    (hook,) = files[".pre-commit-config.yaml"]["repos"][0]["hooks"]
+    assert hook["entry"] == CHECK
+    assert {hook["entry"], steps[-1]["run"]} <= set(shown)

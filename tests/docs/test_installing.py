@@ -17,6 +17,7 @@ KINDS = {".html", ".md", ".po", ".py", ".toml", ".ts", ".txt", ".xml", ".yaml"}
 RECORDS = REPOSITORY / "docs" / "decisions"
 INSTALLING = re.compile(r"\b(?:pip|pipx|uv tool) install (?P<what>(?:-e )?(?:'[^'\n]+'|[^\s`'）)]+))")
 OTHERS = {
+    "--no-index",
     "-e street_displays",
     "'linkwright-0.1.0-py3-none-any.whl[all]'",
     "ai-edge-litert",
