@@ -1,0 +1,51 @@
+"""The recipe of `docs/howto-real-robot.md`, with a robot whose node is real; see `test_real_ros`."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+
+import pytest
+
+from tests.docs.pages import DOCS, blocks
+from tests.domains import own_domain
+from tests.wire.programs import linkwright
+
+PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
+PAGE = DOCS / "howto-real-robot.md"
+FIND_IT = next(block.text for block in blocks(PAGE) if "linkwright topic list" in block.text)
+
+pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
+
+
+@pytest.fixture
+def robot(programs):
+    """Start a robot with some variables of its environment; it listens and publishes when this returns."""
+    return lambda **variables: programs("real_peer", "robot", python=PYTHON, **variables)
+
+
+def run(name):
+    """Run the command of step 3 that has this verb."""
+    line = next(line for line in FIND_IT.splitlines() if line.startswith(f"linkwright {name}"))
+    return linkwright(*shlex.split(line)[1:])
+
+
+def test_the_robot_is_found_with_the_variables_of_the_page(robot, monkeypatch) -> None:
+    for name, value in re.findall(r"^export (\w+)=(\w+)", FIND_IT, re.MULTILINE):
+        monkeypatch.setenv(name, str(own_domain()) if name == "ROS_DOMAIN_ID" else value)
+    robot()
+    assert "/from_ros" in run("topic list")[0].splitlines()
+    printed, errors, status = run("doctor")
+    assert (status, printed.startswith("All is well: 1 node, ")) == (0, True), errors
+
+
+@pytest.mark.parametrize(("transports", "found"), [("SHM", False), ("LARGE_DATA", False), ("DEFAULT", True)])
+def test_which_transports_of_fast_dds_hide_the_robot(robot, transports, found) -> None:
+    robot(FASTDDS_BUILTIN_TRANSPORTS=transports)
+    assert ("/from_ros" in run("topic list")[0].splitlines()) is found
+
+
+def test_the_doctor_says_that_the_domain_may_be_another(robot) -> None:
+    robot(ROS_DOMAIN_ID=str(own_domain(2)))
+    assert "DOC801" in run("doctor")[1]
