@@ -20,6 +20,7 @@ from packaging.requirements import Requirement
 
 from linkwright.cli.command import GROUPS, VERBS, parser_for
 from linkwright.cli.language import said_in_help
+from linkwright.descriptions import load
 from linkwright.diagnostics.translation import set_language
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -27,7 +28,9 @@ from command_reference import describe
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
-PAGES = tuple(DOCS / folder / name for folder in ("", "zh") for name in ("index.md", "getting-started.md"))
+PAGES = tuple(
+    DOCS / folder / name for folder in ("", "zh") for name in ("index.md", "getting-started.md", "gallery.md")
+)
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -90,6 +93,24 @@ EXTRAS = {
 }
 """The extras in the order in which readers meet them."""
 
+ROBOTS = {
+    "arm": ("Arm with a gripper", "带夹爪的机械臂"),
+    "scara": ("SCARA", "SCARA 机械臂"),
+    "delta": ("Delta robot", "并联机器人"),
+    "mobile_manipulator": ("Mobile manipulator", "移动机械臂"),
+    "car": ("Car with Ackermann steering", "阿克曼转向小车"),
+    "forklift": ("Forklift", "叉车"),
+    "excavator": ("Excavator", "挖掘机"),
+    "rover": ("Rover with rockers and bogies", "摇臂式火星车"),
+    "quadrotor": ("Quadrotor", "四旋翼"),
+    "quadruped": ("Quadruped", "四足机器人"),
+    "hexapod": ("Hexapod", "六足机器人"),
+    "humanoid": ("Humanoid", "人形机器人"),
+}
+"""The robots of the gallery: the name of its file -> its title in English and in Chinese."""
+
+COLUMNS = 3
+
 SYSTEMS = {
     "Linux x86-64": ("linux", "x86_64"),
     "Linux ARM64": ("linux", "aarch64"),
@@ -145,12 +166,36 @@ def systems(chinese: bool) -> str:
     return "\n".join(rows)
 
 
-TABLES: dict[str, Callable[[bool], str]] = {"commands": commands, "extras": extras, "systems": systems}
+def gallery(chinese: bool) -> str:
+    """The robots of the gallery in rows: images, and below them titles with the number of joints that move."""
+    folder = "../gallery" if chinese else "gallery"
+    images = {}
+    for name, titles in ROBOTS.items():
+        title = titles[chinese]
+        joints = sum(joint.type != "fixed" for joint in load(DOCS / "gallery" / f"{name}.xacro").joints.values())
+        text = f"{joints} 个活动关节" if chinese else f"{joints} moving joints"
+        images[f"![{title}]({folder}/{name}.webp)"] = f"[{title}]({folder}/{name}.xacro), {text}"
+    rows = [list(images)[first : first + COLUMNS] for first in range(0, len(images), COLUMNS)]
+    return "\n\n".join(
+        "\n".join((_row(row), _row(["---"] * len(row)), _row([images[image] for image in row]))) for row in rows
+    )
+
+
+TABLES: dict[str, Callable[[bool], str]] = {
+    "commands": commands,
+    "extras": extras,
+    "systems": systems,
+    "gallery": gallery,
+}
 
 
 def _command(name: str) -> str:
     first = next(describe(parser_for(name), "")).partition("\n")[0].removeprefix("## ").strip()
     return f"| [`linkwright {name}`](commands.md#{first.replace(' ', '-')}) | {said_in_help(VERBS[name])} |"
+
+
+def _row(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
 
 
 def _capital(text: str) -> str:

@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from linkwright.cli import main
 from linkwright.cli.command import VERBS
 from linkwright.diagnostics.extras import APART, EXTRAS
 from tests.docs.pages import DOCS
@@ -53,3 +54,14 @@ def test_where_there_is_no_wheel_of_dds_the_table_has_a_dash(tool) -> None:
     rows = dict(line.strip("| ").split(" | ", 1) for line in tool.systems(chinese=False).splitlines())
     assert rows["`dds`"] == "3.10–3.13 | – | 3.10–3.13 | – | 3.10–3.13"
     assert "`zenoh`" not in rows
+
+
+def test_each_robot_of_the_gallery_has_a_title_and_an_image(tool) -> None:
+    folder = DOCS / "gallery"
+    assert {path.stem for path in folder.glob("*.xacro")} == {*tool.ROBOTS, "parts"}
+    assert {path.stem for path in folder.glob("*.webp")} == set(tool.ROBOTS)
+
+
+def test_nothing_is_found_in_the_robots_of_the_gallery(capsys) -> None:
+    assert main(["check", "--strict", str(DOCS / "gallery")]) == 0
+    assert "0 errors, 0 warnings" in "".join(capsys.readouterr())

@@ -1,0 +1,82 @@
+"""Make the images of the gallery, ``docs/gallery/NAME.webp``, from its descriptions, ``docs/gallery/NAME.xacro``.
+
+Usage: python tools/gallery.py [NAME ...] (needs a Chromium and Pillow)
+
+Each robot is what `linkwright view` shows of it in a headless browser: the scene alone, without panels.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import chromium
+from PIL import Image
+from playwright.sync_api import Browser, sync_playwright
+
+FOLDER = Path(__file__).resolve().parent.parent / "docs" / "gallery"
+PARTS = "parts"
+"""What the robots include, which is no robot by itself."""
+
+FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
+WINDOW = {"width": 1480, "height": 812}
+SIZE = (480, 360)
+SETTLING = 4000
+"""Milliseconds after which the scene is drawn at its full resolution."""
+
+_CONTROLS_HIDDEN = """(canvas) => {
+  for (let element = canvas; element.parentElement; element = element.parentElement) {
+    for (const sibling of element.parentElement.children) {
+      if (sibling !== element && getComputedStyle(sibling).position === "absolute") sibling.style.visibility = "hidden";
+    }
+  }
+}"""
+
+
+def robots() -> list[str]:
+    """Return the names of the robots."""
+    return sorted(path.stem for path in FOLDER.glob("*.xacro") if path.stem != PARTS)
+
+
+def make_image(browser: Browser, name: str) -> None:
+    """Show one robot, and write its image."""
+    command = [sys.executable, "-m", "linkwright", "view", f"{name}.xacro", "--no-open"]
+    environment = {**os.environ, "LINKWRIGHT_DDS": "0"}
+    program = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, cwd=FOLDER, text=True)
+    assert program.stdout is not None
+    try:
+        page = browser.new_page(viewport=WINDOW, locale="en-US")  # type: ignore[arg-type]
+        page.goto(next(line.split()[1] for line in program.stdout if line.startswith("Viewer: ")))
+        page.wait_for_function("window.linkwright?.ready === true", timeout=60_000)
+        canvas = page.locator("canvas").first
+        canvas.evaluate(_CONTROLS_HIDDEN)
+        page.wait_for_timeout(SETTLING)
+        shot = Image.open(io.BytesIO(canvas.screenshot(timeout=60_000))).convert("RGB")
+        page.close()
+    finally:
+        program.send_signal(signal.SIGINT)
+        program.wait(timeout=30)
+    height = min(shot.height, shot.width * SIZE[1] // SIZE[0])
+    width = height * SIZE[0] // SIZE[1]
+    left, top = (shot.width - width) // 2, (shot.height - height) // 2
+    small = shot.crop((left, top, left + width, top + height)).resize(SIZE, Image.Resampling.LANCZOS)
+    small.save(FOLDER / f"{name}.webp", quality=80, method=6)
+
+
+def main(names: Sequence[str]) -> int:
+    """Make the images of these robots, or of all."""
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium.find() or chromium.fetch(), args=list(FLAGS))
+        for name in names or robots():
+            make_image(browser, name)
+        browser.close()
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
