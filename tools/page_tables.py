@@ -173,8 +173,8 @@ def gallery(chinese: bool) -> str:
     for name, titles in ROBOTS.items():
         title = titles[chinese]
         joints = sum(joint.type != "fixed" for joint in load(DOCS / "gallery" / f"{name}.xacro").joints.values())
-        text = f"{joints} 个活动关节" if chinese else f"{joints} moving joints"
-        images[f"![{title}]({folder}/{name}.webp)"] = f"[{title}]({folder}/{name}.xacro), {text}"
+        text = f"，{joints} 个活动关节" if chinese else f", {joints} moving joints"
+        images[f"![{title}]({folder}/{name}.webp)"] = f"[{title}]({folder}/{name}.xacro){text}"
     rows = [list(images)[first : first + COLUMNS] for first in range(0, len(images), COLUMNS)]
     return "\n\n".join(
         "\n".join((_row(row), _row(["---"] * len(row)), _row([images[image] for image in row]))) for row in rows

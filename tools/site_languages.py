@@ -33,7 +33,8 @@ def on_config(config: MkDocsConfig) -> None:
     config.mdx_configs["toc"]["slugify"] = slugify(case="lower")  # Chinese headings have the anchors of Git hosts
     folder = Path(config.docs_dir) / CHINESE
     titles: dict[str, str] = config.extra["chinese"]
-    config.nav = [*config.nav, {CHINESE: _chinese(config.nav, folder, titles)}]
+    english = list(config.nav or ())
+    config.nav = [*english, {CHINESE: _chinese(english, folder, titles)}]
 
 
 def on_nav(nav: Navigation, **_: object) -> None:

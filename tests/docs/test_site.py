@@ -57,24 +57,27 @@ def build(settings: Path, site: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.fixture
-def small_site(tmp_path):
+def build_small(folder: Path, **changed: str) -> tuple[Path, subprocess.CompletedProcess[str]]:
     """Build a site of a few pages with the settings of ours, some pages changed; returns its folder and the outcome."""
+    for name, text in {**PAGES, **{f"{name}.md": text for name, text in changed.items()}}.items():
+        (folder / "docs" / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "docs" / name).write_text(text, encoding="utf-8")
+    settings = {
+        "INHERIT": str(REPOSITORY / "mkdocs.yml"),
+        "hooks": [str(REPOSITORY / hook) for hook in SETTINGS["hooks"]],
+        "nav": NAVIGATION,
+    }
+    file = folder / "mkdocs.yml"
+    file.write_text(yaml.safe_dump(settings), encoding="utf-8")
+    return folder / "site", build(file, folder / "site")
 
-    def build_small(**changed: str) -> tuple[Path, subprocess.CompletedProcess[str]]:
-        for name, text in {**PAGES, **{f"{name}.md": text for name, text in changed.items()}}.items():
-            (tmp_path / "docs" / name).parent.mkdir(parents=True, exist_ok=True)
-            (tmp_path / "docs" / name).write_text(text, encoding="utf-8")
-        settings = {
-            "INHERIT": str(REPOSITORY / "mkdocs.yml"),
-            "hooks": [str(REPOSITORY / hook) for hook in SETTINGS["hooks"]],
-            "nav": NAVIGATION,
-        }
-        file = tmp_path / "mkdocs.yml"
-        file.write_text(yaml.safe_dump(settings), encoding="utf-8")
-        return tmp_path / "site", build(file, tmp_path / "site")
 
-    return build_small
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A site of the pages above."""
+    folder, done = build_small(tmp_path_factory.mktemp("small"))
+    assert done.returncode == 0, done.stderr
+    return folder
 
 
 def tabs(page: Path) -> list[str]:
@@ -110,9 +113,7 @@ def test_each_title_of_the_navigation_has_a_chinese_one() -> None:
     assert {title for title, _ in entries(SETTINGS["nav"]) if title} == set(SETTINGS["extra"]["chinese"])
 
 
-def test_a_page_leads_to_its_sister_and_back(small_site) -> None:
-    site, done = small_site()
-    assert done.returncode == 0, done.stderr
+def test_a_page_leads_to_its_sister_and_back(site: Path) -> None:
     assert tabs(site / "more.html") == ["Home", "Tutorials", "Reference"]
     assert tabs(site / "zh" / "more.html") == ["首页", "教程", "参考"]
     assert languages(site / "zh" / "more.html") == {"en": "more.html", "zh": "zh/more.html"}
@@ -124,15 +125,11 @@ def test_a_page_leads_to_its_sister_and_back(small_site) -> None:
     assert '<html lang="en"' in (site / "more.html").read_text(encoding="utf-8")
 
 
-def test_a_page_without_a_sister_leads_to_the_page_of_its_folder(small_site) -> None:
-    site, done = small_site()
-    assert done.returncode == 0, done.stderr
+def test_a_page_without_a_sister_leads_to_the_page_of_its_folder(site: Path) -> None:
     assert languages(site / "rules" / "one.html") == {"en": "rules/one.html", "zh": "zh/rules.html"}
 
 
-def test_each_language_has_a_search_of_its_own(small_site) -> None:
-    site, done = small_site()
-    assert done.returncode == 0, done.stderr
+def test_each_language_has_a_search_of_its_own(site: Path) -> None:
     english, chinese = (
         json.loads((site / folder / "search" / "search_index.json").read_text(encoding="utf-8"))
         for folder in ("", "zh")
@@ -163,13 +160,13 @@ def test_each_language_has_a_search_of_its_own(small_site) -> None:
     ],
     ids=["anchor", "page", "page in Chinese", "page not listed"],
 )
-def test_what_leads_nowhere_fails_the_build(small_site, changed, reason) -> None:
-    _, done = small_site(**changed)
+def test_what_leads_nowhere_fails_the_build(tmp_path: Path, changed: dict[str, str], reason: str) -> None:
+    _, done = build_small(tmp_path, **changed)
     assert done.returncode == 1
     assert reason in done.stderr
 
 
-def test_all_pages_can_be_built(tmp_path) -> None:
+def test_all_pages_can_be_built(tmp_path: Path) -> None:
     done = build(REPOSITORY / "mkdocs.yml", tmp_path / "site")
     assert done.returncode == 0, done.stderr
     assert len(list((tmp_path / "site").rglob("*.html"))) > 100
