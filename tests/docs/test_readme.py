@@ -14,7 +14,7 @@ from PIL import Image
 from linkwright.cli.command import SUMMARY_HELP, parser_for
 from linkwright.cli.language import said_in_help
 from linkwright.diagnostics.translation import set_language
-from tests.docs.pages import READMES
+from tests.docs.pages import DOCS, READMES
 from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
 from tests.toml_files import PROJECT
@@ -34,7 +34,10 @@ def test_badges_say_what_the_project_says(page):
     ]
 
 
-@pytest.mark.parametrize(("page", "language"), [(READMES[0], "en"), (READMES[1], "zh")])
+@pytest.mark.parametrize(
+    ("page", "language"),
+    [(READMES[0], "en"), (READMES[1], "zh"), (DOCS / "index.md", "en"), (DOCS / "zh" / "index.md", "zh")],
+)
 def test_one_sentence_says_what_linkwright_is(page, language):
     set_language(language)
     try:

@@ -1,7 +1,7 @@
 """A robot in a cell of a notebook, with a slider for each joint.
 
 The cell holds the page that ``linkwright export`` writes, in a frame of its own. It needs no server and no network, so
-it also works in saved notebooks, and wherever notebooks run: Jupyter, VS Code, marimo (decision 0113).
+it also works in saved notebooks, and wherever notebooks run: Jupyter, VS Code, marimo (decision 0112).
 """
 
 from __future__ import annotations
