@@ -34,9 +34,9 @@ class Step:
     """A cycle of a behaviour.
 
     Attributes:
-        outcome: whether it goes on.
-        velocity: for the robot; zero once it has ended.
-        traveled: how far it has come, in metres or radians.
+        outcome: whether the behaviour continues.
+        velocity: the commanded velocity; zero once the behaviour has ended.
+        traveled: the travelled distance, in metres or radians.
     """
 
     outcome: Outcome

@@ -21,7 +21,7 @@ INSCRIBED: Final = 253
 LETHAL: Final = 254
 """There is an obstacle."""
 UNKNOWN: Final = 255
-"""Nobody has seen what is here."""
+"""The cell has not been observed."""
 
 _STEPS_PER_CELL = 2.0
 """Along the rim of a footprint."""
@@ -51,7 +51,7 @@ class Costmap:
         return Costmap(Grid(cells=grid.cells.copy(), resolution=grid.resolution, x=grid.x, y=grid.y))
 
     def cost_at(self, points: NDArray[np.float64], outside: int = UNKNOWN) -> NDArray[np.uint8]:
-        """The costs of the cells in which points lie.
+        """Return the costs of the cells that contain points.
 
         Args:
             points: x and y in the frame of the costmap, in metres, of shape (..., 2).

@@ -23,10 +23,11 @@ class Inflation:
     """The decay of costs with the distance from obstacles.
 
     Attributes:
-        inflation_radius: as far as that places cost something, in metres.
-        cost_scaling_factor: how fast it gets less, per metre.
-        inflate_unknown: whether cells that nobody has seen get costs, too; else only where a robot would touch.
-        inflate_around_unknown: whether there are costs around cells that nobody has seen.
+        inflation_radius: the distance up to which cells have a cost, in metres.
+        cost_scaling_factor: the rate of the decay, per metre.
+        inflate_unknown: whether unknown cells get all costs; otherwise only those where the robot would touch an
+            obstacle.
+        inflate_around_unknown: whether unknown cells are inflated like obstacles.
     """
 
     inflation_radius: float = 0.55

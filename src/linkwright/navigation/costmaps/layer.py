@@ -19,7 +19,7 @@ Costs = NDArray[np.uint8]
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A rectangle of cells: from the first row and column up to, and without, the last ones."""
+    """A rectangle of cells: from the first row and column up to, but excluding, the last ones."""
 
     top: int = 0
     left: int = 0
@@ -50,7 +50,7 @@ class Window:
         return slice(self.top, self.bottom), slice(self.left, self.right)
 
     def within(self, grid: Grid) -> Window:
-        """The part that lies in a grid."""
+        """Return the part within a grid."""
         inside = Window(max(0, self.top), max(0, self.left), min(grid.rows, self.bottom), min(grid.columns, self.right))
         return Window() if inside.is_empty else inside
 
@@ -95,8 +95,8 @@ class Layer(ABC):
     """The base class of layers.
 
     Attributes:
-        enabled: whether it takes part.
-        is_clearable: whether what it knows goes when somebody clears a region of the costmap.
+        enabled: whether the layer contributes to the costmap.
+        is_clearable: whether clearing a region of the costmap clears the layer.
     """
 
     enabled: bool = True

@@ -107,7 +107,7 @@ class StaticLayer(Layer):
         return self.map is not None and (self._placed is not None or self._news)
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """The window of what changed: all of it after a new map or transform."""
+        """Return the changed window: all of it after a new map or transform."""
         if self.map is None:
             return window
         pose = self._pose()

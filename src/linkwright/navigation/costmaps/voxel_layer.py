@@ -32,11 +32,11 @@ class Voxels:
     """The levels of height in a column of cells.
 
     Attributes:
-        origin_z: where the lowest level begins, in metres.
-        z_resolution: how high a level is, in metres.
-        z_voxels: how many there are, up to 16.
-        unknown_threshold: a column with more levels that nobody has seen is unknown.
-        mark_threshold: a column with more levels that are occupied is an obstacle.
+        origin_z: the bottom of the lowest level, in metres.
+        z_resolution: the height of a level, in metres.
+        z_voxels: the number of levels, up to 16.
+        unknown_threshold: a column with more unknown levels than this is unknown.
+        mark_threshold: a column with more occupied levels than this is an obstacle.
     """
 
     origin_z: float = 0.0

@@ -1,7 +1,7 @@
-"""Follows paths by sampling velocities: each is simulated for some time, and the best is driven.
+"""Following paths by sampling velocities: each is simulated for some time, and the best is commanded.
 
-It stands for both of nav2's sampling controllers, DWB and MPPI: limits and times have the names of either; how the
-tried motions are judged is our own.
+It replaces both of nav2's sampling controllers, DWB and MPPI: limits and times have the names of either; the rating of
+the sampled motions is our own.
 
 Source: Fox, Burgard, Thrun, "The Dynamic Window Approach to Collision Avoidance" (1997).
 """
@@ -113,7 +113,7 @@ class SamplingFollower(Follower):
         return atan2(float(seen[index, 1]), float(seen[index, 0]))
 
     def _checked_turn(self, angle: float, situation: Situation) -> Velocity:
-        """Rotate on the spot and come to rest at an angle."""
+        """Rotate in place and stop at an angle."""
         limits, now = self.parameters.limits, situation.velocity
         wanted = Velocity(
             _braked(now.x, limits.deceleration.x, situation.period),

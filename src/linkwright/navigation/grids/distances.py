@@ -9,12 +9,12 @@ from linkwright.navigation.grids.library import load_scipy
 
 
 def distance_field(marked: NDArray[np.bool_], resolution: float, limit: float = np.inf) -> NDArray[np.float64]:
-    """The distances of cells from the nearest marked one, from middle to middle.
+    """Return the distances of cells from the nearest marked one, from centre to centre.
 
     Args:
-        marked: which cells count, of shape (rows, columns).
-        resolution: side of a cell, in metres.
-        limit: the most that is told, and what is told where none is marked, in metres.
+        marked: the marked cells, of shape (rows, columns).
+        resolution: the side of a cell, in metres.
+        limit: the distance of all cells if no cell is marked, in metres.
 
     Returns:
         Metres, of the same shape, 0 in marked cells.

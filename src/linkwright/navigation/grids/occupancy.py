@@ -13,7 +13,7 @@ from linkwright.navigation.grids.grid import Grid
 
 
 class BadGridError(ValueError):
-    """A message is no valid grid; the text says why."""
+    """A message is not a valid grid; the text gives the reason."""
 
 
 def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
@@ -21,8 +21,8 @@ def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
 
     Args:
         grid: cells of per cent, or `UNKNOWN`.
-        frame: what it lies in.
-        stamp: builtin_interfaces/Time of the message, and of when the map was loaded.
+        frame: the frame of the grid.
+        stamp: the builtin_interfaces/Time of the message, and the time when the map was loaded.
     """
     message = get_message("nav_msgs/msg/OccupancyGrid")()
     message.header.frame_id = frame

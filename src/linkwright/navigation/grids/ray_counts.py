@@ -21,10 +21,11 @@ def ray_counts(
     """Count the rays from a cell that end in each cell, and those that pass through it.
 
     Args:
-        shape: rows and columns of the grid; what lies outside is passed over.
-        start: row and column, of shape (2,), or those of each ray, of shape (rays, 2).
-        ends: of shape (rays, 2).
-        hits: which rays met something, of shape (rays,); None for all. The others pass through their last cell too.
+        shape: the rows and columns of the grid; cells outside are ignored.
+        start: the row and column, of shape (2,), or those of each ray, of shape (rays, 2).
+        ends: the row and column of each ray's end, of shape (rays, 2).
+        hits: whether each ray hit something, of shape (rays,); None for all. The others pass through their last cell
+            too.
 
     Returns:
         Counts of hits and of passes, each of the given shape.

@@ -34,22 +34,22 @@ def cells_on_lines(starts: NDArray[np.integer[Any]], ends: NDArray[np.integer[An
     line: Cells = np.repeat(np.arange(len(ends)), steps + 1)
     first: Cells = np.concatenate(([0], np.cumsum(steps + 1)[:-1])) if len(ends) else steps
     step: Cells = np.arange(len(line)) - first[line]
-    # Rounded in whole numbers, so that a line is the same on every machine.
+    # Integer rounding, so that a line is the same on every machine.
     length: Cells = np.maximum(steps[line], 1)[:, None]
     cells: Cells = starts[line] + (2 * step[:, None] * delta[line] + length) // (2 * length)
     return cells, line
 
 
 def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.float64], limit: float) -> Any:
-    """The ranges of rays up to the first occupied cell.
+    """Return the ranges of rays up to the first occupied cell.
 
-    Each goes on by the distance to the nearest occupied cell, which a distance field tells, until that is no way.
+    Each ray advances by the distance to the nearest occupied cell, from a distance field, until that is nearly 0.
 
     Args:
-        distances: metres to the nearest occupied cell (see `distance_field`), 0 in those that are occupied.
-        points: where the rays begin, x and y in the frame of the grid, in metres, of shape (..., 2).
-        angles: of the rays about z in that frame, in radians, of shape (...).
-        limit: where rays end that meet nothing or leave the grid, in metres.
+        distances: the metres to the nearest occupied cell (see `distance_field`), 0 in occupied cells.
+        points: the origins of the rays, x and y in the frame of the grid, in metres, of shape (..., 2).
+        angles: the angles of the rays about z in that frame, in radians, of shape (...).
+        limit: the range of rays that hit nothing or leave the grid, in metres.
 
     Returns:
         Metres, of shape (...), exact to about half a cell.

@@ -24,11 +24,11 @@ class Noise:
     """Noise of odometry: ``alpha1`` to ``alpha5`` of nav2.
 
     Attributes:
-        turn_of_turn: error of turning for turning.
-        turn_of_drive: error of turning for driving.
-        drive_of_drive: error of driving for driving.
-        drive_of_turn: error of driving for turning.
-        strafe: error of driving sideways, of what can do that.
+        turn_of_turn: the rotation error caused by rotation.
+        turn_of_drive: the rotation error caused by translation.
+        drive_of_drive: the translation error caused by translation.
+        drive_of_turn: the translation error caused by rotation.
+        strafe: the sideways error, of omnidirectional robots.
     """
 
     turn_of_turn: float = 0.2
@@ -62,7 +62,7 @@ def differential(
     drive = hypot(x, y)
     first = 0.0 if drive < _STANDS_STILL else turned_by(atan2(y, x) - before[2])
     second = turned_by(turn - first)
-    # Driving backwards is no half turn.
+    # Driving backwards is not a half turn.
     first_size, second_size = (min(abs(each), abs(turned_by(each - pi))) for each in (first, second))
     count = len(particles)
     drive_sigma = sqrt(

@@ -59,12 +59,12 @@ class ParticleFilter:
     """A particle filter of planar poses.
 
     Args:
-        settings: how many there are.
-        seed: of all that is drawn; the same gives the same.
+        settings: the settings, such as the number of particles.
+        seed: the random seed; the same seed gives the same result.
 
     Attributes:
-        particles: of shape (n, 3).
-        weights: of shape (n,); their sum is 1.
+        particles: the particles, of shape (n, 3).
+        weights: their weights, of shape (n,); the sum is 1.
     """
 
     def __init__(self, settings: FilterSettings, seed: int = 0) -> None:
@@ -101,10 +101,10 @@ class ParticleFilter:
         self.weights = weights / total
 
     def resample(self, anywhere: Callable[[int], Poses]) -> None:
-        """Draw particles anew by their weights; KLD sampling decides how many.
+        """Resample the particles by their weights; KLD sampling determines their number.
 
         Args:
-            anywhere: makes so many particles that come from nowhere, where the scans have come to fit less.
+            anywhere: returns a number of random particles, which are added while scans fit worse than before.
         """
         settings, random = self.settings, self.random
         lost = max(0.0, 1.0 - self._fast / self._slow) if self._slow > 0.0 else 0.0
@@ -163,10 +163,10 @@ class ParticleFilter:
 
 
 def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
-    """The bin of each particle as a number, and the step from one bin along x to the next.
+    """Return the bin of each particle as a number, and the step from one bin along x to the next.
 
-    Along y it grows by the number of bins in a turn, along yaw by 1, beginning anew after a turn. Around all there is a
-    rim of empty bins.
+    Along y the number grows by the number of bins in a turn, along yaw by 1, wrapping after a turn. A rim of empty bins
+    surrounds all.
     """
     bins: NDArray[np.int64] = np.floor(particles / _BIN).astype(np.int64)
     bins[:, :2] -= bins[:, :2].min(axis=0) - 1

@@ -28,9 +28,9 @@ class BeamSkipping:
     """Beam skipping: beams that fit only few particles are ignored, such as those that hit people.
 
     Attributes:
-        distance: from what is on the map up to which a beam fits a particle, in metres.
+        distance: the distance from the nearest obstacle of the map up to which a beam fits a particle, in metres.
         threshold: the share of particles that a beam must fit.
-        error_threshold: the share of beams left out from which on none is.
+        error_threshold: if more than this share of beams would be skipped, none is.
     """
 
     distance: float = 0.5
@@ -69,7 +69,7 @@ class MapLikelihoods:
         distances = distance_field(occupied, grid.resolution)
         self.distances = Grid(cells=distances, resolution=grid.resolution, x=grid.x, y=grid.y, yaw=grid.yaw)
         limited = np.minimum(distances, settings.laser_likelihood_max_dist)
-        # A rim of far cells stands for all that is outside, so that no index need be checked.
+        # A rim of far cells represents everything outside, so that indices need no check.
         far = settings.laser_likelihood_max_dist
         self._distances = np.pad(limited, 1, constant_values=far).astype(np.float32)
         self._gaussian = settings.z_hit * np.exp(-0.5 * (self._distances / settings.sigma_hit) ** 2)

@@ -1,7 +1,7 @@
-"""The YAML file of a map: image, resolution, origin, and how pixels are read.
+"""The YAML file of a map: image, resolution, origin, and the meaning of pixels.
 
-Keys, their meanings and which must be there are those of nav2_map_server. What is wrong is told with its place.
-Stricter than nav2: a resolution must be more than 0, and thresholds lie between 0 and 1.
+Keys, their meanings and the required ones are those of nav2_map_server. Errors have a line and column. Stricter than
+nav2: a resolution must be greater than 0, and thresholds must be between 0 and 1.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Planning the cheapest path over a costmap from a pose to another one.
 
-Source: nav2_navfn_planner (what ways cost, tolerance, the texts of what goes wrong). Different on purpose: the
-tolerance does not reach through obstacles, so a goal within a wall is refused; and a robot that stands closer to an
-obstacle than it should may leave by the shortest way.
+Source: nav2_navfn_planner (costs, tolerance, the texts of errors). Deliberate differences: the tolerance does not reach
+through obstacles, so a goal within a wall is refused; and a robot that is too close to an obstacle may leave by the
+shortest path.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from linkwright.navigation.planning.descent import descend
 from linkwright.navigation.planning.potential import Cell, Floats, potential, prices
 
 _ESCAPE_PRICE: Final = 2530.0
-"""The cost of a cell too near to an obstacle, for a robot that is there already: it leaves the shortest way."""
+"""The cost of a cell too near to an obstacle, for a robot that starts in one: it leaves by the shortest path."""
 _ESCAPE_REACH: Final = 1.0
-"""The radius in metres within which there must be a cell where the robot can be."""
+"""The radius in metres that must contain a cell where the robot fits."""
 
 
 _NO_WAY: Final = 1e-9
@@ -59,10 +59,10 @@ class Settings:
     """Settings of the planner; names and defaults are nav2's.
 
     Attributes:
-        tolerance: so far from a goal that cannot be reached the way may end, in metres.
-        use_astar: whether places are left out from which the goal cannot be reached for less; the way is the same.
-        allow_unknown: whether ways may lead over what nobody has seen.
-        use_final_approach_orientation: whether the robot ends as it comes, not as the goal says.
+        tolerance: the greatest distance of the path's end from an unreachable goal, in metres.
+        use_astar: whether to skip cells that cannot be on a cheaper path; the result is the same.
+        allow_unknown: whether paths may cross unknown cells.
+        use_final_approach_orientation: whether the final heading is that of the path, not that of the goal.
     """
 
     tolerance: float = 0.5

@@ -1,12 +1,12 @@
 """Potentials: the cost of the cheapest path from one cell to each other one, computed as a wavefront over a costmap.
 
-It is the eikonal equation on a grid, as NavFn solves it: ways go in all directions, not only along rows, columns and
-diagonals. All cells of the front are brought up to date at once, and those whose neighbours got cheaper are looked at
-again, until nothing changes. The wave goes on from expensive cells only when it has come as far in cheap ones, as most
-of them are reached for less around them.
+It solves the eikonal equation on a grid, as NavFn does: paths have all directions, not only along rows, columns and
+diagonals. All cells of the front are updated at once, and those whose neighbours got cheaper are updated again, until
+nothing changes. The wave continues from expensive cells only when it has reached the same cost in cheap ones, because
+most expensive cells have a cheaper path around.
 
 Source: Brock and Khatib, High-speed navigation using the global dynamic window approach, ICRA 1999; nav2_navfn_planner
-(what a cell costs).
+(the cost of a cell).
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ NEUTRAL: Final = 50.0
 """The price of crossing a cell that costs nothing."""
 _FACTOR: Final = 0.8
 _MOST: Final = 253.0
-"""The price of crossing a cell that nobody has seen."""
+"""The cost of crossing an unknown cell."""
 _ROUNDS_HELD: Final = 4
-"""The number of steps of the wave between two looks for expensive cells that are due."""
+"""The number of steps of the wave between two checks for expensive cells that are due."""
 _SMALLEST_GAIN: Final = 1e-3 * NEUTRAL
 
 
 def prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> Floats:
-    """The cost of crossing each cell of a costmap, of the same shape; infinite where no robot can be.
+    """Return the cost of crossing each cell of a costmap, of the same shape; infinite where the robot does not fit.
 
     Args:
-        costs: of the cells.
-        allow_unknown: whether ways may lead over what nobody has seen.
+        costs: the costs of the cells.
+        allow_unknown: whether paths may cross unknown cells.
     """
     table = np.minimum(NEUTRAL + _FACTOR * np.arange(256.0), _MOST)
     table[MAX_PASSABLE + 1 :] = np.inf

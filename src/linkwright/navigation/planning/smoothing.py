@@ -1,7 +1,7 @@
 """Smoothing of paths: points move towards the middle of their neighbours, but stay near their places.
 
-Source: nav2_smoother ``SimpleSmoother``: what its iteration comes to is the solution of a linear system with three
-diagonals, which is solved at once. Points that would come where no robot can be stay where they were.
+Source: nav2_smoother ``SimpleSmoother``: its iteration converges to the solution of a tridiagonal linear system, which
+is solved directly. Points that would move into an obstacle stay where they are.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ class Smoothing:
     """Settings of the smoother; names and defaults are nav2's.
 
     Attributes:
-        w_data: how much a point wants to stay where it was.
-        w_smooth: how much it wants to be in the middle of its neighbours.
-        do_refinement: whether what was smoothed is smoothed again.
-        refinement_num: how many times.
-        enforce_path_inversion: whether points stay where the robot begins to drive the other way.
+        w_data: the weight of a point's original position.
+        w_smooth: the weight of the middle of its neighbours.
+        do_refinement: whether to smooth the result again.
+        refinement_num: the number of refinements.
+        enforce_path_inversion: whether points stay where the robot reverses direction.
     """
 
     w_data: float = 0.2

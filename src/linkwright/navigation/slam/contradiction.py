@@ -10,7 +10,7 @@ from linkwright.navigation.slam.poses import Floats, between, placed
 from linkwright.navigation.slam.scan import PlanarScan
 
 _APART = 0.03
-"""Rays whose directions differ by more than this are no neighbours, radians."""
+"""Rays whose directions differ by more than this are not neighbours, radians."""
 _BEHIND = 0.3
 """The least distance in metres behind a point of the other scan for a contradiction."""
 _FEWEST = 20

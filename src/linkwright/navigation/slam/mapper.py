@@ -25,16 +25,16 @@ _TOLERANCE = 0.8
 """A scan is taken a little before the minimum travel distance is reached, for odometry may be wrong."""
 _FEWEST_ON_WALLS = 0.25
 _LEAST_INLIERS = 0.4
-"""The parts of the points that must lie on what was seen before, for any match and for one with an earlier pass."""
+"""The least shares of points on known walls, for any match and for one with an earlier pass."""
 _MOST_CONTRADICTION = 0.15
 _WELL_KNOWN = 0.01
 """The variance of a position below which a link with an earlier pass leaves no loop open, metres squared."""
 _LOOPS_TRIED = 3
 _REDRAWN = 0.2
-"""A scan is drawn anew where its pose moved by more than this part of a cell, or its points at 5 m did."""
+"""A scan is redrawn if its pose, or its points at 5 m, moved by more than this share of a cell."""
 _FAR_POINT = 5.0
 _NOTHING = 1e-3
-"""The information about what was not measured: an inverse needs some."""
+"""The information in unmeasured directions, so that an inverse exists."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,9 +68,9 @@ class Mapper:
     Attributes:
         settings: how it works.
         occupancy: the map that is drawn.
-        graph: the poses of the scans that were taken, and what was measured between them.
-        scans: these scans.
-        odometry: where odometry said that the robot was then, (3,) each.
+        graph: the poses of the scans, and the measurements between them.
+        scans: the scans of the graph.
+        odometry: the odometry pose of each scan, shape (3,).
     """
 
     def __init__(self, settings: MapperSettings, occupancy: OccupancyMap) -> None:

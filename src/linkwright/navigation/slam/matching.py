@@ -23,9 +23,9 @@ _SCALE = 0.03
 """Distances beyond this count less and less, in metres."""
 _CONVERGED = 1e-5
 _SINGULAR = 0.02
-"""Directions in which the points tell less than this part of what they could, per point, are left as they were."""
+"""Directions with less than this share of the greatest possible information, per point, are left as they were."""
 _DEPENDENT = 0.1
-"""Points of one scan share their errors: they count as this part of their number."""
+"""Points of one scan share their errors: they count as this share of their number."""
 _LEAST_ERROR = 0.01
 _EXPANSIONS = (0.349, 0.698, 1.047)
 """Angles that are searched besides where nothing fits and use_response_expansion is true, in radians; as in Karto."""
@@ -36,12 +36,12 @@ class Match:
     """The result of a match.
 
     Attributes:
-        pose: of the robot, of shape (3,), in the frame of the reference.
+        pose: the pose of the robot, of shape (3,), in the frame of the reference.
         response: 0 to 1, see `linkwright.navigation.slam.search`, without penalties where there were none.
-        information: how sure the pose is, of shape (3, 3): the inverse of its covariance, for x, y and yaw in the frame
-            of the robot. Along a corridor it is next to nothing.
-        inliers: the part of the points that lie on something, 0 to 1.
-        error: root mean square of their distances from the walls that they lie on, metres.
+        information: the inverse of the pose's covariance, of shape (3, 3), for x, y and yaw in the frame of the robot.
+            Along a corridor it is near 0.
+        inliers: the share of the points on a wall, 0 to 1.
+        error: the root mean square of their distances from their walls, metres.
     """
 
     pose: Floats
@@ -56,17 +56,17 @@ def match(
 ) -> Steps[Match | None]:
     """Match a scan, in steps.
 
-    In directions that the points tell nothing about, as along a corridor, the pose is that of the guess.
+    In directions without information, as along a corridor, the pose is that of the guess.
 
     Args:
-        reference: what was seen before.
-        scan: of now.
-        guess: where the robot is taken to be, of shape (3,).
-        search: how far from there, and how, it is searched.
-        expand: whether larger angles are tried where nothing fits.
+        reference: the earlier scans.
+        scan: the current scan.
+        guess: the expected pose of the robot, of shape (3,).
+        search: the window and method of the search.
+        expand: whether to try larger angles if nothing fits.
 
     Returns:
-        None where there are too few points to match.
+        None if there are too few points to match.
     """
     if len(scan.points) < LEAST_POINTS or len(reference) < LEAST_POINTS:
         return None
@@ -86,7 +86,7 @@ def match(
 def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Floats, response: float) -> Match:
     """Point-to-line ICP (Censi, "An ICP variant using a point-to-line metric", 2008) with Cauchy's weights."""
     reach = max(float(np.sqrt((scan.points**2).sum(axis=1).mean())), 0.1)
-    scale = np.array((1.0, 1.0, 1.0 / reach))  # a turn as the way that points go by it
+    scale = np.array((1.0, 1.0, 1.0 / reach))  # rotation as the distance that it moves points
     pose, farthest = start.copy(), _FARTHEST
     system = _equations(reference, scan, pose, farthest, scale)
     free = _told(system[0], len(scan.points))

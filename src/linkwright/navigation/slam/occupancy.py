@@ -31,12 +31,12 @@ class _Trace:
 
 
 class OccupancyMap:
-    """The counts of many scans. A scan whose pose is corrected is removed and added anew; no other is touched.
+    """The counts of many scans. A scan whose pose is corrected is removed and added again; the others stay.
 
     Args:
         resolution: side of a cell, metres.
-        min_pass_through: a cell is known where more rays than this came to it.
-        occupancy_threshold: a cell is occupied where a larger part of them than this ended in it.
+        min_pass_through: a cell is known if more rays than this reached it.
+        occupancy_threshold: a cell is occupied if a larger share of them than this ended in it.
 
     Attributes:
         resolution: side of a cell, metres.

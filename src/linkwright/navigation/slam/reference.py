@@ -14,19 +14,18 @@ from linkwright.navigation.slam.scan import PlanarScan
 _THINNING = 0.05
 _NEIGHBOURS = 6
 _SPREAD = 0.5
-"""Points whose neighbours lie further from here than this, in metres, tell no direction of a wall."""
+"""Points whose neighbours are farther away than this, in metres, have no wall direction."""
 _LEAST = 0.01
 
 
 class Reference:
-    """Points of scans, their likelihood field, and the directions of the walls on which they lie.
+    """Points of scans, their likelihood field, and the directions of their walls.
 
-    Points that are nearer than 5 cm to each other become their mean, which is where the wall is more exactly than one
-    reading says.
+    Points that are nearer than 5 cm to each other become their mean, which is more accurate than one reading.
 
     Args:
-        scans: what was seen.
-        poses: from where, of shape (n, 3), in the frame of the reference.
+        scans: the scans.
+        poses: the poses of the scans, of shape (n, 3), in the frame of the reference.
     """
 
     def __init__(self, scans: Sequence[PlanarScan], poses: Floats) -> None:

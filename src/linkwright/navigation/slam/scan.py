@@ -12,13 +12,13 @@ from linkwright.navigation.slam.poses import Floats
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanarScan:
-    """A laser scan in the frame of the robot's base, which is taken to stand still during a scan.
+    """A laser scan in the frame of the robot's base; the robot's motion during a scan is ignored.
 
     Attributes:
-        points: where rays ended on something, of shape (n, 2), metres.
-        passed: where rays were cut off that went further than what counts, of shape (m, 2): all before is free.
-        origin: of the rays, of shape (2,).
-        stamp_ns: when, nanoseconds.
+        points: the ends of rays with a hit, of shape (n, 2), metres.
+        passed: the ends of rays that were cut off at the maximum range, of shape (m, 2): all before them is free.
+        origin: the origin of the rays, of shape (2,).
+        stamp_ns: the stamp, nanoseconds.
     """
 
     points: Floats

@@ -30,14 +30,14 @@ class Search:
     """A window of poses, and the penalties in it; names and meanings are those of Karto's parameters.
 
     Attributes:
-        dimension: side of the window, metres.
-        resolution: of the positions, metres.
-        smear_deviation: standard deviation of where something is seen, metres.
-        angle_offset: half of the window of angles, radians.
-        angle_resolution: of the angles, radians; finer where points are so far away that it would skip cells.
-        distance_variance_penalty: metres squared; the smaller, the nearer to what was expected a pose should be.
+        dimension: the side of the window, metres.
+        resolution: the resolution of positions, metres.
+        smear_deviation: the standard deviation of a reading's position, metres.
+        angle_offset: half the window of angles, radians.
+        angle_resolution: the resolution of angles, radians; refined for points so far away that it would skip cells.
+        distance_variance_penalty: metres squared; a smaller value keeps the pose nearer to the expected one.
         angle_variance_penalty: radians squared.
-        minimum_distance_penalty: what distance leaves of a response at the least; 1 for all of it.
+        minimum_distance_penalty: the least factor of a response for its distance; 1 for no penalty.
         minimum_angle_penalty: the same for the angle.
     """
 
@@ -53,7 +53,7 @@ class Search:
 
     @property
     def cell(self) -> float:
-        """The resolution of the search, metres: half of the smear is fine enough for what follows."""
+        """The resolution of the search, metres: half of the smear is fine enough for the refinement that follows."""
         return max(self.resolution, self.smear_deviation / 2)
 
 
@@ -139,9 +139,9 @@ def best_pose(likelihood: Likelihood, points: Floats, guess: Floats, search: Sea
     """Search the best pose, in steps.
 
     Args:
-        likelihood: what was seen before.
-        points: of the scan, in the frame of the robot, of shape (n, 2), metres; there is at least one.
-        guess: the middle of the window, of shape (3,).
+        likelihood: the likelihood field of the earlier scans.
+        points: the points of the scan, at least one, in the frame of the robot, of shape (n, 2), metres.
+        guess: the centre of the window, of shape (3,).
         search: the window.
 
     Returns:

@@ -1,7 +1,7 @@
-"""Generators of work in steps, so that a node does other things between two of them.
+"""Generators of work in steps, so that a node can run other callbacks between two of them.
 
-A function that takes long is a generator: it yields after some milliseconds, and returns its result. Who has the time
-calls `finish`; others call ``next`` when it suits them, or ``yield from`` it in work of their own.
+A function that takes long is a generator: it yields after some milliseconds, and returns its result. A caller that may
+block calls `finish`; others call ``next`` when they have time, or ``yield from`` it in work of their own.
 """
 
 from __future__ import annotations
