@@ -1,7 +1,7 @@
 """The interface of speech recognition engines.
 
-They are found through entry points of the group ``linkwright.speech_engines``: each names what is called with
-`EngineOptions`, makes a `SpeechEngine`, and raises LinkwrightError where its library or model is not there.
+Engines are found through entry points of the group ``linkwright.speech_engines``: each names a callable that takes
+`EngineOptions`, returns a `SpeechEngine`, and raises LinkwrightError if its library or model is missing.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ class Heard:
     """A result of an engine, partial or final.
 
     Attributes:
-        text: the phrase, as it was given. Empty: there was speech, and it is none of the phrases.
-        confidence: of the least certain word, 0 to 1.
-        final: whether the utterance is over; else it may still change.
-        start: of the utterance, in seconds of sound since the engine was made.
-        end: of what was heard.
-        nearest: where the text is empty, the phrase that is much like it; empty where none is.
+        text: the phrase, as in the options; empty for speech that is none of the phrases.
+        confidence: the confidence of the least certain word, 0 to 1.
+        final: whether the utterance is over; otherwise the result may change.
+        start: the start of the utterance, in seconds of sound since the engine was created.
+        end: the end of the recognized sound.
+        nearest: if the text is empty, the most similar phrase; empty if none is similar.
     """
 
     text: str
@@ -63,7 +63,7 @@ class SpeechEngine(ABC):
 
     @abstractmethod
     def finish(self) -> Sequence[Heard]:
-        """End the utterance, as when a button is let go; its final results. The stream may go on."""
+        """End the utterance, as when a button is released, and return its final results. The stream may continue."""
 
     @property
     def problem(self) -> Diagnostic | None:

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from linkwright.speech.commands.phrases import Value
 
 Values: TypeAlias = Mapping[str, Value]
-"""Slot -> what was said in it."""
+"""Slot -> its spoken value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ Amount: TypeAlias = float | Slot
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Drive for a distance, an angle or a time, or until nobody has said anything for too long.
+    """Drive for a distance, an angle or a time, or until the silence timeout.
 
     Attributes:
         x: forward, as a multiple of the robot's speed; backward is negative.
@@ -159,7 +159,7 @@ def filled(template: Any, values: Values) -> Any:
 
     Args:
         template: texts, numbers, and lists and mappings of them.
-        values: what was said.
+        values: the values of the slots.
     """
     if isinstance(template, Mapping):
         return {key: filled(value, values) for key, value in template.items()}

@@ -12,7 +12,7 @@ from linkwright.speech.commands.quantities import SAYABLE
 from linkwright.speech.commands.words import has_words, words_of
 
 ANY = "any"
-"""The language of what is said in all of them."""
+"""The language of phrases that are valid in all languages."""
 
 ByLanguage = Mapping[str, str]
 
@@ -56,12 +56,12 @@ class Command:
 
 @dataclass(frozen=True, slots=True)
 class Understood:
-    """A command that was understood, with its values.
+    """A recognized command with its values.
 
     Attributes:
-        command: which.
-        values: slot -> what was said in it.
-        language: that it was said in; `ANY` for what is said in all of them.
+        command: the command.
+        values: slot -> its spoken value.
+        language: the language of the phrase; `ANY` for a phrase that is valid in all languages.
     """
 
     command: Command

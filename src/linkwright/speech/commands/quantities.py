@@ -73,9 +73,9 @@ SAYABLE: Mapping[str, Mapping[str, tuple[str, ...]]] = {
         "zh": ("一", "二", "三", "四", "五", "六", "七", "八", "九", "十"),
     },
 }
-"""What engines are told that may be said in a slot, by its language: few, so that they take nothing else for it.
+"""The values of a slot in the engines' grammars, by language: few, so that other words are not mistaken for them.
 
-Any other number is understood, too, where an engine hears it, or somebody types it.
+Any other number is also understood, if an engine recognizes it or a user types it.
 """
 
 _EACH_SECOND: Words = ("每", "秒")

@@ -19,12 +19,12 @@ from linkwright.speech.sound.activity import VoiceActivity, unsteady_noise
 from linkwright.speech.sound.samples import RATE, Samples
 from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, Powers
 
-_BEFORE = 20  # frames kept from before somebody speaks: a word begins softly
-_EARLIER = 30  # frames before those, which only tell what noise there is
-_STEP = 5  # frames that must be new before an utterance is looked at again
-_TOO_LONG = 2.5  # times the longest take: no word
+_BEFORE = 20  # frames kept from before speech starts: a word begins softly
+_EARLIER = 30  # frames before those, used only to measure the noise
+_STEP = 5  # new frames before an utterance is matched again
+_TOO_LONG = 2.5  # times the longest take: too long for a word
 _NEAR = 0.1
-"""Confidence from which a word is told as the nearest: that have most words in noise that are missed, and one of twenty
+"""The confidence from which a word is reported as the nearest: most missed words in noise have it, and one of twenty
 other words.
 """
 _OF_A_NUMBER = 0.7
@@ -174,7 +174,7 @@ def _plain(name: str) -> str:
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:
-    """A value that changes when a file is written; None without the file."""
+    """Return a value that changes when a file is written; None if there is no file."""
     with suppress(OSError):
         facts = path.stat()
         return facts.st_mtime_ns, facts.st_size, facts.st_ino

@@ -1,11 +1,11 @@
 """Dynamic time warping of cepstra: the distance of a sound from each enrolled take, over all takes at once.
 
-For each frame of the sound a path goes on by no, one or two frames of a take: a word may be said twice as fast, and all
-paths have as many costs as the sound has frames. Before and after the word, paths stay in the background. So there is
-no loop over takes: a frame is a few operations on an array with all their frames.
+For each frame of the sound a path advances by zero, one or two frames of a take: a word may be spoken twice as fast,
+and all paths have as many costs as the sound has frames. Before and after the word, paths stay in the background. So
+there is no loop over takes: a frame is a few operations on an array with all their frames.
 
-Noise is masked, after Klatt and after Holmes and Sedgwick: what lies below the noise of now, or far below the loudest,
-is raised to there, in takes and sound alike. So they look the same, whatever noise there is now and was at enrolment.
+Noise is masked, after Klatt and after Holmes and Sedgwick: levels below the current noise, or far below the loudest,
+are raised to it, in takes and sound alike. So they compare equal, whatever the noise is now and was at enrolment.
 """
 
 from __future__ import annotations
@@ -40,12 +40,13 @@ class Match:
     """Distances from each take. Arrays have the shape ``(takes,)``.
 
     Attributes:
-        cost: mean distance of a frame of the word to the frame of the take, with all that is left over beside the word.
-        first: the frame of the sound with which the word begins.
-        last: the frame with which it ends.
-        background: mean distance of the frames from first to last to the background.
-        distances: of each frame of the sound to each frame of all takes, shape ``(frames, frames of all takes)``.
-        steps: by how many frames of its take each path went on, shape ``(frames, places)``.
+        cost: the mean distance of a frame of the word to the frame of the take, including the sound beside the word.
+        first: the first frame of the word in the sound.
+        last: its last frame.
+        background: the mean distance of the frames from first to last to the background.
+        distances: the distance of each frame of the sound to each frame of all takes, shape ``(frames, frames of all
+            takes)``.
+        steps: the number of frames of its take by which each path advanced, shape ``(frames, places)``.
     """
 
     cost: _Array

@@ -1,13 +1,13 @@
 """Recognising enrolled words, with a confidence.
 
-A word counts only where nothing else is nearer: no other word, not the background, and no take played backwards, which
-is speech of the same voice but no word. Then it is judged by logistic regression on how far the sound is from the best
-take where it is farthest, relative to how far the user's own takes of the word are from each other there: words that
-differ in one sound are told apart by it; on what the take costs relative to the background and to takes played
-backwards; and on how far the sound is above the noise: in noise all costs come near each other, and more is asked of a
-word. The cost by itself does not count: what is usual differs between voices and microphones.
+A word counts only if nothing else is nearer: no other word, not the background, and no take played backwards, which is
+speech of the same voice but not a word. Then logistic regression rates it, with three inputs. The first is the largest
+distance of the sound from the best take, relative to the distances between the user's own takes of the word: it
+separates words that differ in one sound. The second is the take's cost relative to the background and to takes played
+backwards. The third is the level of the sound above the noise: in noise all costs approach each other, and a word must
+fit better. The absolute cost is not used, because it differs between voices and microphones.
 
-Each take is compared as it was said, and as rooms would return it; a match with the latter needs more confidence.
+Each take is compared as it was recorded, and with the echo of rooms; a match with the latter needs more confidence.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ class Recogniser:
     """Recognises the words of a user, at least one.
 
     Args:
-        words: all that are enrolled; those that nobody asks for are good for telling what is none of the others.
-        rooms: in which they may be said, besides the one in which they were enrolled.
+        words: all enrolled words; those that are not requested help to reject other words.
+        rooms: the rooms in which they may be spoken, besides the one in which they were enrolled.
     """
 
     def __init__(self, words: Words, rooms: tuple[Room, ...] = ROOMS) -> None:
@@ -91,7 +91,7 @@ class Recogniser:
         return Guess(self.names[word], confidence, first, last)
 
     def compare(self, take: Take) -> tuple[dict[str, float], float]:
-        """The distance of a take from each word, and from the nearest of those played backwards, which are no words."""
+        """Return the distance of a take from each word, and from the nearest word played backwards."""
         match = self._templates.match(take.powers, take.noise)
         costs = self._costs(match).tolist()
         return dict(zip(self.names, costs, strict=True)), self._nonsense(match)
@@ -107,7 +107,7 @@ class Recogniser:
             takes = self._takes[word]
             alone = Templates(takes)
             matches = [alone.match(take.powers, take.noise) for take in takes] if len(takes) > 1 else []
-            nearest = [int(np.argsort(match.cost)[1]) for match in matches]  # but for itself
+            nearest = [int(np.argsort(match.cost)[1]) for match in matches]  # except itself
             found = [alone.worst(match, take) for match, take in zip(matches, nearest, strict=True)]
             self._own[word] = float(np.median(found)) if found else _USUAL_WORST
         return self._own[word]

@@ -16,7 +16,7 @@ from linkwright.speech.enrolled.words import Take
 from linkwright.speech.sound.samples import RATE
 from linkwright.speech.sound.spectra import HOP
 
-_FADED = 30.0  # dB: for so long a take goes on after its word
+_FADED = 30.0  # dB: how far the echo fades before a take ends
 
 
 @dataclass(frozen=True, slots=True)

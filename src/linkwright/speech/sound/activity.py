@@ -1,8 +1,8 @@
 """Voice activity detection: energy of frames against a noise floor that follows the sound.
 
-The floor of each band follows its power while nobody speaks. While somebody speaks it falls with it, and rises only to
-the least that the band had in the last 0.8 s (minimum statistics, after R. Martin): so a fan that is switched on is
-speech for no longer than that.
+The floor of each band follows its power during silence. During speech it falls with it, and rises only to the minimum
+of the band in the last 0.8 s (minimum statistics, after R. Martin): so a fan that is switched on counts as speech for
+no longer than that.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ HANGOVER = 40
 """Frames without speech after which an utterance is over: 0.4 s, longer than the closure of a plosive."""
 
 _LEAST_POWER = 1.0  # below the noise of any microphone at 16 bits
-_BEGINS, _GOES_ON = 3.0, 2.0  # dB above the floor, mean of all bands, of the last frames
-_IN_A_TAKE = 4.0  # dB, of an example, which is to be clear
-_MOST_OF_A_BAND = 25.0  # dB: one band alone, as of a whistle, is no speech
-_BELOW_THE_LOUDEST = 45.0  # dB: what is softer is no part of a take, whatever the noise was
+_BEGINS, _GOES_ON = 3.0, 2.0  # dB above the floor, mean of all bands in the last frames
+_IN_A_TAKE = 4.0  # dB, of an example, which must be clear
+_MOST_OF_A_BAND = 25.0  # dB: one band alone, as of a whistle, is not speech
+_BELOW_THE_LOUDEST = 45.0  # dB: softer sound does not belong to a take, whatever the noise
 _SMOOTHED = 3  # frames
 _TO_BEGIN = 4  # frames in a row
-_WATCHED = 80  # frames in which the least is looked for
+_WATCHED = 80  # frames in which the minimum is searched
 _OVER_THE_LEAST = 1.4  # the mean of noise over its least, of sums of three frames
 _UP, _DOWN = 0.05, 0.08  # shares by which the floor comes nearer with each frame
 
 _LOUDEST = 12  # frames
-_SOFTER = 7.0  # dB below the loudest: so much softer is all that is heard beside who speaks into the microphone
-_SOFT_BEGINNING = 8  # frames by which a word may begin before it is as loud as that
-_ENOUGH = 15  # frames from which noise is known
-_UNSTEADY = 1.2  # dB, deviation of the level: that of steady noise is 1, that of babble 2 and more
+_SOFTER = 7.0  # dB below the loudest: other sounds are softer by this than a speaker at the microphone
+_SOFT_BEGINNING = 8  # frames by which a word may begin before it is that loud
+_ENOUGH = 15  # the fewest frames that determine the noise
+_UNSTEADY = 1.2  # dB, deviation of the level: 1 for steady noise, 2 and more for babble
 _OVER_STEADY = 5.0  # dB, in the middle, above what it would be, were it steady: up to 4 if so, from 8 on in babble
 _DEVIATIONS = 1.5  # by which noise that swells is above its mean
 
@@ -89,17 +89,17 @@ class VoiceActivity:
 
 
 def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """The level of noise that swells and fades, such as others' talk beside a word.
+    """Return the level of noise that swells and fades, such as other people's talk beside a word.
 
-    A floor follows the least of such noise, and most of it is far above. It is told from steady noise, and from a word
-    that begins softly, by what was heard before somebody spoke: by its level, and by how much that changes.
+    A floor follows the minimum of such noise, and most of it is far above. The level before the speech, and its
+    deviation, distinguish it from steady noise and from a word that begins softly.
 
     Args:
-        powers: of an utterance, with what was heard before.
-        floor: what is taken for the power of the noise, shape ``(BANDS,)``.
+        powers: the powers of an utterance and of the sound before it.
+        floor: the assumed power of the noise, shape ``(BANDS,)``.
 
     Returns:
-        The power of each band, nowhere below the floor, shape ``(BANDS,)``; None where the floor tells it.
+        The power of each band, nowhere below the floor, shape ``(BANDS,)``; None if the floor describes the noise.
     """
     before = np.maximum(powers[: _first_loud(powers) - _SOFT_BEGINNING], _LEAST_POWER)
     if len(before) < _ENOUGH:

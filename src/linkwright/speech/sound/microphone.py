@@ -80,7 +80,7 @@ def _library() -> Any:
     except ModuleNotFoundError:
         message = phrase("the package '{package}' is not installed", package="sounddevice")
         raise LinkwrightError(Diagnostic("VOICE412", message, hint=install_hint("voice"))) from None
-    except OSError as error:  # what it loads is not there
+    except OSError as error:  # the library that it loads is missing
         message = phrase("the system's microphone cannot be used: {reason}", reason=foreign(error))
         raise LinkwrightError(Diagnostic("VOICE412", message, hint=hint)) from None
     return sounddevice

@@ -1,7 +1,7 @@
-"""Resampling a stream to `RATE` without aliases, by a polyphase filter, block by block.
+"""Resampling a stream to `RATE` without aliases, with a polyphase filter, block by block.
 
-The filter is a sinc in a Kaiser window whose pass band ends at 0.92 of half the lower rate; what lies above that half
-is at least 60 dB down. Output begins with the first sample of the input: the filter's delay is taken out.
+The filter is a sinc in a Kaiser window whose pass band ends at 0.92 of half the lower rate; frequencies above that half
+are attenuated by at least 60 dB. The output begins with the first sample of the input: the filter's delay is removed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Resampler:
     """Resamples a stream of any rate to `RATE`.
 
     Args:
-        rate: of what comes in, in samples a second, `LOWEST_RATE` to `HIGHEST_RATE`.
+        rate: the input rate, in samples a second, `LOWEST_RATE` to `HIGHEST_RATE`.
     """
 
     def __init__(self, rate: int) -> None:
