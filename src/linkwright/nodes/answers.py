@@ -37,13 +37,13 @@ async def answered(node: Node, future: Any, seconds: float | None) -> bool:
 
 
 async def is_served(node: Node, client: Client[Any, Any], seconds: float | None, *, wanted: bool = True) -> bool:
-    """Wait until a service is there, or until it is not; whether that came in time.
+    """Wait until a service is available, or until it is gone. Return whether that happened in time.
 
     Args:
-        node: asks.
-        client: of the service.
-        seconds: how long to wait; None for ever.
-        wanted: whether it is waited for, or for its end.
+        node: the node that asks.
+        client: the client of the service.
+        seconds: the timeout; None to wait for ever.
+        wanted: whether to wait for the service to appear or to disappear.
     """
     loop = asyncio.get_running_loop()
     come: asyncio.Future[None] = loop.create_future()
@@ -60,4 +60,4 @@ async def is_served(node: Node, client: Client[Any, Any], seconds: float | None,
         return client.service_is_ready() is wanted or await answered(node, come, seconds)
     finally:
         node.graph.unwatch(changed)
-        come.cancel()  # what was called meanwhile looks no more
+        come.cancel()  # callbacks that are already scheduled then do nothing

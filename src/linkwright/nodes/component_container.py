@@ -20,13 +20,13 @@ OnLoaded = Callable[[RunningNode, NodeOptions], None]
 class ComponentContainer(SingleNode):
     """The running node.
 
-    It answers ``~/_container/load_node``, ``unload_node`` and ``list_nodes`` as rclcpp_components does. What it can
-    load are the components that come with Linkwright (`COMPONENTS`); others are libraries of compiled code. Nodes that
-    a component makes besides its own, such as costmaps, have the parameters that files give to the container's process.
+    It answers ``~/_container/load_node``, ``unload_node`` and ``list_nodes`` as rclcpp_components does. It can load the
+    components that come with Linkwright (`COMPONENTS`); others are libraries of compiled code. Nodes that a component
+    creates besides its own, such as costmaps, get the parameters that files give to the container's process.
 
     Attributes:
-        on_loaded: called with each node that was loaded and what it was started with.
-        loading: what is entered while a node is made, for those who want to know whose words come then.
+        on_loaded: called with each loaded node and the request that loaded it.
+        loading: returns a context that is active while a node is created, to attribute its log lines.
     """
 
     DEFAULT_NAME = "ComponentManager"

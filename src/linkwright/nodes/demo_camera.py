@@ -1,4 +1,4 @@
-"""cam2image of image_tools, without a camera: publishes a moving test picture on the topic ``image``."""
+"""cam2image of image_tools, without a camera: publishes a moving test image on the topic ``image``."""
 
 from __future__ import annotations
 

@@ -31,13 +31,13 @@ class Health:
 
 
 class DiagnosticUpdater:
-    """Publishes the diagnostics of a node, each second of its clock.
+    """Publishes the diagnostics of a node once a second of its clock.
 
     Args:
-        node: whose name stands before that of the task.
-        task: the name of what is told.
-        ask: says how it is.
-        hardware_id: the hardware it is about; ``none`` for none, as in diagnostic_updater.
+        node: the node, whose name precedes that of the task.
+        task: the name of the diagnostic task.
+        ask: returns the current health.
+        hardware_id: the hardware; ``none`` if there is none, as in diagnostic_updater.
     """
 
     def __init__(self, node: Node, task: str, ask: Callable[[], Health], hardware_id: str = "none") -> None:

@@ -31,7 +31,7 @@ def plain_image(message: Any) -> Any:
     """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressed`` to a sensor_msgs/msg/Image.
 
     Raises:
-        BadImageError: it is no JPEG or PNG.
+        BadImageError: it is neither JPEG nor PNG.
     """
     image = unpacked(message)
     if encoding_of(message).startswith("bgr") and image.encoding in ("rgb8", "rgba8"):

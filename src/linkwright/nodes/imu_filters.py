@@ -1,7 +1,7 @@
 """imu_filter_madgwick_node and complementary_filter_node of imu_tools: orientation from rates and accelerations.
 
-Sources: imu_filter_madgwick and imu_complementary_filter 2.1 (ROS 2 Humble): topics, parameters, defaults. What the IMU
-measures goes with what the magnetometer measured last; there stamps are matched.
+Sources: imu_filter_madgwick and imu_complementary_filter 2.1 (ROS 2 Humble): topics, parameters, defaults. Each IMU
+message is paired with the latest magnetometer message; the originals match stamps.
 """
 
 from __future__ import annotations

@@ -43,14 +43,14 @@ class JointLayout:
     """The joints of a robot as joint_state_publisher sees them.
 
     Attributes:
-        ranges: every published joint by name, in file order, which is the order of messages.
-        free: those that follow no other, in the same order; arrays of positions have one number for each.
-        dependent: the others, by name, with what each follows directly.
-        masters: array, shape (n,), the index in `free` of what each published joint comes down to; -1 where a chain
-            ends at a joint that does not move.
+        ranges: every published joint by name, in file order, which is also the order in messages.
+        free: the joints that mimic no other, in the same order; arrays of positions have one number for each.
+        dependent: the other joints by name, each with the joint that it mimics directly.
+        masters: array, shape (n,), the index in `free` of the joint at the end of each joint's mimic chain; -1 if that
+            joint does not move.
         factor: array, shape (n,): published position = factor * position of the master + offset.
         offset: array, shape (n,).
-        problems: what is wrong with the description for this purpose; joints concerned are left out or stand still.
+        problems: the problems of the description; the joints concerned are left out or do not move.
     """
 
     ranges: Mapping[str, JointRange]

@@ -67,7 +67,7 @@ class JointPanel:
     def sliders(self) -> list[JointSlider]:
         """The rows, in the order of the description's file.
 
-        Joints whose limits leave them no room have none, nor has what follows such a joint.
+        A joint with equal limits has no row, and neither has a joint that mimics it.
         """
         return list(self._sliders)
 
@@ -109,12 +109,12 @@ class JointPanel:
         self._moved()
 
     def subscribe(self, callback: PanelCallback) -> Callable[[], None]:
-        """Register a callback for changes: ``"sliders"`` when the rows changed, ``"positions"`` when joints moved.
+        """Register a callback for changes: ``"sliders"`` when the rows change, ``"positions"`` when joints move.
 
-        Changes of one turn of the event loop are told once.
+        Changes in the same iteration of the event loop are reported once.
 
         Returns:
-            A function that ends it.
+            A function that removes the callback.
         """
         self._subscribers.append(callback)
 
@@ -125,7 +125,7 @@ class JointPanel:
         return unsubscribe
 
     def rebuild(self) -> None:
-        """Make the rows anew for the layout of the joints now."""
+        """Rebuild the rows for the current layout of the joints."""
         layout = self._joints.layout
         movable = {joint.name for joint in layout.free if joint.lower != joint.upper}
         free = layout.free

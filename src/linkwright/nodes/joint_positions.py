@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 class _Quantity:
-    """A number for each free joint; NaN stands for none."""
+    """A number for each free joint; NaN means none."""
 
     def __init__(self, values: Array) -> None:
         self._with_zero = np.append(values, 0.0)

@@ -9,10 +9,10 @@ from linkwright.nodes.options import NodeOptions
 
 
 class JointStatePublisherGui(JointStatePublisher):
-    """The running node. As in ROS its name is ``joint_state_publisher`` unless the options give another.
+    """The running node. As in ROS its default name is ``joint_state_publisher``.
 
-    A moved slider is published at once, many moves in one turn of the event loop as one message. What comes in on the
-    topics of ``source_list`` moves the sliders.
+    A moved slider is published at once; moves in the same iteration of the event loop share one message. Messages on
+    the topics of ``source_list`` move the sliders.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:

@@ -1,4 +1,4 @@
-"""Subscriptions that exist only while somebody subscribes to what is published from them."""
+"""Subscriptions that exist only while the topics published from them have subscribers."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ class LazySubscriptions:
     """Opens subscriptions with the first subscriber of some publishers, and closes them with the last.
 
     Args:
-        graph: tells of changes.
-        node: owns them.
-        publishers: whose listeners count.
-        subscribe: opens the subscriptions.
+        graph: the graph, which reports changes.
+        node: the owner of the subscriptions.
+        publishers: the publishers whose subscribers count.
+        subscribe: creates the subscriptions.
     """
 
     def __init__(

@@ -38,16 +38,17 @@ class NodeOptions:
     """The options of a node, from a launch file or a command line.
 
     Attributes:
-        name: its name; None for the one its code gives it.
-        namespace: where it lives.
-        parameters: values by name; nested dictionaries stand for names with dots.
-        remappings: rules ``(from, to)``.
-        arguments: its command line without the program's name; ``--ros-args`` sections count.
-        library: the readings of robot descriptions that the process shares.
-        for_others: parameters for further nodes that it makes, by their names, as files of its process have them.
-        environment: the environment variables by which it looks for files; those of the process unless it is said.
-        output: takes the lines that a node prints as its result; standard output unless it is said.
-        terminal: file descriptor of the terminal that is the node's alone; None where it shares its process.
+        name: the name; None for the default name in its code.
+        namespace: the namespace.
+        parameters: the values by name; nested dictionaries are names with dots.
+        remappings: the rules ``(from, to)``.
+        arguments: the command line without the program's name, including ``--ros-args`` sections.
+        library: the parsed robot descriptions that the process shares.
+        for_others: the parameters of further nodes that it creates, by their names, from the parameter files of its
+            process.
+        environment: the environment variables with which it looks for files; by default those of the process.
+        output: receives the lines that a node prints as its result; by default standard output.
+        terminal: the file descriptor of a terminal that the node has to itself; None if it shares its process.
     """
 
     name: str | None = None

@@ -31,7 +31,7 @@ _TINY = float(np.finfo(np.float64).tiny)
 
 
 class _Converter(SingleNode, ABC):
-    """The base of both: a target frame, two topics, and work only while anybody subscribes."""
+    """The base of both: a target frame, two topics, and work only while the output has a subscriber."""
 
     INPUT_TYPE: str
     OUTPUT_TYPE: str
@@ -69,7 +69,7 @@ class _Converter(SingleNode, ABC):
         """Convert a message of the input to one of the output."""
 
     def _placed(self, points: NDArray[np.float64], header: Any) -> NDArray[np.float64] | None:
-        """Points transformed to the target frame; None without a transform."""
+        """Transform points to the target frame; None if there is no transform."""
         if not self._target:
             return points
         pose = self._poses.pose(self._target, header.frame_id, header.stamp.nanoseconds)
@@ -155,7 +155,7 @@ class LaserScanToPointCloud(_Converter):
 
 
 def points_of(cloud: Any) -> NDArray[np.float64] | None:
-    """The points of a sensor_msgs/msg/PointCloud2, shape (n, 3); None without coordinates."""
+    """Return the points of a sensor_msgs/msg/PointCloud2, shape (n, 3); None if it has no coordinates."""
     fields = {field.name: field for field in cloud.fields}
     count = cloud.width * cloud.height
     data = np.frombuffer(bytes(cloud.data), np.uint8)

@@ -6,7 +6,7 @@ differences:
 - A message that the throttle holds back is published when its time comes, unless a newer one came before. The ROS node
   drops it, so the last move of a slider can be lost.
 - A message that repeats the last positions does not hold back a move that comes right after it (see `Throttle`).
-- A new description starts with a clear throttle, and a new ``frame_prefix`` publishes the fixed transforms anew.
+- A new description starts with a clear throttle, and a new ``frame_prefix`` publishes the fixed transforms again.
 - ``publish_frequency`` 0, for which the ROS node divides by zero, is refused.
 - ``/tf_static`` carries only the transforms of the description that holds now.
 """

@@ -200,7 +200,7 @@ class Throttle:
         return group.positions is None or not np.array_equal(group.positions, positions)
 
     def opens_ns(self, group: JointGroup, now_ns: int, *, move: bool) -> int:
-        """The stamp from which on a message may be published."""
+        """Return the earliest stamp at which a message may be published."""
         before = self._moved_ns if move else self._sent_ns
         return min(int(before[group.rows].min()), now_ns) + self.interval_ns
 

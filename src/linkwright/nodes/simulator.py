@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _EMPTY, _DESCRIPTION = "empty", "robot_description"
 _LEFT_OUT = frozenset({"SDF150", "SDF160", "SDF161"})
-"""The codes of what is unknown or not to be found."""
+"""The codes for elements and files that are unknown or missing."""
 _PARAMETERS: dict[str, Any] = {
     "world": _EMPTY,
     "world_sdf_file": "",
@@ -54,33 +54,32 @@ class Simulator(SingleNode):
     Its parameters:
 
     ``world``
-        the file; the only argument of its command line that is none of ROS's means the same. ``empty``: a plane.
+        the file, also the only argument of the command line besides ROS arguments. ``empty``: a plane.
     ``world_sdf_file``, ``world_sdf_string``
         as gzserver of ros_gz_sim has them: the file, or the text of the world.
     ``publish_rate``
-        how often a simulated second ``/clock`` tells the time, in Hz.
+        the rate of ``/clock`` in simulated time, in Hz.
     ``real_time_factor``
-        simulated seconds in a real one; 0 for what the world says, negative for as many as can be.
+        the simulated seconds in a real one; 0 for the world's own, negative for as fast as possible.
     ``step``
         the time step in s; 0 for that of the world.
     ``seed``, ``pause``, ``seconds``
-        what random numbers follow from; whether it begins paused; after how many simulated seconds it ends, 0 for
-        never.
+        the random seed; whether it starts paused; after how many simulated seconds it ends, 0 for never.
     ``gui``
-        whether a page with the world is to be opened as well; whoever hosts the node does that.
+        whether to open a page with the world; the host of the node does that.
     ``usual_names``
-        whether topics of gz have their usual names too.
+        whether gz topics also have their usual names.
     ``gazebo_mistakes``
         whether plugins make the known mistakes of Gazebo, too: see docs/simulation.md.
     ``robot_description``, ``robot_name``, ``robot_pose``, ``robot_namespace``
-        a robot that is there from the start: URDF or SDF, and x, y, z in m and roll, pitch, yaw in rad. Another
-        description may be set while it runs: the robot comes anew where it is, with its joints as they are.
+        a robot from the start: URDF or SDF, and x, y, z in m and roll, pitch, yaw in rad. The description may be
+        replaced while it runs: the robot keeps its place and the positions of its joints.
 
     Attributes:
-        finished: gets status 0 when the seconds are over, and 1 when they will not be, as the simulation failed.
+        finished: receives status 0 after the seconds, and 1 if the simulation failed.
 
     Raises:
-        LinkwrightError: SIM150 there is no such world; SIM101 MuJoCo is missing; what is wrong with world or robot.
+        LinkwrightError: SIM150 there is no such world; SIM101 MuJoCo is missing; an error in the world or the robot.
     """
 
     DEFAULT_NAME = "gazebo"

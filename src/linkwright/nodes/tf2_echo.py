@@ -31,7 +31,7 @@ class Tf2Echo(SingleNode):
     """The running node.
 
     Raises:
-        LinkwrightError: NODE401, the rate is no number.
+        LinkwrightError: NODE401, the rate is not a number.
     """
 
     DEFAULT_NAME = "tf2_echo"

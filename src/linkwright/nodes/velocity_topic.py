@@ -13,9 +13,9 @@ _DEPTH = 10
 
 
 def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, ...]:
-    """The types to subscribe to for velocities: one where ``stamped`` says which, otherwise both.
+    """Return the types to subscribe to for velocities: one if `stamped` is set, otherwise both.
 
-    The type that is published already is the first, so that nothing is told of a type that nobody subscribes to.
+    The type that is already published comes first, so that no warning about a type mismatch is logged.
     """
     if stamped is not None:
         return (TWIST_STAMPED if stamped else TWIST,)
@@ -24,21 +24,21 @@ def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, .
 
 
 class VelocityTopic:
-    """A topic of velocities; it is left alone where it carries something else.
+    """A topic of velocities; not published on while it carries another type.
 
     Args:
-        node: who publishes.
-        topic: its name, before remapping.
-        stamped: whether to publish TwistStamped; None to do what the subscribers of the topic do, and to publish Twist
-            where there is none, or some of each.
+        node: the node that publishes.
+        topic: the name before remapping.
+        stamped: whether to publish TwistStamped; None to follow the topic's subscribers, and to publish Twist if there
+            are none or some of each.
         frame_id: the frame in the header of a TwistStamped.
 
     Attributes:
-        name: its name in full.
-        foreign: a type that others have on the topic and that is neither; None where there is none.
+        name: the full name.
+        foreign: a type on the topic that is neither; None if there is none.
 
     Raises:
-        LinkwrightError: the name is none of a topic.
+        LinkwrightError: the name is not a topic name.
     """
 
     def __init__(self, node: Node, topic: str, stamped: bool | None = None, frame_id: str = "") -> None:

@@ -17,7 +17,7 @@ from linkwright.nodes.answers import answered, is_served
 from linkwright.nodes.options import SingleNode
 
 _LOOK_AGAIN = 10.0
-"""Seconds between two lines about a service that is not there."""
+"""Seconds between two log lines about a service that is not available."""
 _ATTEMPTS = 3
 
 
@@ -29,7 +29,7 @@ class ManagerClient:
     """Calls services of a controller manager.
 
     Args:
-        node: who calls.
+        node: the node that calls.
         manager: the name of the manager's node; relative to the namespace of `node`.
         timeout: seconds to wait for a service; 0 for any time.
         call_timeout: seconds to wait for an answer.
@@ -45,7 +45,7 @@ class ManagerClient:
         """Call one of the manager's services, such as ``list_controllers``.
 
         Raises:
-            NoManagerError: it is not there, or does not answer.
+            NoManagerError: the manager is not available, or does not answer.
         """
         kind = "".join(word.capitalize() for word in service.split("_"))
         return await self._call(f"controller_manager_msgs/srv/{kind}", service, fields)

@@ -27,10 +27,10 @@ _TAKEN = ("type", "fallback_controllers")
 
 
 class Spawner(ManagerProgram):
-    """The running node: it ends with status 0 when the controllers are active.
+    """The running node. It exits with status 0 when the controllers are active.
 
     Raises:
-        LinkwrightError: NODE831, the command line cannot be understood; NODE832, a parameter file is not there.
+        LinkwrightError: NODE831, the command line cannot be understood; NODE832, a parameter file does not exist.
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:

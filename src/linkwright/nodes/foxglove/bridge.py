@@ -37,7 +37,7 @@ _LOOK_AFTER = 0.1
 class FoxgloveBridge(SingleNode):
     """The node, with the parameters of ROS's foxglove_bridge where it has the same.
 
-    It binds this machine's loopback address unless `address` says another: whoever connects may publish, call
+    It binds the loopback address unless `address` names another, because every client that connects may publish, call
     services and set parameters.
     """
 
@@ -88,7 +88,7 @@ class FoxgloveBridge(SingleNode):
             session.close()
         self._offer.parameters.close()
         self._serving.cancel()
-        (self._server or self._listener).close()  # now: the loop may end before it comes to what is scheduled here
+        (self._server or self._listener).close()  # now: the loop may end before it runs scheduled callbacks
         if self._runner is not None:
             self._goodbye = self._loop.create_task(self._runner.cleanup())
         super().close()

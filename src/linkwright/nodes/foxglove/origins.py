@@ -12,13 +12,14 @@ _SCHEMES_OF_PROGRAMS = ("file", "app", "foxglove", "lichtblick")
 
 
 def is_welcome(origin: str | None, more: Collection[str] = ()) -> bool:
-    """Whether a client with an ``Origin`` header may connect.
+    """Return whether a client with an ``Origin`` header may connect.
 
-    Programs send none. Pages of Foxglove and Lichtblick are welcome, and those that this machine serves itself.
+    Programs send no such header. Pages of Foxglove and Lichtblick may connect, and so may pages that this machine
+    serves.
 
     Args:
-        origin: the header; None without.
-        more: origins that are welcome too; ``*`` stands for all.
+        origin: the header; None if there is none.
+        more: further origins that may connect; ``*`` means all.
     """
     if origin is None or "*" in more or origin in more:
         return True

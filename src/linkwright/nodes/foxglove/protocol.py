@@ -29,7 +29,7 @@ class StatusLevel(IntEnum):
 
 
 class BadFrameError(ValueError):
-    """Bytes from a client are no message of the protocol; the text says why."""
+    """Bytes from a client are not a message of the protocol; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)

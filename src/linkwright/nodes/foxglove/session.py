@@ -52,8 +52,8 @@ class Session:
     """Handles the requests of one client.
 
     Attributes:
-        watches_connections: the client wants to be told of connections.
-        parameters: names of those whose changes the client wants to be told of; empty for all, None for none.
+        watches_connections: whether the client is notified of connections.
+        parameters: names of the parameters whose changes are sent to the client; empty for all, None for none.
     """
 
     offer: Offer

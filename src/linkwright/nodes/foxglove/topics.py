@@ -91,10 +91,10 @@ class Forwarding:
     """Forwards the messages of a channel to a client.
 
     Args:
-        node: subscribes.
-        channel: what to.
-        client: who gets them.
-        number: by which the client knows its subscription.
+        node: the node that subscribes.
+        channel: the channel to forward.
+        client: the receiver.
+        number: the client's id of the subscription.
     """
 
     def __init__(self, node: Node, channel: Channel, client: Client, number: int) -> None:
@@ -149,7 +149,7 @@ class Publication:
         """Publish a message.
 
         Raises:
-            LinkwrightError: the bytes are no message of the type.
+            LinkwrightError: the bytes are not a message of the type.
         """
         self._publisher.publish(deserialize(data, self._class))
 

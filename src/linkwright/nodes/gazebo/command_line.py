@@ -1,7 +1,7 @@
-"""Parsing the command lines of Gazebo's programs to parameters of the node that stands in for them.
+"""Converting the command lines of Gazebo's programs to parameters of the node that replaces them.
 
-Of the many options that `gazebo`, `gzserver` and `gz sim` take, those mean something here that say which world is
-loaded, whether the simulation begins paused, and what random numbers follow from; and the ROS arguments.
+Of the many options of `gazebo`, `gzserver` and `gz sim`, only the world, the paused start, the random seed and the ROS
+arguments have an effect here.
 """
 
 from __future__ import annotations
@@ -83,9 +83,10 @@ def _divided(words: Sequence[str]) -> tuple[list[str], list[str]]:
 
 
 def _read(words: list[str], with_value: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """The options with their values, empty for those without, and the other words; empty ones count, blank ones do not.
+    """Return the options with their values (empty for flags), and the other words; blank words are dropped.
 
-    A launch file that has no world gives ``gzserver`` an empty one, and what comes after it is no world.
+    A launch file without a world passes ``gzserver`` an empty word, which counts: the words after it do not name a
+    world.
     """
     options, others = {}, []
     rest = [word for word in words if word.strip() or not word]

@@ -28,11 +28,11 @@ class Entity:
     """The name, text and pose of an entity to be spawned.
 
     Attributes:
-        name: of the model in the world.
+        name: the name of the model in the world.
         xyz: its position in metres.
         rpy: its roll, pitch and yaw in radians.
-        namespace: begins the names of what its plugins bring to ROS.
-        reference_frame: what its pose is relative to; the world if empty.
+        namespace: the ROS namespace of its plugins.
+        reference_frame: the frame of its pose; the world if empty.
     """
 
     name: str
@@ -134,7 +134,7 @@ class EntitySpawner(SimulatorClient):
     # --- the request ----------------------------------------------------------------------------------------------
 
     def _spawn(self, text: str) -> None:
-        """Spawn a description once the simulator is there; only the first one is used."""
+        """Spawn a description once the simulator is available; only the first one is used."""
         if self._described:
             return
         self._described = True

@@ -9,7 +9,7 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 class Window(SingleNode):
     """The running node, which does nothing until it is closed: launch files end all when the window is closed."""
 
-    DEFAULT_NAME = "_gzclient"  # hidden: gzclient is no node
+    DEFAULT_NAME = "_gzclient"  # hidden: gzclient is not a node
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)

@@ -58,28 +58,28 @@ class AmclSettings:
     """The parameters as one object; lengths in metres, angles in radians, times in seconds.
 
     Attributes:
-        base: frame of the robot.
-        odom: frame of odometry.
-        world: frame of the map.
-        motion: how particles move.
-        noise: how wrong odometry is.
+        base: the frame of the robot.
+        odom: the frame of odometry.
+        world: the frame of the map.
+        motion: the motion model.
+        noise: the noise of odometry.
         model: one of `MODELS`.
-        laser: its settings.
-        skipping: of beams; None where none is skipped.
-        filter: of the particles.
-        max_beams: of a scan.
-        range_max: beams count as no longer than this; negative for what the scan says.
-        range_min: beams that are no longer count as having met nothing; negative for what the scan says.
-        initial_pose: where it begins; None where it waits to be told.
-        resample_interval: measurements for each resampling.
-        update_min_d: drive after which a scan is taken in.
-        update_min_a: turn after which a scan is taken in.
-        tolerance: how long the published transform is good for.
-        broadcasts: whether it is published.
-        forgets: whether a pose must be given anew after each configuration.
-        first_map_only: whether later maps are passed over.
-        scan_topic: where scans come from.
-        map_topic: where the map comes from.
+        laser: the settings of the laser model.
+        skipping: the settings of beam skipping; None to skip no beams.
+        filter: the settings of the particle filter.
+        max_beams: the number of beams used of a scan.
+        range_max: longer beams are shortened to this; negative for the scan's own limit.
+        range_min: shorter beams count as without a return; negative for the scan's own limit.
+        initial_pose: the pose to start at; None to wait for one.
+        resample_interval: the number of measurements between two resamplings.
+        update_min_d: the distance after which a scan is used.
+        update_min_a: the rotation after which a scan is used.
+        tolerance: how long the published transform is valid.
+        broadcasts: whether the transform is published.
+        forgets: whether each configuration needs a new initial pose.
+        first_map_only: whether later maps are ignored.
+        scan_topic: the topic of scans.
+        map_topic: the topic of the map.
     """
 
     base: str

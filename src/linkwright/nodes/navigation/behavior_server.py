@@ -268,7 +268,7 @@ class BehaviorNode(ManagedNode):
         self._heard_ns = self.now_ns()
 
     def _on_footprint(self, message: Any) -> None:
-        """Set the footprint from a message, in which it lies at the robot's pose; converted to the robot's frame."""
+        """Set the footprint from a message, which has it at the robot's pose; converts it to the robot's frame."""
         found = self._poses.pose(
             message.header.frame_id,
             self._value("robot_base_frame"),

@@ -1,8 +1,8 @@
-"""Bonds (bondcpp), by which nav2's servers and their manager notice when the other process dies.
+"""Bonds (bondcpp), with which nav2's servers and their manager notice when the other process dies.
 
-Both sides publish heartbeats on ``bond`` under the same id. A side that leaves says so, and one that dies falls silent.
-Different from bondcpp: a side waits for the other as long as it is there, not for 10 s, so it does not matter who comes
-first; and silence is counted in own heartbeats, so that a process that stood still itself takes nobody for dead.
+Both sides publish heartbeats on ``bond`` under the same id. A side that leaves sends a last message; one that dies
+falls silent. Unlike bondcpp, a side waits for the other without a timeout instead of 10 s, so either may start first;
+and silence is counted in own heartbeats, so a process that was itself suspended does not declare the other dead.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Bond:
         self._send(active=True)
 
     def end(self) -> None:
-        """Break the bond: the other side is told."""
+        """Break the bond and notify the other side."""
         if not self.broken:
             self.broken = True
             self._send(active=False)

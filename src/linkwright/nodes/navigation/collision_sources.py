@@ -29,14 +29,14 @@ class Source:
     """A sensor and its newest message.
 
     Args:
-        node: listens.
-        name: of the sensor, before its parameters.
-        transforms: where sensors are.
-        base: frame of the robot.
-        fixed: the frame in which what was seen stands still while the robot moves on; None to leave its moving out.
+        node: the node that subscribes.
+        name: the name of the sensor, the prefix of its parameters.
+        transforms: the transforms of the sensors.
+        base: the frame of the robot.
+        fixed: the frame in which obstacles are static while the robot moves; None to ignore the robot's motion.
 
     Raises:
-        LinkwrightError: NODE433, the sensor is of a type that is not had.
+        LinkwrightError: NODE433, the type of the sensor is not supported.
     """
 
     def __init__(self, node: Node, name: str, transforms: BufferCore, base: str, fixed: str | None) -> None:

@@ -162,7 +162,7 @@ class Zone:
             self._keep(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
 
     def _corners(self, name: str) -> Footprint | None:
-        """Corners from Jazzy's parameter, a text, or Humble's, a list of numbers; None without any."""
+        """Return the corners from Jazzy's parameter, a text, or Humble's, a list of numbers; None if there are none."""
         full = f"{self.name}.{name}"
         if not self._node.has_parameter(full):
             self._node.declare_parameter(full, None, ParameterDescriptor(dynamic_typing=True))

@@ -119,7 +119,7 @@ class ControllerNode(ManagedNode):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _start(self, goal: ServerGoalHandle) -> None:
-        """Start with a goal; a moving robot goes on moving."""
+        """Start with a goal; a moving robot keeps moving."""
         request = goal.request
         assert self._goals is not None, "it is configured"
         drives = self.is_cycling

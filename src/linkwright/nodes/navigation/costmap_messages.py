@@ -48,13 +48,13 @@ def raw_message(costmap: Costmap, frame: str, stamp: Any) -> Any:
 
 
 class CostmapPublisher:
-    """Publishes a costmap on ``costmap``, ``costmap_raw``, and its changes on ``costmap_updates``.
+    """Publishes a costmap on ``costmap`` and ``costmap_raw``, and its changes on ``costmap_updates``.
 
     Args:
-        node: of the costmap.
-        costmap: what is published.
-        frame: in which it lies.
-        always_full: whether all of it is sent however little changed.
+        node: the node of the costmap.
+        costmap: the costmap to publish.
+        frame: the frame of the costmap.
+        always_full: whether to send all of it however little changed.
     """
 
     def __init__(self, node: Node, costmap: LayeredCostmap, frame: str, *, always_full: bool) -> None:

@@ -101,13 +101,13 @@ class PointsTopic(SensorTopic):
 
     Args:
         node: listens.
-        topic: its name.
+        topic: the name of the topic.
         kind: ``LaserScan`` or ``PointCloud2``.
-        buffer: takes what was seen.
-        transforms: where sensors are.
-        frame: of the costmap.
-        sensor_frame: of the sensor; that of its messages where it is empty.
-        inf_is_valid: whether a ray that met nothing clears all of its way.
+        buffer: receives the observations.
+        transforms: the transforms of the sensors.
+        frame: the frame of the costmap.
+        sensor_frame: the frame of the sensor; empty for that of its messages.
+        inf_is_valid: whether a ray without a return clears its full length.
     """
 
     def __init__(
@@ -191,10 +191,10 @@ class MapTopic:
     Args:
         node: listens.
         topic: its name.
-        layer: takes the map.
-        transient_local: whether the map is had that was sent before.
-        updates: whether to listen to parts of it that change, on the same topic with ``_updates`` behind it.
-        on_map: told of each whole map and its frame.
+        layer: receives the map.
+        transient_local: whether to receive a map that was sent earlier.
+        updates: whether to subscribe to changed parts of the map, on the same topic with the suffix ``_updates``.
+        on_map: called with each full map and its frame.
     """
 
     def __init__(

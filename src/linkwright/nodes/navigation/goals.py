@@ -27,16 +27,16 @@ class GoalServer:
     """The action server of a managed node, which refuses goals while the node is not active.
 
     Args:
-        node: whose it is.
-        kind: type of the action.
-        name: of the action.
-        begin: called with each goal once it is accepted; the one before, if there was one, was aborted.
-        may_begin: asked whether a goal is accepted; every goal is when it is left out.
+        node: the owner of the server.
+        kind: the type of the action.
+        name: the name of the action.
+        begin: called with each accepted goal, after the previous one was aborted.
+        may_begin: returns whether to accept a goal; by default every goal is accepted.
 
-    Who works on the goal looks now and then whether it `is_canceled`, and then calls `canceled`.
+    The code that works on the goal checks now and then whether it `is_canceled`, and then calls `canceled`.
 
     Attributes:
-        current: the goal that is worked on.
+        current: the active goal.
     """
 
     def __init__(
@@ -91,9 +91,9 @@ class GoalServer:
         """End with the status aborted.
 
         Args:
-            code: name of the error code, where results have one (Jazzy).
-            reason: what is told with it.
-            fields: of the result.
+            code: the name of the error code, for results that have one (Jazzy).
+            reason: the error message.
+            fields: the fields of the result.
         """
         if (goal := self._leave()) is not None:
             goal.abort(self._result(code, reason, fields))

@@ -194,6 +194,6 @@ class ManagedServer(SingleNode):
         """Give the node what it needs before it starts; here nothing."""
 
     def close(self) -> None:
-        """Close it; its manager is told."""
+        """Close the node and notify its manager."""
         self._node.leave()
         super().close()

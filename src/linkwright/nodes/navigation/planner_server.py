@@ -1,8 +1,8 @@
 """planner_server of nav2: plans paths for ``compute_path_to_pose`` and ``compute_path_through_poses``.
 
 Parameters, topics, texts and results are those of nav2, Humble and Jazzy. All types of planners are recognised, and one
-method does the work of all (`linkwright.navigation.planning.planner`); where it is not that of the type, a line says
-so. Different on purpose: a goal in an obstacle is refused however large the tolerance is.
+method does the work of all (`linkwright.navigation.planning.planner`); a line is logged if the type has another method.
+A deliberate difference: a goal in an obstacle is refused however large the tolerance is.
 """
 
 from __future__ import annotations

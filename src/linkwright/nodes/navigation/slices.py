@@ -13,18 +13,18 @@ SECONDS_A_SLICE = 0.008
 _SECONDS_TO_WAIT = 0.02
 
 WAIT = "wait"
-"""Yielded by work that cannot go on before something else has happened."""
+"""Yielded by work that has to wait for an event."""
 
 
 class SlicedWork:
     """Runs a generator until it ends or is stopped.
 
     Args:
-        node: whose time passes while the work waits.
-        work: yields None where others may have their turn, and `WAIT` to be asked again a little later.
-        is_wanted: asked now and then whether to go on.
-        done: called in the end with what the work returned and None, or with None and what it raised; with None twice
-            when it is not wanted any more.
+        node: the node whose clock times the waits.
+        work: yields None to let other callbacks run, and `WAIT` to be resumed a little later.
+        is_wanted: returns whether to continue; called now and then.
+        done: called in the end with the result and None, or with None and the exception; with None twice if the work
+            was stopped.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class SlicedWork:
                     return
         except StopIteration as end:
             self._done(end.value, None)
-        except Exception as error:  # noqa: BLE001  # whoever wants the work done is to be told
+        except Exception as error:  # noqa: BLE001  # passed to the caller of the work
             self._done(None, error)
         else:
             self._later()

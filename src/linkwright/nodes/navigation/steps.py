@@ -1,7 +1,7 @@
-"""Managed nodes whose goals are worked on in steps, most of which are goals of other servers.
+"""Managed nodes that execute goals in steps, most of which are goals of other servers.
 
-What is to be done is written as a generator: it goes on once each cycle, and ``yield`` waits for the next. It ends when
-the goal is reached, raises `StepError` when it cannot be, and is closed when the goal is canceled.
+The work is a generator: it runs once each cycle, and ``yield`` waits for the next. It returns when the goal is reached,
+raises `StepError` when it cannot be, and is closed when the goal is canceled.
 """
 
 from __future__ import annotations

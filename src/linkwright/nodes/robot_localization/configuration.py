@@ -72,7 +72,7 @@ class SensorSettings:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """The parameters as one object; times are in nanoseconds where the name says so, else in seconds."""
+    """The parameters as one object; times are in nanoseconds where the name ends in ``_ns``, else in seconds."""
 
     frequency: float
     two_d: bool

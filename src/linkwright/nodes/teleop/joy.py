@@ -1,8 +1,8 @@
 """joy_node of joy and joy_linux_node of joy_linux: a joystick as sensor_msgs/msg/Joy on ``joy``.
 
 Parameters, the order of axes and buttons, and their signs (forwards and left are positive) are those of the ROS nodes;
-cross pads are two axes after the others. Different on purpose: a joystick that is pulled out sends a last message in
-which nothing is pressed, so that who listens stops, and rumble is not there.
+cross pads are two axes after the others. Deliberate differences: an unplugged joystick sends a last message in which
+nothing is pressed, so that subscribers stop the robot; and rumble is not supported.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ class _Settings:
 
     Attributes:
         number: of the device.
-        name: part of the device's name; empty to go by number or path.
-        path: the device; None to go by number or name.
-        deadzone: the part of an axis around its middle that is 0.
+        name: part of the device's name; empty to use the number or path.
+        path: the device; None to use the number or name.
+        deadzone: the part of an axis around its centre that is 0.
         repeat_rate: messages a second while nothing changes, 0 for none.
         coalesce: s for which changes of axes are collected.
         sticky: whether pressing a button again releases it.
@@ -157,7 +157,7 @@ class JoyNode(SingleNode):
             if event.is_axis:
                 soon |= self._turned(event)
             elif self._pressed(event):
-                # At first the device tells all that it has: that is one message.
+                # At first the device reports all axes and buttons: they share one message.
                 now, soon = now or not event.initial, soon or event.initial
         if now or (soon and self._settings.coalesce == 0.0):
             self._publish()
@@ -208,11 +208,11 @@ class JoyLinuxNode(JoyNode):
 
 
 def deflection(value: int, deadzone: float) -> float:
-    """The deflection of an axis, -1 to 1, forwards and to the left positive.
+    """Return the deflection of an axis, -1 to 1, forwards and to the left positive.
 
     Args:
-        value: as the device tells it, -32767 to 32767, backwards and to the right positive.
-        deadzone: the part around the middle that counts as 0; what is beyond it begins at 0.
+        value: the device's value, -32767 to 32767, backwards and to the right positive.
+        deadzone: the part around the centre that counts as 0; values beyond it start at 0.
     """
     part = max(-1.0, min(1.0, -value / FULL))
     beyond = abs(part) - deadzone

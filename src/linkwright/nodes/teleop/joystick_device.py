@@ -92,11 +92,11 @@ class JoystickDevice:
 
 
 def find_device(number: int, name: str = "") -> Path | None:
-    """Find the device of a number, or the first whose name contains a text; None when there is none.
+    """Find the device of a number, or the first whose name contains a text; None if there is none.
 
     Args:
-        number: that in ``/dev/input/jsNUMBER``.
-        name: part of its name; empty to go by the number.
+        number: the number in ``/dev/input/jsNUMBER``.
+        name: part of its name; empty to use the number.
     """
     if not name:
         path = FOLDER / f"js{number}"

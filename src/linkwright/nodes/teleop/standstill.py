@@ -15,12 +15,12 @@ VELOCITIES = (TWIST, TWIST_STAMPED)
 
 
 def send_stop(node: Node, publisher: Publisher[Any], lost: EndpointInfo) -> None:
-    """Publish a velocity of zero, and log why.
+    """Publish a velocity of zero, and log the reason.
 
     Args:
-        node: who hands velocities on.
-        publisher: where to.
-        lost: who sent the last one that was handed on.
+        node: the node that forwards velocities.
+        publisher: the publisher of velocities.
+        lost: the publisher of the last forwarded velocity.
     """
     message = publisher.msg_type()
     if publisher.type_name == TWIST_STAMPED:

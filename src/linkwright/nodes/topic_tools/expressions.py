@@ -1,7 +1,7 @@
 """transform and relay_field of topic_tools: messages computed by Python expressions from those of another topic.
 
-The expressions are as free as in topic_tools: who writes them on a command line or in a launch file may run programs
-anyway. Names of packages of messages stand for their types, ``std_msgs.msg.String``, other names for what
+The expressions are as free as in topic_tools, because the author of a command line or a launch file may run programs
+anyway. Names of message packages give access to their types, ``std_msgs.msg.String``; other names are the modules that
 ``--import`` imports.
 """
 
@@ -217,7 +217,7 @@ def _imported(name: str) -> Any:
 
 
 def _prepared(value: Any) -> Callable[[Any], Any]:
-    """Compile a value of YAML: a text is an expression, or stands for itself where it is none."""
+    """Compile a value of YAML: a text is an expression, or a literal text if it is not a valid expression."""
     if isinstance(value, dict):
         fields = {name: _prepared(each) for name, each in value.items()}
         return lambda message: {name: each(message) for name, each in fields.items()}

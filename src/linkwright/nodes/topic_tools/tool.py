@@ -1,7 +1,7 @@
-"""The base of topic_tools: an input whose type the graph tells, and an output.
+"""The base of topic_tools: an input whose type comes from the graph, and an output.
 
-Differences from topic_tools 1.3: a change of the graph is seen at once and not within 100 ms, and a source that comes
-back with another type is subscribed to anew, and a stop is sent when who sent the last velocity is lost.
+Differences from topic_tools 1.3: a change of the graph is noticed at once and not within 100 ms; a source that returns
+with another type is subscribed to again; and a stop is sent when the publisher of the last velocity is lost.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from linkwright.nodes.teleop.standstill import VELOCITIES, send_stop
 class TopicTool(SingleNode, ABC):
     """A node that forwards messages.
 
-    It publishes while somebody publishes on its input, with the same type, reliability and durability. A class sets
+    It publishes while its input has a publisher, with the same type, reliability and durability. A subclass sets
     `_input` and `_output` in `_declare`.
 
     Attributes:
-        USAGE: how it is called.
-        WORDS: the parameters that words of its command line stand for, with what converts them.
+        USAGE: the usage text.
+        WORDS: the parameters that the words of its command line set, with their converters.
     """
 
     USAGE: ClassVar[str]

@@ -31,13 +31,13 @@ _MOST_CHUNK = 10 * RATE
 class AudioCapture(SingleNode):
     """The running node.
 
-    Parameters: ``device``, a microphone by number or part of its name; ``file``, a WAV file to publish instead, in the
-    time of the node's clock, from when somebody listens; after its end comes silence, or with ``loop`` the file again;
+    Parameters: ``device``, a microphone by number or part of its name; ``file``, a WAV file to publish instead, paced
+    by the node's clock, starting with the first subscriber and followed by silence, or with ``loop`` by the file again;
     ``chunk``, the samples of a message.
 
     Raises:
         LinkwrightError: VOICE401 or VOICE402 the file cannot be read, VOICE412 or VOICE413 there is no microphone,
-            VOICE414 a parameter is not right.
+            VOICE414 a parameter is invalid.
     """
 
     DEFAULT_NAME = "audio_capture_node"

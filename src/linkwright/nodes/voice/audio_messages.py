@@ -1,7 +1,7 @@
 """Converting sound to messages of audio_common_msgs, and back from any of their formats.
 
-audio_capture publishes the samples of all channels in turn, in GStreamer's formats (``S16LE``), and says on
-``audio_info`` which. Who hears no AudioInfo takes 16 kHz, mono, S16LE, audio_capture's own defaults.
+audio_capture publishes interleaved samples in one of GStreamer's formats (``S16LE``), which it publishes on
+``audio_info``. Without an AudioInfo, the format is audio_capture's default: 16 kHz, mono, S16LE.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class AudioReader:
     """Converts a stream of AudioData to the samples of engines: mono, 16 bits, 16 kHz.
 
     Args:
-        form: of what comes.
+        form: the format of the messages.
     """
 
     def __init__(self, form: AudioForm | None = None) -> None:

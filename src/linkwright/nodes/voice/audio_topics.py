@@ -23,11 +23,11 @@ NAMESPACE = "/audio"
 
 
 class AudioTopics:
-    """The topics ``audio``, ``audio_stamped`` and ``audio_info`` of a source of sound: mono PCM of 16 bits at 16 kHz.
+    """The topics ``audio``, ``audio_stamped`` and ``audio_info`` of an audio source: mono PCM of 16 bits at 16 kHz.
 
     Args:
-        node: who publishes.
-        namespace: of the topics.
+        node: the node that publishes.
+        namespace: the namespace of the topics.
     """
 
     def __init__(self, node: Node, namespace: str = NAMESPACE) -> None:
@@ -39,7 +39,7 @@ class AudioTopics:
         self._stamps = SampleStamps()
 
     def restart(self) -> None:
-        """Start a new stream, unrelated to what was published before."""
+        """Start a new stream, unrelated to the previous one."""
         self._stamps.restart()
 
     def publish(self, samples: Samples, lost: float = 0.0) -> None:

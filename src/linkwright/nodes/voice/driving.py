@@ -13,11 +13,11 @@ from linkwright.speech.commands.actions import Drive, Values, amount
 _PERIOD = 0.05
 _LONGEST_STEP = 0.2
 _FRESH = 0.5
-"""s: odometry that is older says nothing; the way is then what was commanded."""
+"""s: older odometry is ignored; the distance is then computed from the commands."""
 _GAIN = 3.0
-"""1/s: how much of what is left is driven in a second, near the end."""
+"""1/s: the ratio of speed to remaining distance, near the end."""
 _SLOWEST = 0.15
-"""The least part of the speed, however little of the way is left."""
+"""The least share of the speed, however short the remaining distance."""
 _CLOSE = {"distance": 0.005, "angle": 0.005}
 """m and rad: less is done."""
 _PATIENCE = 3.0
@@ -63,11 +63,11 @@ class Driver:
         return self._drive is not None and self._left is None
 
     def begin(self, drive: Drive, values: Values) -> None:
-        """Start to drive, in place of what was driven before.
+        """Start to drive; replaces the previous command.
 
         Args:
-            drive: how.
-            values: what was said in the slots.
+            drive: the command.
+            values: the values of its slots.
         """
         self._topic.review(may_change=self._drive is None)
         self._drive = drive

@@ -24,15 +24,15 @@ _NEAR = 0.2  # s: engines do not know to the frame where a word begins
 
 
 class Listener:
-    """Passes sound to an engine, and results to the node.
+    """Passes sound to an engine, and its results to the node.
 
     Args:
-        node: whose callbacks `heard` and `failed` are.
-        make: makes the engine, in the thread; it may take seconds.
-        heard: takes what was heard.
-        finished: called when all that was said until `finish` was heard.
-        warn: takes why an engine hears nothing, whenever that changes.
-        failed: takes the error that the engine ended with.
+        node: the node, which runs `heard` and `failed` as callbacks.
+        make: creates the engine, in the thread; it may take seconds.
+        heard: called with each result.
+        finished: called when all speech before `finish` is recognized.
+        warn: called with the reason why an engine hears nothing, whenever that changes.
+        failed: called with the error that ended the engine.
     """
 
     def __init__(

@@ -28,11 +28,11 @@ class Goals:
     """Goals of one action, one at a time.
 
     Args:
-        node: sends them.
-        type_name: of the action.
-        name: of the action.
-        ended: told whether the goal was reached, and the reason where the server gives one. A goal that was canceled,
-            or whose place another one took, is not told of.
+        node: the node that sends them.
+        type_name: the type of the action.
+        name: the name of the action.
+        ended: called with whether the goal was reached, and the reason if the server gives one; not called for a goal
+            that was canceled or replaced.
     """
 
     def __init__(self, node: Node, type_name: str, name: str, ended: Callable[[bool, str], None]) -> None:
@@ -121,10 +121,9 @@ class Requests:
         return self._is_launched or any(goals.is_active for goals in self._goals.values())
 
     def prepare(self, action: object) -> None:
-        """Make what an action needs that takes a while to connect.
+        """Create the clients of an action that take a while to connect.
 
-        A service is called by a client that is made for the call: until then nobody waits for a service that only some
-        commands need.
+        A service gets its client when it is called, so that nothing waits for a service that only some commands need.
         """
         if isinstance(action, GoTo):
             self._goals.setdefault(action.action, Goals(self._node, NAVIGATE, action.action, self._ended))

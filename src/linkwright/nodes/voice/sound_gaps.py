@@ -10,7 +10,7 @@ from linkwright.speech.sound.samples import RATE
 
 _SECOND = 10**9
 _MOST_BEHIND = 10 * _SECOND
-"""A source that has stood still hands on what waited for it, and is late meanwhile; who is later has begun anew."""
+"""A suspended source publishes its backlog late; one that is later than this has restarted."""
 
 _MOST_AHEAD = _SECOND
 _DRIFT = 0.01  # of a block: how much the stamps come nearer to the clock with each
@@ -55,7 +55,7 @@ class SoundGaps:
     def __init__(self) -> None:
         self._next: int | None = None
         self._steady = 0
-        self._small = 0  # jumps too small to be told by themselves
+        self._small = 0  # jumps too small to be reported on their own
 
     def restart(self) -> None:
         """Start a new stream, whose publisher is taken to stamp it in the same way."""

@@ -1,16 +1,16 @@
 """The executables of slam_toolbox: async, sync, localization, and map_and_localization.
 
 They follow slam_toolbox 2.6 (Humble), whose nodes work as soon as they start, and 2.8 (Jazzy), whose nodes are managed;
-``ROS_DISTRO`` says which. Jazzy's go up by themselves where ``autostart_node`` is true, as our launch files have it.
-What makes the map is Linkwright's own (`linkwright.navigation.slam`). Other than there:
+``ROS_DISTRO`` selects one. Jazzy's activate themselves if ``autostart_node`` is true, as in our launch files. The
+mapper is Linkwright's own (`linkwright.navigation.slam`). Differences:
 
-- All solver plugins are one: Gauss-Newton on sparse matrices. Least squares end each match, so that
-  ``fine_search_angle_offset`` changes nothing; nor does ``use_scan_barycenter``.
-- A turn by ``minimum_travel_heading`` is enough for a scan to be taken, as the parameter says.
+- All solver plugins are one: Gauss-Newton on sparse matrices. Least squares refine each match, so
+  ``fine_search_angle_offset`` has no effect; nor has ``use_scan_barycenter``.
+- A turn by ``minimum_travel_heading`` is enough to process a scan, as the parameter's name suggests.
 - Scans are not moved by hand (``enable_interactive_mode``), maps are not merged, and nothing is forgotten: there is no
-  ``lifelong_slam_toolbox_node``. The robot is taken to stand still while a scan is made.
-- A graph is saved in a form of our own, in one file; what slam_toolbox saved cannot be read.
-- Where simulated time jumps back, as when a world is reset, the map begins anew.
+  ``lifelong_slam_toolbox_node``. The motion of the robot during a scan is ignored.
+- A graph is saved in a format of our own, in one file; files of slam_toolbox cannot be read.
+- When simulated time jumps back, as on the reset of a world, the map starts from scratch.
 """
 
 from __future__ import annotations

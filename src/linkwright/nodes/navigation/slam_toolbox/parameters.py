@@ -31,33 +31,34 @@ _WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
     "ceres_dogleg_type": "TRADITIONAL_DOGLEG",
     "ceres_loss_function": "None",
 }
-"""Parameters that files have and that change nothing here; what they choose is done in one way."""
+"""Parameters that files have and that have no effect here, because there is one method for each choice."""
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The parameters as one object; lengths in metres, angles in radians, times in nanoseconds where the name says so.
+    """The parameters as one object: metres, radians, and nanoseconds where the name ends in ``_ns``.
 
     Attributes:
         odom_frame: the frame of odometry.
-        map_frame: the frame of the map, its parent.
-        base_frame: the robot.
-        scan_topic: where scans come from.
-        map_name: the topic of the map; with ``_metadata`` that of its size.
-        resolution: side of a cell.
-        ranges: the least and the most that a reading counts.
-        throttle_scans: every so many scans one is looked at.
-        transform_timeout_ns: how long a scan waits for its transform, and how far transforms are sent ahead.
-        transform_period: between two transforms, seconds; 0 for none.
-        map_update_interval: between two maps, seconds.
+        map_frame: the frame of the map, the parent of `odom_frame`.
+        base_frame: the frame of the robot.
+        scan_topic: the topic of scans.
+        map_name: the topic of the map; with the suffix ``_metadata`` that of its metadata.
+        resolution: the side of a cell.
+        ranges: the least and the greatest range of a reading.
+        throttle_scans: process every n-th scan.
+        transform_timeout_ns: how long a scan waits for its transform, and how far published transforms are stamped
+            ahead.
+        transform_period: the seconds between two transforms; 0 for none.
+        map_update_interval: the seconds between two maps.
         tf_buffer_ns: how long transforms are kept.
-        position_covariance_scale: of the published pose.
+        position_covariance_scale: the factor of the published pose's covariance.
         yaw_covariance_scale: the same for its angle.
         min_pass_through: see `OccupancyMap`.
         occupancy_threshold: see `OccupancyMap`.
-        map_file_name: of a pose graph to go on with; "" for none.
-        start: where the robot is in it, of shape (3,); None for where its first scan was taken.
-        mapper: how the mapper works.
+        map_file_name: a pose graph to continue; "" for none.
+        start: the robot's pose in it, shape (3,); None for the pose of its first scan.
+        mapper: the settings of the mapper.
     """
 
     odom_frame: str

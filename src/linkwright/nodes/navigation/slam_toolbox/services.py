@@ -20,8 +20,8 @@ class ToolboxServices:
 
     Args:
         toolbox: does the work.
-        has_queue: whether ``clear_queue`` is there.
-        switches: whether ``set_localization_mode`` is there.
+        has_queue: whether to offer ``clear_queue``.
+        switches: whether to offer ``set_localization_mode``.
     """
 
     def __init__(self, toolbox: Toolbox, *, has_queue: bool, switches: bool) -> None:
