@@ -27,7 +27,7 @@ from benchmarks.measure import LINKWRIGHT, Row
 from linkwright.graph import Graph
 from linkwright.images import RangeFinder, Unpacker, picture_of
 from linkwright.messages import get_message
-from linkwright.nodes.vision.detection_messages import picture_message, vision_message
+from linkwright.nodes.vision.detection_messages import image_message, vision_message
 from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.drawing import drawn
 from linkwright.vision.detectors.library import load_opencv
@@ -50,7 +50,7 @@ def rows() -> list[Row]:
 
 def _one_picture() -> Iterator[Row]:
     picture = _scene()
-    message = picture_message(get_message("std_msgs/msg/Header")(frame_id="camera"), picture)
+    message = image_message(get_message("std_msgs/msg/Header")(frame_id="camera"), picture)
     unpacker, ranges = Unpacker(), RangeFinder()
     for encoding in ("rgb8", "bgr8"):
         message.encoding = encoding

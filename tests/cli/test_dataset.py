@@ -25,7 +25,7 @@ def test_a_dataset_is_made_and_counted(words, tmp_path, capsys):
     assert main([*words, "-n", "3", "--format", "yolo", "--image-format", "png", "--keep", "colours,lens"]) == 0
     printed = capsys.readouterr()
     assert [line.split()[0] for line in printed.out.splitlines()] == ["class", "ball", "crate", "drums", "3"]
-    assert "3 pictures in set" in printed.out
+    assert "3 images in set" in printed.out
     assert "Classes: ball, crate, drums" in printed.err
     assert len(list((tmp_path / "set/images").rglob("*.png"))) == 3
     assert not (tmp_path / "set/annotations").exists()
@@ -35,7 +35,7 @@ def test_a_dataset_is_made_and_counted(words, tmp_path, capsys):
 def test_classes_that_nothing_is_of_are_told(words, tmp_path, capsys):
     (tmp_path / "classes.yaml").write_text("ball: '*ball*'\nunicorn:\n")
     assert main([*words, "-n", "1", "--classes", "classes.yaml"]) == 0
-    assert "Nothing in these worlds is of the classes unicorn" in capsys.readouterr().err
+    assert "These worlds have no object of the classes unicorn" in capsys.readouterr().err
 
 
 def test_ctrl_c_leaves_what_is_complete(words, tmp_path, capsys, monkeypatch):
@@ -48,8 +48,8 @@ def test_ctrl_c_leaves_what_is_complete(words, tmp_path, capsys, monkeypatch):
 
     monkeypatch.setattr(DatasetFolder, "add", interrupted)
     assert main([*words, "-n", "5"]) == INTERRUPTED
-    assert "2 of 5 were made" in capsys.readouterr().err
-    assert json.loads((tmp_path / "set/dataset.json").read_text())["pictures"] == 2
+    assert "2 of 5 images were made" in capsys.readouterr().err
+    assert json.loads((tmp_path / "set/dataset.json").read_text())["images"] == 2
 
 
 @needs_limits
@@ -65,7 +65,7 @@ def test_a_full_disk_leaves_nothing_that_is_not_whole(words, tmp_path, capsys):
 @pytest.mark.parametrize(
     "wrong",
     [["--size", "640"], ["--size", "8x8"], ["--size", "640x99999"], ["--format", "voc"], ["--keep", "poses"],
-     ["--splits", "1,2"], ["--splits", "0,0,0"], ["--splits", "a,b,c"], ["--min-visible", "2"], ["--pictures", "0"],
+     ["--splits", "1,2"], ["--splits", "0,0,0"], ["--splits", "a,b,c"], ["--min-visible", "2"], ["--images", "0"],
      ["--seed", "-1"], ["--append", "--force"]],
 )  # fmt: skip
 def test_wrong_words_are_told(words, wrong, capsys):

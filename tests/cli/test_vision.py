@@ -1,4 +1,4 @@
-"""``linkwright vision detect``: what is printed and drawn of picture files."""
+"""``linkwright vision detect``: what is printed and drawn of image files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.cli.command import main
 
 
 @pytest.fixture
-def picture(tmp_path):
+def image(tmp_path):
     pixels = np.full((120, 160, 3), 150, np.uint8)
     pixels[40:80, 100:130] = (20, 60, 200)
     path = tmp_path / "scene.png"
@@ -21,20 +21,20 @@ def picture(tmp_path):
     return path
 
 
-def test_what_is_found_is_printed(picture, capsys):
-    assert main(["vision", "detect", str(picture), "--model", "colours"]) == 0
-    assert capsys.readouterr().out == f"{picture}: blue 1.00 [100.0 40.0 130.0 80.0]\n"
+def test_what_is_found_is_printed(image, capsys):
+    assert main(["vision", "detect", str(image), "--model", "colours"]) == 0
+    assert capsys.readouterr().out == f"{image}: blue 1.00 [100.0 40.0 130.0 80.0]\n"
 
 
-def test_as_json(picture, capsys):
-    assert main(["vision", "detect", str(picture), "-m", "colours", "--format", "json"]) == 0
+def test_as_json(image, capsys):
+    assert main(["vision", "detect", str(image), "-m", "colours", "--format", "json"]) == 0
     (row,) = json.loads(capsys.readouterr().out)
-    assert (row["image"], row["width"], row["height"]) == (str(picture), 160, 120)
+    assert (row["image"], row["width"], row["height"]) == (str(image), 160, 120)
     assert row["detections"] == [{"class": "blue", "score": 1.0, "box": [100.0, 40.0, 130.0, 80.0]}]
 
 
 def marker(folder, dictionary):
-    """A picture of the marker 4."""
+    """An image of the marker 4."""
     pixels = np.full((120, 160), 255, np.uint8)
     pixels[20:80, 30:90] = cv2.aruco.generateImageMarker(cv2.aruco.getPredefinedDictionary(dictionary), 4, 60)
     path = folder / "marker.png"
@@ -59,25 +59,25 @@ def test_markers_of_another_dictionary_are_asked_for(tmp_path, capsys, model):
     assert capsys.readouterr().out.startswith(f"{path}: 4 1.00 [")
 
 
-def test_a_dictionary_that_is_none_or_is_not_wanted_is_refused(picture, capsys):
-    assert main(["vision", "detect", str(picture), "-m", "aruco", "--dictionary", "6X6250"]) == 1
+def test_a_dictionary_that_is_none_or_is_not_wanted_is_refused(image, capsys):
+    assert main(["vision", "detect", str(image), "-m", "aruco", "--dictionary", "6X6250"]) == 1
     assert "did you mean '6X6_250'" in capsys.readouterr().err
-    assert main(["vision", "detect", str(picture), "-m", "colours", "--dictionary", "6X6_250"]) == 1
+    assert main(["vision", "detect", str(image), "-m", "colours", "--dictionary", "6X6_250"]) == 1
     assert "only 'aruco' and 'apriltag' have it: leave it out" in capsys.readouterr().err
 
 
-def test_pictures_with_boxes_are_written_each_under_a_name_of_its_own(picture, tmp_path, capsys):
+def test_images_with_boxes_are_written_each_under_a_name_of_its_own(image, tmp_path, capsys):
     folder = tmp_path / "drawn"
-    assert main(["vision", "detect", str(picture), str(picture), "-m", "colours", "--output", str(folder)]) == 0
+    assert main(["vision", "detect", str(image), str(image), "-m", "colours", "--output", str(folder)]) == 0
     assert sorted(path.name for path in folder.iterdir()) == ["scene-2_detections.png", "scene_detections.png"]
     with Image.open(folder / "scene_detections.png") as file:
         assert file.size == (160, 120)
         assert (np.asarray(file)[80, 100:130] != 150).any()
 
 
-def test_a_picture_that_cannot_be_read_does_not_keep_others_from_it(picture, tmp_path, capsys):
-    (tmp_path / "text.png").write_text("no picture")
-    words = [str(tmp_path / "text.png"), str(tmp_path / "gone.png"), str(picture)]
+def test_a_image_that_cannot_be_read_does_not_keep_others_from_it(image, tmp_path, capsys):
+    (tmp_path / "text.png").write_text("no image")
+    words = [str(tmp_path / "text.png"), str(tmp_path / "gone.png"), str(image)]
     assert main(["vision", "detect", *words, "--model", "colours"]) == 1
     printed = capsys.readouterr()
     assert "blue" in printed.out
@@ -86,15 +86,15 @@ def test_a_picture_that_cannot_be_read_does_not_keep_others_from_it(picture, tmp
     assert "gone.png" in printed.err
 
 
-def test_classes_are_chosen_by_name(picture, capsys):
-    assert main(["vision", "detect", str(picture), "-m", "colours", "--classes", "red"]) == 0
-    assert capsys.readouterr().out == f"{picture}: nothing found\n"
-    assert main(["vision", "detect", str(picture), "-m", "colours", "--classes", "blu"]) == 1
+def test_classes_are_chosen_by_name(image, capsys):
+    assert main(["vision", "detect", str(image), "-m", "colours", "--classes", "red"]) == 0
+    assert capsys.readouterr().out == f"{image}: nothing found\n"
+    assert main(["vision", "detect", str(image), "-m", "colours", "--classes", "blu"]) == 1
     printed = capsys.readouterr().err
     assert "VISION111" in printed
     assert "did you mean 'blue'?" in printed
 
 
-def test_a_threshold_that_is_none_is_wrong_usage(picture, capsys):
-    assert main(["vision", "detect", str(picture), "--threshold", "2"]) == 2
+def test_a_threshold_that_is_none_is_wrong_usage(image, capsys):
+    assert main(["vision", "detect", str(image), "--threshold", "2"]) == 2
     assert "value must be from 0 to 1" in capsys.readouterr().err

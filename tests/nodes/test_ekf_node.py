@@ -237,7 +237,7 @@ async def test_where_simulated_time_jumps_back_the_filter_begins_anew(test):
     await run(1, 20, 0.0)
     assert planar(filtered.last)[0] == pytest.approx(0.0)
     assert filtered.last.header.stamp.nanoseconds < 2e9
-    assert said(test, "WARN") == ["Time has jumped: the filter begins anew."]
+    assert said(test, "WARN") == ["Time has jumped: the filter restarts."]
 
 
 async def test_an_old_message_is_left_aside(test):
@@ -301,7 +301,7 @@ async def test_parameters_that_mean_nothing(test, parameters, text):
 async def test_parameters_of_sensors_that_are_not_there_are_named(test):
     start(test, odom0="wheels", odom0_config=config(X), odom0_diferential=True, odom2_config=config(X))
     (misspelt,) = said(test, "WARN")
-    assert misspelt.startswith("'odom0_diferential' is no parameter of this node; did you mean 'odom0_differential'")
+    assert misspelt.startswith("'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'")
     assert "parameters that this node does not have are not read: odom2_config" in said(test, "INFO")
 
 

@@ -49,7 +49,7 @@ def test_arguments(word, topic):
 
 @pytest.mark.parametrize("word", ["", "/scan", "/scan@", "/scan@sensor_msgs/msg/LaserScan", "@a@b", "/scan@a["])
 def test_an_argument_that_is_none(word):
-    with pytest.raises(LinkwrightError, match="is no topic to bridge"):
+    with pytest.raises(LinkwrightError, match="does not describe a topic to bridge"):
         topic_of_word(word)
 
 
@@ -62,12 +62,12 @@ def test_the_file_of_our_own_package():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("a: 1", "it is no list"),
-        ("- 1", "entry 1 is no mapping"),
+        ("a: 1", "it is not a list"),
+        ("- 1", "entry 1 is not a mapping"),
         ("- topic_name: a\n  ros_type_name: b", "entry 1 has no 'gz_type_name'"),
         ("- ros_type_name: a\n  gz_type_name: b", "entry 1 has no 'ros_topic_name'"),
         ("- topic_name: a\n  ros_type_name: b\n  gz_type_name: c\n  direction: UP", "no such direction as 'UP'"),
-        ("- [", "is no YAML"),
+        ("- [", "is not YAML"),
     ],
 )
 def test_a_file_that_does_not_say_it(text, message, tmp_path: Path):
@@ -269,7 +269,8 @@ async def test_images_are_there_as_jpeg_while_somebody_listens(stage, encoding, 
 
 
 @pytest.mark.parametrize(
-    ("more", "message"), [("publisher_queue: many", "'publisher_queue' is no number"), ("lazy: 3", "'lazy' is neither")]
+    ("more", "message"),
+    [("publisher_queue: many", "'publisher_queue' is not a number"), ("lazy: 3", "'lazy' is neither")],
 )
 def test_settings_of_a_topic_that_are_none(more, message, tmp_path: Path):
     path = tmp_path / "bridge.yaml"

@@ -104,7 +104,7 @@ async def test_what_cannot_be_packed_or_unpacked_is_told(test):
     [
         (["theora"], "parameter 'in_transport' of 'image_republisher' cannot be 'theora'"),
         (["raw", "png"], "parameter 'out_transport' of 'image_republisher' cannot be 'png'"),
-        (["raw", "raw", "raw"], "there is no meaning for 'raw'"),
+        (["raw", "raw", "raw"], "unexpected argument 'raw'"),
     ],
 )
 async def test_transports_that_there_are_not(test, words, text):

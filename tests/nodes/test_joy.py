@@ -247,7 +247,7 @@ async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start, said):
     pilot.node.destroy_node()
     await stage.clock.advance(1.0)
     assert [each.linear.x for each in pilot.velocities] == [0.0]
-    assert said("WARN") == ["nobody publishes '/joy' any more: the robot is stopped"]
+    assert said("WARN") == ["no node publishes '/joy' any more: the robot is stopped"]
 
 
 async def test_its_end_stops_the_robot(stage):

@@ -115,7 +115,7 @@ async def test_unknown_parameters_and_filters_behind_a_gap_are_named(test):
     start(test, filter1={**RANGE, "params": {"uper_threshold": 1.0}}, filter3=BOUNDS)
     *gaps, first = said(test, "WARN")
     assert first.startswith(
-        "'filter1.params.uper_threshold' is no parameter of laser_filters/LaserScanRangeFilter; did"
+        "'filter1.params.uper_threshold' is not a parameter of laser_filters/LaserScanRangeFilter; did"
     )
     assert gaps == ["'filter3' is not used: the chain ends before 'filter2'"]
 

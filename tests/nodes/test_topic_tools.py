@@ -239,9 +239,9 @@ async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test
     ("kind", "words", "text"),
     [
         (Relay, [], "parameter 'input_topic' of 'relay' is not given"),
-        (Relay, ["a", "b", "c"], "there is no meaning for 'c'"),
+        (Relay, ["a", "b", "c"], "unexpected argument 'c'"),
         (Throttle, ["often", "a", "1"], "parameter 'throttle_type' of 'throttle' cannot be 'often'"),
-        (Throttle, ["messages", "a", "fast"], "'fast' is no value of 'msgs_per_sec'"),
+        (Throttle, ["messages", "a", "fast"], "'fast' is not a value of 'msgs_per_sec'"),
         (Throttle, ["messages", "a", "0"], "parameter 'msgs_per_sec' of 'throttle' cannot be '0.0'"),
         (Drop, ["a", "1"], "parameter 'Y' of 'drop' is not given"),
         (Delay, ["a", "-1"], "parameter 'delay' of 'delay' cannot be '-1.0'"),
@@ -261,7 +261,7 @@ async def test_words_that_mean_nothing(test, kind, words, text):
 
 async def test_parameters_that_a_node_does_not_have_are_named_once(test):
     start(test, Relay, input_topic="a", lasy=True, robot_model="x")
-    assert said(test, "WARN") == ["'lasy' is no parameter of this node; did you mean 'lazy'?"]
+    assert said(test, "WARN") == ["'lasy' is not a parameter of this node; did you mean 'lazy'?"]
     assert said(test, "INFO") == ["parameters that this node does not have are not read: robot_model"]
 
 

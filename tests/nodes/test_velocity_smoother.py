@@ -80,7 +80,7 @@ async def test_a_command_that_is_not_repeated_ends(line, stage, said):
     await stage.clock.advance(2.0)
     assert one.speeds() == [0.125, 0.25, 0.25, 0.25, 0.125, 0.0]
     assert said("INFO")[-1:] == [
-        "no command for 0.2 s (velocity_timeout), and the last one was no stop: the robot is stopped"
+        "no command for 0.2 s (velocity_timeout), and the last one was not a stop: the robot is stopped"
     ]
 
 

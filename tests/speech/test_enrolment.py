@@ -153,7 +153,7 @@ def damage(document, change):
         (lambda document: document.update(version=2), "version '2', and 1 is read"),
         (lambda document: document.update(words={}), "no list of words"),
         (lambda document: document["words"].append({"takes": []}), "word 3 has no name"),
-        (lambda document: document["words"].append(document["words"][0]), "word 3 has no name, or one that was"),
+        (lambda document: document["words"].append(document["words"][0]), "word 3 has no name, or the name of"),
         (lambda document: document["words"][1].update(takes=[]), "'stop' has no takes"),
         (lambda document: document["words"][1]["takes"][0].update(frames="!"), "'stop' cannot be decoded"),
         (lambda document: document["words"][1]["takes"][0].update(frames=7), "'stop' cannot be decoded"),

@@ -73,7 +73,7 @@ def test_what_is_written_is_read(tmp_path):
         (b"", "does not begin"),
         (b"OggS" + bytes(60), "does not begin"),
         (wav(b"")[:12], "no samples"),
-        (b"RIFF\0\0\0\0WAVEdata\0\0\0\0", "before what says their form"),
+        (b"RIFF\0\0\0\0WAVEdata\0\0\0\0", "before the chunk with their format"),
         (wav(bytes(8), kind=7, bits=8), "mu-law of 8 bits"),
         (wav(bytes(8), kind=0x1234, bits=8), "0x1234"),
         (wav(bytes(8), bits=12), "PCM of 12 bits"),

@@ -17,5 +17,5 @@ def test_each_has_a_name():
     assert [found.name(index) for index in range(len(found))] == ["box", "ball"]
 
 
-def test_a_picture_may_have_none():
+def test_a_image_may_have_none():
     assert len(Detections.none(("ball",))) == 0

@@ -8,18 +8,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.vision.detections import Detections
-from linkwright.vision.evaluation import Things, balanced_score, evaluate, overlap
+from linkwright.vision.evaluation import GroundTruth, balanced_score, evaluate, overlap
 
 NAMES = ("ball", "box")
 BOX = (10.0, 10.0, 30.0, 30.0)
 ELSEWHERE = (50.0, 50.0, 80.0, 80.0)
 
 
-def things(*rows, ignored=()):
+def objects(*rows, ignored=()):
     """Rows of class, left, top, right, bottom; places of those that are ignored."""
     table = np.array(rows, np.float32).reshape(-1, 5)
     hidden = np.array([place in ignored for place in range(len(table))], bool)
-    return Things(table[:, 1:], table[:, 0].astype(np.int32), hidden)
+    return GroundTruth(table[:, 1:], table[:, 0].astype(np.int32), hidden)
 
 
 def found(*rows, names=NAMES):
@@ -35,13 +35,13 @@ def test_boxes_overlap_by_intersection_over_union():
 
 
 def test_all_found_exactly_is_one():
-    figures = evaluate(NAMES, [things((0, *BOX), (1, *ELSEWHERE))], [found((0, 0.9, *BOX), (1, 0.8, *ELSEWHERE))])
+    figures = evaluate(NAMES, [objects((0, *BOX), (1, *ELSEWHERE))], [found((0, 0.9, *BOX), (1, 0.8, *ELSEWHERE))])
     assert (figures.map50, figures.map) == (pytest.approx(1), pytest.approx(1))
     assert figures.confusion.tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 0]]
 
 
 def test_half_found_counts_the_recalls_up_to_a_half():
-    figures = evaluate(NAMES, [things((0, *BOX), (0, *ELSEWHERE))], [found((0, 0.9, *BOX))])
+    figures = evaluate(NAMES, [objects((0, *BOX), (0, *ELSEWHERE))], [found((0, 0.9, *BOX))])
     assert figures.classes[0].ap50 == pytest.approx(51 / 101)
     assert figures.classes[1].ap50 is None
     assert figures.map50 == pytest.approx(51 / 101)
@@ -49,46 +49,46 @@ def test_half_found_counts_the_recalls_up_to_a_half():
 
 
 def test_a_wrong_box_costs_only_where_it_is_surer_than_a_right_one():
-    truth = [things((0, *BOX))]
+    truth = [objects((0, *BOX))]
     assert evaluate(NAMES, truth, [found((0, 0.9, *BOX), (0, 0.8, *ELSEWHERE))]).map50 == pytest.approx(1)
     assert evaluate(NAMES, truth, [found((0, 0.8, *BOX), (0, 0.9, *ELSEWHERE))]).map50 == pytest.approx(0.5)
 
 
 def test_a_second_box_on_a_thing_is_wrong():
-    truth = [things((0, *BOX)), things((0, *BOX))]
+    truth = [objects((0, *BOX)), objects((0, *BOX))]
     figures = evaluate(NAMES, truth, [found((0, 0.9, *BOX), (0, 0.8, *BOX)), found((0, 0.7, *BOX))])
     assert figures.map50 == pytest.approx((51 + 50 * 2 / 3) / 101)
 
 
 def test_a_box_that_is_not_exact_counts_up_to_its_overlap():
     shifted = (10.0, 10.0, 30.0, 25.0)  # three quarters of it
-    figures = evaluate(NAMES, [things((0, *BOX))], [found((0, 0.9, *shifted))])
+    figures = evaluate(NAMES, [objects((0, *BOX))], [found((0, 0.9, *shifted))])
     assert figures.map50 == pytest.approx(1)
     assert figures.map == pytest.approx(0.6)  # right at 0.50 to 0.75, six of ten
 
 
 def test_who_finds_what_is_to_be_ignored_is_neither_right_nor_wrong():
-    truth = [things((0, *BOX), (0, *ELSEWHERE), ignored={1})]
+    truth = [objects((0, *BOX), (0, *ELSEWHERE), ignored={1})]
     figures = evaluate(NAMES, truth, [found((0, 0.9, *ELSEWHERE), (0, 0.8, *BOX))])
     assert figures.map50 == pytest.approx(1)
-    assert figures.classes[0].things == 1
+    assert figures.classes[0].objects == 1
     assert figures.confusion.tolist() == [[1, 0, 0], [0, 0, 0], [0, 0, 0]]
 
 
 def test_classes_are_told_by_their_names():
     other_order = found((1, 0.9, *BOX), (0, 0.9, *ELSEWHERE), (2, 0.9, *BOX), names=("box", "ball", "cat"))
-    assert evaluate(NAMES, [things((0, *BOX), (1, *ELSEWHERE))], [other_order]).map50 == pytest.approx(1)
+    assert evaluate(NAMES, [objects((0, *BOX), (1, *ELSEWHERE))], [other_order]).map50 == pytest.approx(1)
 
 
 def test_confusion_tells_what_was_taken_for_what_and_what_was_missed():
-    truth = [things((0, *BOX), (1, *ELSEWHERE))]
+    truth = [objects((0, *BOX), (1, *ELSEWHERE))]
     figures = evaluate(NAMES, truth, [found((1, 0.9, *BOX), (0, 0.3, *ELSEWHERE), (1, 0.6, 0, 60, 9, 69))])
     assert figures.confusion.tolist() == [[0, 1, 0], [0, 0, 1], [0, 1, 0]]
     assert figures.classes[1].precision == 0
 
 
 def test_recall_is_told_by_size():
-    truth = [things((0, 0, 0, 8, 8), (0, 20, 20, 80, 40))]
+    truth = [objects((0, 0, 0, 8, 8), (0, 20, 20, 80, 40))]
     figures = evaluate(NAMES, truth, [found((0, 0.9, 20, 20, 80, 40))])
     assert figures.recall_by_size == (
         ("under 16 pixels", 1, 0.0),
@@ -99,7 +99,7 @@ def test_recall_is_told_by_size():
 
 
 def test_the_balanced_score_is_that_of_the_last_detection_that_is_worth_it():
-    truth = [things((0, *BOX), (1, *ELSEWHERE), (1, 200, 200, 240, 240), ignored={2})]
+    truth = [objects((0, *BOX), (1, *ELSEWHERE), (1, 200, 200, 240, 240), ignored={2})]
     rows = [(0, 0.9, *BOX), (1, 0.6, *ELSEWHERE), (0, 0.4, 90, 90, 99, 99), (1, 0.7, 200, 200, 240, 240)]
     assert balanced_score(NAMES, truth, [found(*rows)]) == pytest.approx(0.6)
     assert balanced_score(NAMES, truth, [found(*rows[2:])]) == 0.5
@@ -109,7 +109,7 @@ def test_the_balanced_score_is_that_of_the_last_detection_that_is_worth_it():
 @given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 60), st.integers(0, 60)), max_size=6), st.randoms())
 def test_the_order_of_detections_does_not_matter(places, chance):
     rows = [(kind, 0.3 + 0.1 * number, x, y, x + 20, y + 20) for number, (kind, x, y) in enumerate(places)]
-    truth = [things((0, 5, 5, 25, 25), (1, 40, 40, 60, 60))]
+    truth = [objects((0, 5, 5, 25, 25), (1, 40, 40, 60, 60))]
     mixed = rows[:]
     chance.shuffle(mixed)
     one, other = evaluate(NAMES, truth, [found(*rows)]), evaluate(NAMES, truth, [found(*mixed)])

@@ -1,4 +1,4 @@
-"""``linkwright dataset``: pictures of a world with labels, to teach a detector with."""
+"""``linkwright dataset``: images of a world with labels, to teach a detector with."""
 
 from __future__ import annotations
 
@@ -28,19 +28,22 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("worlds", metavar="WORLD", nargs="+", help="files in SDF, or names of worlds")
     parser.add_argument("--output", "-o", metavar="DIR", required=True, help="the folder of the dataset")
     parser.add_argument(
-        "--pictures", "-n", metavar="N", type=positive_int, default=1000, help="so many are made (default: 1000)"
+        "--images",
+        "-n",
+        metavar="N",
+        type=positive_int,
+        default=1000,
+        help="the number of images to make (default: 1000)",
     )
+    parser.add_argument("--seed", metavar="N", type=unsigned_int, default=0, help="the random seed (default: 0)")
     parser.add_argument(
-        "--seed", metavar="N", type=unsigned_int, default=0, help="what chance follows from (default: 0)"
-    )
-    parser.add_argument(
-        "--size", metavar="WIDTHxHEIGHT", type=_size, default=(640, 480), help="of pictures (default: 640x480)"
+        "--size", metavar="WIDTHxHEIGHT", type=_size, default=(640, 480), help="the size of images (default: 640x480)"
     )
     parser.add_argument(
         "--format", metavar="FORMATS", type=_formats, default=_FORMATS, help="coco, yolo or both (default: coco,yolo)"
     )
     parser.add_argument(
-        "--image-format", choices=("jpg", "png"), default="jpg", help="of pictures (default: %(default)s)"
+        "--image-format", choices=("jpg", "png"), default="jpg", help="the file format of images (default: %(default)s)"
     )
     parser.add_argument(
         "--classes", metavar="FILE", help="YAML: classes with patterns of models (default: a class for each model)"
@@ -50,51 +53,63 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         action="append",
         default=[],
-        help="a robot or model that is put into each world, URDF, xacro or SDF; may be repeated",
+        help="a robot or model to put into each world, URDF, xacro or SDF; may be repeated",
     )
     parser.add_argument(
         "--splits",
         metavar="TRAIN,VAL,TEST",
         type=_splits,
         default=(0.8, 0.1, 0.1),
-        help="the shares of pictures (default: 0.8,0.1,0.1)",
+        help="the shares of images (default: 0.8,0.1,0.1)",
     )
     parser.add_argument(
-        "--copies", metavar="N", type=unsigned_int, default=3, help="things of each class at least (default: 3)"
+        "--copies",
+        metavar="N",
+        type=unsigned_int,
+        default=3,
+        help="the least number of objects of each class (default: 3)",
     )
     parser.add_argument(
-        "--most", metavar="N", type=positive_int, default=8, help="things put into a picture at most (default: 8)"
+        "--most",
+        metavar="N",
+        type=positive_int,
+        default=8,
+        help="the largest number of objects placed in an image (default: 8)",
     )
     parser.add_argument(
-        "--distractors", metavar="N", type=unsigned_int, default=6, help="shapes without a label (default: 6)"
+        "--distractors",
+        metavar="N",
+        type=unsigned_int,
+        default=6,
+        help="the number of shapes without a label (default: 6)",
     )
     parser.add_argument(
         "--keep",
         metavar="WHAT",
         type=_kept,
         default=(),
-        help="what stays as the world has it: lights, colours, lens (no blur, no noise), with commas between them",
+        help="properties to keep as in the world: lights, colours, lens (no blur, no noise), separated by commas",
     )
     parser.add_argument(
         "--min-size",
         metavar="PIXELS",
         type=unsigned_int,
         default=12,
-        help="the shorter side of a box, below which a thing is to be ignored (default: 12)",
+        help="ignore objects whose box has a shorter side below this (default: 12)",
     )
     parser.add_argument(
         "--min-visible",
         metavar="SHARE",
         type=_share,
         default=0.5,
-        help="the visible share of a thing, below which it is to be ignored (default: 0.5)",
+        help="ignore objects with a smaller visible share (default: 0.5)",
     )
     parser.add_argument(
-        "--workers", metavar="N", type=positive_int, help="so many processes (default: one for each processor)"
+        "--workers", metavar="N", type=positive_int, help="the number of processes (default: one for each processor)"
     )
     what_is_there = parser.add_mutually_exclusive_group()
-    what_is_there.add_argument("--append", action="store_true", help="add pictures to the dataset that is there")
-    what_is_there.add_argument("--force", action="store_true", help="replace the dataset that is there")
+    what_is_there.add_argument("--append", action="store_true", help="add images to the existing dataset")
+    what_is_there.add_argument("--force", action="store_true", help="replace the existing dataset")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -120,11 +135,11 @@ def run(arguments: argparse.Namespace) -> int:
     )
     source = Source(tuple(arguments.worlds), tuple(arguments.add), arguments.classes, options)
     path = Path(arguments.output)
-    progress = _Progress(arguments.pictures)
+    progress = _Progress(arguments.images)
     made = make_dataset(
         source,
         path,
-        arguments.pictures,
+        arguments.images,
         formats=arguments.format,
         workers=arguments.workers or usable_processors(),
         force=arguments.force,
@@ -134,17 +149,17 @@ def run(arguments: argparse.Namespace) -> int:
     )
     progress.end()
     print(as_table(made.folder.statistics()), end="")
-    pictures = counted("{count} picture", "{count} pictures", made.folder.count)
-    print(localized(phrase("{pictures} in {folder}", pictures=pictures, folder=display_path(path))))
+    images = counted("{count} image", "{count} images", made.folder.count)
+    print(localized(phrase("{images} in {folder}", images=images, folder=display_path(path))))
     if made.interrupted:
-        say(localized(phrase("{done} of {count} were made; what is there is complete, `--append` adds more",
-                             done=made.added, count=arguments.pictures)))  # fmt: skip
+        say(localized(phrase("{done} of {count} images were made; the dataset is complete, `--append` adds more",
+                             done=made.added, count=arguments.images)))  # fmt: skip
         return INTERRUPTED
     return FINE
 
 
 class _Progress:
-    """One line of a terminal that says how far it has come; elsewhere nothing."""
+    """A line of progress, printed only to a terminal."""
 
     def __init__(self, count: int) -> None:
         self._count = count
@@ -152,18 +167,18 @@ class _Progress:
         self._shown = sys.stderr.isatty()
 
     def begin(self, studio: Studio) -> None:
-        """Say what is made."""
+        """Print the classes and the rendering method."""
         say(localized(phrase("Classes: {names}", names=", ".join(studio.classes))))
-        say(localized(phrase("Pictures are made by {way}", way=studio.way)))
+        say(localized(phrase("Rendering images with {way}", way=studio.way)))
         if studio.unused:
-            say(localized(phrase("Nothing in these worlds is of the classes {names}", names=", ".join(studio.unused))))
+            say(localized(phrase("These worlds have no object of the classes {names}", names=", ".join(studio.unused))))
         self._began = time.monotonic()
 
     def tell(self, done: int) -> None:
         """Show how many are done."""
         if self._shown:
             rate = done / max(time.monotonic() - self._began, 1e-9)
-            words = localized(phrase("{done} of {count} pictures, {rate} a second", done=done, count=self._count,
+            words = localized(phrase("{done} of {count} images, {rate} a second", done=done, count=self._count,
                                      rate=f"{rate:.1f}"))  # fmt: skip
             print(f"\r{words}\x1b[K", end="", file=sys.stderr, flush=True)
 

@@ -151,7 +151,7 @@ def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
     for name in given:
         if name not in parameters:
             meant = did_you_mean(name, parameters)
-            told = f"'{prefix}params.{name}' is no parameter of {kind}" + (f"; {meant}" if meant else "")
+            told = f"'{prefix}params.{name}' is not a parameter of {kind}" + (f"; {meant}" if meant else "")
             node.get_logger().warning(told)
     for name, each in parameters.items():
         if name not in values and each.default is MISSING and each.default_factory is MISSING:
@@ -161,7 +161,7 @@ def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
 
 
 def _converted(name: str, value: Any, kind: Any) -> Any:
-    """A value in the type of its field; an integer may stand for a float, and 0 and 1 for booleans."""
+    """Return a value in the type of its field. An integer is accepted as a float, and 0 and 1 as booleans."""
     if kind is float and isinstance(value, int | float) and not isinstance(value, bool):
         return float(value)
     if kind is bool and value in (True, False):

@@ -41,17 +41,17 @@ def options_from_words(
     """Convert the words of a command line to parameters in the options.
 
     Args:
-        options: as the node is started.
-        words: its arguments without ROS arguments.
-        names: what the words stand for, in order, with what converts each; words may be fewer.
+        options: the options of the node.
+        words: the arguments without ROS arguments.
+        names: the parameters that the words set, in order, each with its converter; there may be fewer words.
         usage: how the node is started, for the hint.
 
     Raises:
-        LinkwrightError: NODE432, a word is none that the parameter can have, or there are more words than names.
+        LinkwrightError: NODE432, a word is not a value of its parameter, or there are more words than names.
     """
     hint = phrase("usage: {usage}", usage=usage)
     if len(words) > len(names):
-        message = phrase("there is no meaning for '{word}'", word=words[len(names)])
+        message = phrase("unexpected argument '{word}'", word=words[len(names)])
         raise LinkwrightError(Diagnostic("NODE432", message, hint=hint))
     given = {name: _converted(word, name, names[name], hint) for word, name in zip(words, names, strict=False)}
     return replace(options, parameters={**options.parameters, **given})
@@ -61,7 +61,7 @@ def _converted(word: str, name: str, convert: Callable[[str], Any], hint: Phrase
     try:
         return convert(word)
     except ValueError:
-        message = phrase("'{word}' is no value of '{name}'", word=word, name=name)
+        message = phrase("'{word}' is not a value of '{name}'", word=word, name=name)
         raise LinkwrightError(Diagnostic("NODE432", message, hint=hint)) from None
 
 
@@ -91,10 +91,10 @@ def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) ->
 
 
 def tell_unknown(node: Node) -> None:
-    """Log the parameters that were given and that the node does not have; called when all are declared.
+    """Log the given parameters that the node does not have; called when all are declared.
 
     Those that look misspelt are a warning. Parameters for all nodes of a launch (``/**``) reach nodes that do not know
-    them, so the rest is only told of.
+    them, so the rest is only information.
     """
     known = node.parameter_names()
     strange = [name for name in node.undeclared_overrides() if not name.startswith(_EVERYWHERE)]
@@ -105,6 +105,6 @@ def tell_unknown(node: Node) -> None:
         if hint is None:
             others.append(name)
         else:
-            logger.warning(f"'{name}' is no parameter of this node; {hint}")
+            logger.warning(f"'{name}' is not a parameter of this node; {hint}")
     if others:
         logger.info(f"parameters that this node does not have are not read: {', '.join(others)}")

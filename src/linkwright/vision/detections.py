@@ -1,4 +1,4 @@
-"""Detections: boxes, scores and classes in a picture."""
+"""Detections: boxes, scores and classes in an image."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True)
 class Detections:
-    """Boxes in one picture, the most certain first.
+    """Boxes in one image, the most certain first.
 
     Attributes:
-        boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels of the picture that was given, where pixel 0 is
-            from 0 to 1. They may reach beyond its edges only where a detector says so.
+        boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels of the input image, where pixel 0 is from 0 to 1.
+            They reach beyond its edges only for detectors that document it.
         scores: shape ``(n,)``, 0 to 1.
-        classes: shape ``(n,)``, places in `names`.
-        names: of the classes that the detector knows.
-        corners: of things that have four, such as markers: shape ``(n, 4, 2)``, in pixels, in their own order.
+        classes: shape ``(n,)``, indices in `names`.
+        names: the names of the detector's classes.
+        corners: the corners of objects with four, such as markers: shape ``(n, 4, 2)``, in pixels, in their own order.
     """
 
     boxes: NDArray[np.float32]
@@ -36,5 +36,5 @@ class Detections:
 
     @classmethod
     def none(cls, names: tuple[str, ...]) -> Detections:
-        """Detections of an empty picture."""
+        """Detections of an empty image."""
         return cls(np.zeros((0, 4), np.float32), np.zeros(0, np.float32), np.zeros(0, np.int32), names)

@@ -1,4 +1,4 @@
-"""The interface of detectors: a picture in, boxes out."""
+"""The interface of detectors: an image in, boxes out."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class Limits:
 
     Attributes:
         threshold: the least score.
-        iou: how much two boxes of one class may overlap before the less certain goes.
-        most: detections of one picture.
-        classes: names of those wanted; None for all.
+        iou: how much two boxes of one class may overlap before the less certain is dropped.
+        most: the largest number of detections of an image.
+        classes: the names of the classes to detect; None for all.
     """
 
     threshold: float = 0.5
@@ -30,12 +30,12 @@ class Limits:
 
 
 class Detector(ABC):
-    """Detects objects in pictures. One thread at a time calls it."""
+    """Detects objects in images. One thread at a time calls it."""
 
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """The names of its classes; empty where these are known from pictures only, as texts of QR codes."""
+        """The names of its classes; empty if they are only known from images, as the texts of QR codes."""
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
@@ -43,10 +43,10 @@ class Detector(ABC):
         return ()
 
     @abstractmethod
-    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Detect objects in a picture.
+    def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
+        """Detect objects in an image.
 
         Args:
-            picture: shape ``(height, width, 3)``, red, green, blue.
+            image: shape ``(height, width, 3)``, red, green, blue.
             limits: which detections count.
         """

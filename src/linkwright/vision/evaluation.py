@@ -11,31 +11,30 @@ from numpy.typing import NDArray
 from linkwright.vision.detections import Detections
 
 OVERLAPS = tuple(round(0.5 + 0.05 * step, 2) for step in range(10))
-"""Intersection over union from which on a box is right: 0.50, 0.55, ... 0.95."""
+"""The least intersection over union of a correct box: 0.50, 0.55, ... 0.95."""
 MOST = 100
-"""Detections of a picture that count, the most certain ones."""
+"""The number of detections of an image that count, the most certain ones."""
 _RECALLS: NDArray[np.floating] = np.linspace(0.0, 1.0, 101)
 _CONFUSION_SCORE, _CONFUSION_OVERLAP = 0.5, 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Things:
-    """The labelled things in a picture.
+class GroundTruth:
+    """The labelled objects in an image.
 
     Attributes:
         boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels.
-        classes: shape ``(n,)``, places in the dataset's names.
-        ignored: shape ``(n,)``, things that nobody is asked for; who finds one is neither right nor wrong. COCO says
-            ``iscrowd``.
+        classes: shape ``(n,)``, indices in the dataset's names.
+        ignored: shape ``(n,)``, objects whose detection counts neither as right nor as wrong (``iscrowd`` in COCO).
     """
 
     boxes: NDArray[np.float32]
     classes: NDArray[np.int32]
     ignored: NDArray[np.bool_]
 
-    def where(self, chosen: NDArray[np.bool_]) -> Things:
-        """The things that a mask selects."""
-        return Things(self.boxes[chosen], self.classes[chosen], self.ignored[chosen])
+    def where(self, chosen: NDArray[np.bool_]) -> GroundTruth:
+        """The objects that a mask selects."""
+        return GroundTruth(self.boxes[chosen], self.classes[chosen], self.ignored[chosen])
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,16 +42,16 @@ class ClassFigures:
     """The figures of one class.
 
     Attributes:
-        name: of the class.
-        things: how many there are.
-        ap50: the average precision where an overlap of 0.5 is enough; None where there is none to find.
+        name: the name of the class.
+        objects: the number of objects.
+        ap50: the average precision at an overlap of 0.5; None if there is no object.
         ap: its mean over `OVERLAPS`; None likewise.
-        precision: of the detections with a score of at least 0.5, the share that is right; None where there are none.
-        recall: the share of the things that these find; None where there is none to find.
+        precision: the share of correct detections among those with a score of at least 0.5; None if there are none.
+        recall: the share of objects that these detections find; None if there is no object.
     """
 
     name: str
-    things: int
+    objects: int
     ap50: float | None
     ap: float | None
     precision: float | None
@@ -61,21 +60,21 @@ class ClassFigures:
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """The figures of a detector on a set of pictures.
+    """The figures of a detector on a set of images.
 
     Attributes:
-        pictures: how many.
-        map50: the mean of `ClassFigures.ap50` over the classes that there are.
-        map: that of `ClassFigures.ap`.
+        images: the number of images.
+        map50: the mean of `ClassFigures.ap50` over the classes with objects.
+        map: the mean of `ClassFigures.ap`.
         classes: the figures of each class.
-        confusion: shape ``(classes + 1, classes + 1)``: how many things of a class (row) were taken for a class
-            (column) with a score of at least 0.5; the last column counts things that were not found, the last row
+        confusion: shape ``(classes + 1, classes + 1)``: how many objects of a class (row) were taken for a class
+            (column) with a score of at least 0.5; the last column counts objects that were not found, the last row
             detections where nothing is.
-        recall_by_size: name of a range of sizes, how many things it has, the share of them found with a score of at
+        recall_by_size: name of a range of sizes, how many objects it has, the share of them found with a score of at
             least 0.5.
     """
 
-    pictures: int
+    images: int
     map50: float
     map: float
     classes: tuple[ClassFigures, ...]
@@ -102,13 +101,13 @@ def overlap(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[
     return shares
 
 
-def evaluate(names: Sequence[str], truth: Sequence[Things], found: Sequence[Detections]) -> Evaluation:
+def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence[Detections]) -> Evaluation:
     """Evaluate detections against labels.
 
     Args:
-        names: of the classes that `truth` counts with.
-        truth: of each picture.
-        found: what a detector says of the same pictures, with a threshold near 0. Its classes are told by their names;
+        names: the class names of `truth`.
+        truth: the labels of each image.
+        found: a detector's detections in the same images, with a threshold near 0. Classes are matched by their names;
             those that `names` lacks do not count.
     """
     known = {name: place for place, name in enumerate(names)}
@@ -138,7 +137,7 @@ def evaluate(names: Sequence[str], truth: Sequence[Things], found: Sequence[Dete
     )
 
 
-def balanced_score(names: Sequence[str], truth: Sequence[Things], found: Sequence[Detections]) -> float:
+def balanced_score(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence[Detections]) -> float:
     """The score threshold with the greatest F1 over all classes.
 
     The arguments are those of `evaluate`.
@@ -150,11 +149,11 @@ def balanced_score(names: Sequence[str], truth: Sequence[Things], found: Sequenc
     scores: list[NDArray[np.float32]] = [np.zeros(0, np.float32)]
     right: list[NDArray[np.bool_]] = [np.zeros(0, bool)]
     there = 0
-    for things, each in zip(truth, found, strict=True):
-        detections, asked = _in_terms_of(known, each), things.where(~things.ignored)
+    for objects, each in zip(truth, found, strict=True):
+        detections, asked = _in_terms_of(known, each), objects.where(~objects.ignored)
         same = overlap(detections.boxes, asked.boxes) * (detections.classes[:, None] == asked.classes[None])
         hits = _matches(same, _CONFUSION_OVERLAP) >= 0
-        hidden = _within(detections.boxes, things.boxes[things.ignored]) >= _CONFUSION_OVERLAP
+        hidden = _within(detections.boxes, objects.boxes[objects.ignored]) >= _CONFUSION_OVERLAP
         counts = hits | ~hidden
         scores.append(detections.scores[counts])
         right.append(hits[counts])
@@ -188,19 +187,21 @@ def _in_terms_of(known: dict[str, int], found: Detections) -> _Found:
     return every.where(classes >= 0)
 
 
-def _average_precisions(place: int, truth: Sequence[Things], found: Sequence[_Found]) -> NDArray[np.float64] | None:
-    """The average precisions of one class, shape (overlaps,); None without a thing of it."""
-    there = sum(int(((things.classes == place) & ~things.ignored).sum()) for things in truth)
+def _average_precisions(
+    place: int, truth: Sequence[GroundTruth], found: Sequence[_Found]
+) -> NDArray[np.float64] | None:
+    """Return the average precisions of one class, shape (overlaps,); None if it has no object."""
+    there = sum(int(((objects.classes == place) & ~objects.ignored).sum()) for objects in truth)
     if there == 0:
         return None
     scores: list[NDArray[np.float32]] = []
     right: list[NDArray[np.bool_]] = []
     wrong: list[NDArray[np.bool_]] = []
-    for things, detections in zip(truth, found, strict=True):
+    for objects, detections in zip(truth, found, strict=True):
         mine = detections.where(detections.classes == place)
         boxes = mine.boxes[:MOST]
         scores.append(mine.scores[:MOST])
-        same = things.where(things.classes == place)
+        same = objects.where(objects.classes == place)
         shares = overlap(boxes, same.boxes[~same.ignored])
         hidden = _within(boxes, same.boxes[same.ignored])
         right.append(np.stack([_matches(shares, least) >= 0 for least in OVERLAPS]))
@@ -232,11 +233,11 @@ def _area(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
 
 
 def _matches(shares: NDArray[np.float64], least: float) -> NDArray[np.int64]:
-    """The thing matched by each detection, the most certain first, or -1; a thing is matched once.
+    """Return the object matched by each detection, the most certain first, or -1; an object is matched once.
 
     Args:
-        shares: of each detection with each thing, shape (detections, things).
-        least: share from which on a box is right.
+        shares: the overlap of each detection with each object, shape (detections, objects).
+        least: the least overlap of a correct box.
     """
     found: NDArray[np.int64] = np.full(len(shares), -1, np.int64)
     if shares.shape[1] == 0:
@@ -244,22 +245,22 @@ def _matches(shares: NDArray[np.float64], least: float) -> NDArray[np.int64]:
     free: NDArray[np.bool_] = np.ones(shares.shape[1], bool)
     for number, row in enumerate(shares):
         open_shares = np.where(free, row, -1.0)
-        thing = int(open_shares.argmax())
-        if open_shares[thing] >= min(least, 1 - 1e-10):
-            found[number] = thing
-            free[thing] = False
+        index = int(open_shares.argmax())
+        if open_shares[index] >= min(least, 1 - 1e-10):
+            found[number] = index
+            free[index] = False
     return found
 
 
-def _confusion(classes: int, truth: Sequence[Things], found: Sequence[_Found]) -> NDArray[np.int64]:
+def _confusion(classes: int, truth: Sequence[GroundTruth], found: Sequence[_Found]) -> NDArray[np.int64]:
     table: NDArray[np.int64] = np.zeros((classes + 1, classes + 1), np.int64)
-    for things, detections in zip(truth, found, strict=True):
+    for objects, detections in zip(truth, found, strict=True):
         sure = detections.where(detections.scores >= _CONFUSION_SCORE)
-        hidden = things.where(things.ignored)
-        things = things.where(~things.ignored)
-        shares = overlap(sure.boxes, things.boxes)
-        # Its own class first: a thing that was found right is not confused because another box lies on it, too.
-        same = shares * (sure.classes[:, None] == things.classes[None])
+        hidden = objects.where(objects.ignored)
+        objects = objects.where(~objects.ignored)
+        shares = overlap(sure.boxes, objects.boxes)
+        # Its own class first: a correctly detected object is not confused because another box overlaps it, too.
+        same = shares * (sure.classes[:, None] == objects.classes[None])
         matches = _matches(same, _CONFUSION_OVERLAP)
         left = shares.copy()
         left[:, matches[matches >= 0]] = 0
@@ -267,30 +268,30 @@ def _confusion(classes: int, truth: Sequence[Things], found: Sequence[_Found]) -
         others = _matches(left, _CONFUSION_OVERLAP)
         matches = np.where(matches >= 0, matches, others)
         unseen = _within(sure.boxes, hidden.boxes) >= _CONFUSION_OVERLAP
-        for number, thing in enumerate(matches):
-            if thing < 0 and unseen[number]:
+        for number, index in enumerate(matches):
+            if index < 0 and unseen[number]:
                 continue
-            table[things.classes[thing] if thing >= 0 else classes, sure.classes[number]] += 1
-        for thing in set(range(len(things.classes))) - set(matches.tolist()):
-            table[things.classes[thing], classes] += 1
+            table[objects.classes[index] if index >= 0 else classes, sure.classes[number]] += 1
+        for index in set(range(len(objects.classes))) - set(matches.tolist()):
+            table[objects.classes[index], classes] += 1
     return table
 
 
 _SIZES = (("under 16 pixels", 0.0, 16.0), ("16 to 32 pixels", 16.0, 32.0), ("32 to 96 pixels", 32.0, 96.0),
           ("over 96 pixels", 96.0, np.inf))  # fmt: skip
-"""Ranges of the longer side of a box, in pixels of the picture."""
+"""Ranges of the longer side of a box, in pixels of the image."""
 
 
-def _by_size(truth: Sequence[Things], found: Sequence[_Found]) -> tuple[tuple[str, int, float], ...]:
+def _by_size(truth: Sequence[GroundTruth], found: Sequence[_Found]) -> tuple[tuple[str, int, float], ...]:
     sides: list[float] = []
     hit: list[bool] = []
-    for things, detections in zip(truth, found, strict=True):
+    for objects, detections in zip(truth, found, strict=True):
         sure = detections.where(detections.scores >= _CONFUSION_SCORE)
-        things = things.where(~things.ignored)
-        same = overlap(sure.boxes, things.boxes) * (sure.classes[:, None] == things.classes[None])
+        objects = objects.where(~objects.ignored)
+        same = overlap(sure.boxes, objects.boxes) * (sure.classes[:, None] == objects.classes[None])
         matched = set(_matches(same, _CONFUSION_OVERLAP).tolist())
-        sides += (things.boxes[:, 2:] - things.boxes[:, :2]).max(axis=1, initial=0).tolist()
-        hit += [thing in matched for thing in range(len(things.classes))]
+        sides += (objects.boxes[:, 2:] - objects.boxes[:, :2]).max(axis=1, initial=0).tolist()
+        hit += [index in matched for index in range(len(objects.classes))]
     rows = []
     for name, least, most in _SIZES:
         inside = [was for side, was in zip(sides, hit, strict=True) if least <= side < most]

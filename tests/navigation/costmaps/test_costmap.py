@@ -91,6 +91,11 @@ def test_the_rim_has_no_gaps():
 
 def test_footprints_as_texts():
     assert read_footprint("[[0.2, 0.2], [-0.2, 0.2], [-0.2,-0.2], [0.2, -0.2] ]").tolist() == SQUARE.tolist()
-    for text, why in (("[]", "no list"), ("[[1, 2], [3, 4]]", "has 2"), ("[[1, 2], 3, 4]", "no list"), ("x", "no")):
+    for text, why in (
+        ("[]", "not a list"),
+        ("[[1, 2], [3, 4]]", "has 2"),
+        ("[[1, 2], 3, 4]", "not a list"),
+        ("x", "not a list"),
+    ):
         with pytest.raises(BadFootprintError, match=why):
             read_footprint(text)

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.maps.images import Picture, read_picture
+from linkwright.navigation.maps.images import MapImage, read_image
 from linkwright.navigation.maps.map_files import SavedAs, load_map, save_map
 from linkwright.navigation.maps.map_yaml import MapMode, MapYaml
-from linkwright.navigation.maps.pixels import cells_of_picture, pixels_of_cells
+from linkwright.navigation.maps.pixels import cells_of_image, pixels_of_cells
 
 _CELLS = arrays(np.int8, st.tuples(st.integers(1, 6), st.integers(1, 6)), elements=st.integers(-1, 100))
 
@@ -33,8 +33,8 @@ def _said(mode: MapMode, *, negate: bool = False, occupied: float = 0.65, free: 
     )
 
 
-def _row(*values: float) -> Picture:
-    return Picture(np.array([values]) / 255.0)
+def _row(*values: float) -> MapImage:
+    return MapImage(np.array([values]) / 255.0)
 
 
 @pytest.mark.parametrize(
@@ -50,20 +50,20 @@ def _row(*values: float) -> Picture:
 def test_pixels_mean_what_they_mean_in_nav2(
     mode: MapMode, negate: bool, pixels: tuple[float, ...], cells: tuple[int, ...]
 ) -> None:
-    assert cells_of_picture(_row(*pixels), _said(mode, negate=negate)).tolist() == [list(cells)]
+    assert cells_of_image(_row(*pixels), _said(mode, negate=negate)).tolist() == [list(cells)]
 
 
 def test_opacity_is_a_fourth_colour_with_trinary_and_unknown_with_scale() -> None:
-    picture = Picture(np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
+    image = MapImage(np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
     # (0 + 0 + 0 + 1) / 4 is a darkness of 0.75
-    assert cells_of_picture(picture, _said(MapMode.TRINARY)).tolist() == [[100, 100, -1]]
-    assert cells_of_picture(picture, _said(MapMode.TRINARY, occupied=0.8)).tolist() == [[-1, 100, -1]]
-    assert cells_of_picture(picture, _said(MapMode.SCALE)).tolist() == [[100, -1, -1]]
+    assert cells_of_image(image, _said(MapMode.TRINARY)).tolist() == [[100, 100, -1]]
+    assert cells_of_image(image, _said(MapMode.TRINARY, occupied=0.8)).tolist() == [[-1, 100, -1]]
+    assert cells_of_image(image, _said(MapMode.SCALE)).tolist() == [[100, -1, -1]]
 
 
 def test_equal_thresholds_leave_no_scale() -> None:
     said = _said(MapMode.SCALE, occupied=0.5, free=0.5)
-    assert cells_of_picture(Picture(np.array([[0.0, 0.5, 1.0]])), said).tolist() == [[100, 0, 0]]
+    assert cells_of_image(MapImage(np.array([[0.0, 0.5, 1.0]])), said).tolist() == [[100, 0, 0]]
 
 
 def test_cells_become_the_pixels_of_nav2() -> None:
@@ -138,7 +138,7 @@ def test_who_saves_is_told_what_will_be_read_otherwise(tmp_path: Path) -> None:
     [
         (b"P5\n2 2\n255\n\x00\x01\x02", "it has 3 of 4 pixels"),
         (b"P5\n99999 99999\n255\n", "its header says 99999 x 99999, 255"),
-        (b"P2\n2 1\n255\n1 x", "its pixels are no numbers"),
+        (b"P2\n2 1\n255\n1 x", "its pixels are not numbers"),
         (b"no image", "cannot be read"),
         (b"", "cannot be read"),
     ],
@@ -147,7 +147,7 @@ def test_broken_images_are_told(tmp_path: Path, data: bytes, reason: str) -> Non
     path = tmp_path / "a.pgm"
     path.write_bytes(data)
     with pytest.raises(LinkwrightError, match=reason) as raised:
-        read_picture(path)
+        read_image(path)
     assert raised.value.diagnostics[0].code == "NAV203"
 
 
@@ -162,7 +162,7 @@ def test_broken_images_are_told(tmp_path: Path, data: bytes, reason: str) -> Non
 def test_every_kind_of_pgm_is_read(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "a.pgm"
     path.write_bytes(data)
-    assert np.round(read_picture(path).shade * 255.0).tolist() == [[0, 127, 255]]
+    assert np.round(read_image(path).shade * 255.0).tolist() == [[0, 127, 255]]
 
 
 @pytest.mark.parametrize(

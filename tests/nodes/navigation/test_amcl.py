@@ -210,7 +210,7 @@ def test_scans_that_fit_nowhere_near_are_told(begin: Begin) -> None:
 
 def test_it_says_what_it_waits_for(begin: Begin) -> None:
     house = begin(map_topic="nowhere", set_initial_pose=True)
-    assert house.said(LogLevel.WARN) == ["Waiting for map.... Nobody publishes on '/nowhere'."]
+    assert house.said(LogLevel.WARN) == ["Waiting for map.... No node publishes on '/nowhere'."]
     assert len(house.poses) == 0
 
 

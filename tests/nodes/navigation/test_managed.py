@@ -89,7 +89,7 @@ async def test_a_mistake_is_told_and_the_transition_fails(
 async def test_unknown_parameters_are_named_when_it_is_configured(graph: Graph, log: list[LogRecord]) -> None:
     server, node = _started(graph, failz="x")
     node.trigger_configure()
-    assert any("'failz' is no parameter of this node" in record.text for record in log)
+    assert any("'failz' is not a parameter of this node" in record.text for record in log)
     server.close()
 
 

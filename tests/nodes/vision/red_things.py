@@ -1,4 +1,4 @@
-"""A detector for tests that needs no network and no library: everything of one colour in a picture, in one box."""
+"""A detector for tests that needs no network and no library: everything of one colour in an image, in one box."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LEAST_PIXELS = 60
 
 
 class ColourDetector:
-    """A node that finds one thing: all pixels of a colour.
+    """A node that finds one object: all pixels of a colour.
 
     Args:
         graph: where it lives.

@@ -32,7 +32,7 @@ _BALL = """<sdf version="1.6"><model name="ball"><link name="link">
 </link></model></sdf>"""
 _SIMULATED = {"use_sim_time": True}
 _FOCAL, _WIDTH, _HEIGHT = 381.36, 640, 480
-_PICTURE_PERIOD = 0.1
+_IMAGE_PERIOD = 0.1
 
 
 class SeekingRobot(SteppedSimulation):
@@ -41,10 +41,10 @@ class SeekingRobot(SteppedSimulation):
     Args:
         folder: for the model of the ball.
         ball: where it lies, metres.
-        pictures: whether a camera sees it; else its boxes are worked out, which is much quicker.
+        images: whether a camera sees it; else its boxes are worked out, which is much quicker.
         laser: whether there is one.
         seeker: parameters of the seeker.
-        thing: the class that the ball is found as.
+        object: the class that the ball is found as.
     """
 
     def __init__(
@@ -52,18 +52,18 @@ class SeekingRobot(SteppedSimulation):
         folder: Path,
         ball: tuple[float, float],
         *,
-        pictures: bool = False,
+        images: bool = False,
         laser: bool = False,
         seeker: dict[str, Any] | None = None,
-        thing: str = "ball",
+        seen_object: str = "ball",
     ) -> None:
         arguments = {"camera": True, "laser": laser}
         world = GAZEBO_PACKAGE / "worlds" / "empty.world"
         super().__init__(world, ROBOT, arguments=arguments, robot_state_publisher=True, period=0.02)
         self._model = folder / "ball.sdf"
         self._model.write_text(_BALL)
-        self._ball, self._pictures, self._seeker = ball, pictures, seeker or {}
-        self._thing = thing
+        self._ball, self._images, self._seeker = ball, images, seeker or {}
+        self._thing = seen_object
         self._visible = True
 
     def __enter__(self) -> Self:
@@ -80,17 +80,17 @@ class SeekingRobot(SteppedSimulation):
                 remappings=[
                     ("tracking", "/yolo/tracking"),
                     ("detections_3d", "/yolo/detections_3d"),
-                    ("image_raw", "/camera/image_raw" if self._pictures else "/nothing"),
+                    ("image_raw", "/camera/image_raw" if self._images else "/nothing"),
                 ],
             ),
         )
         self.said_messages = self.record("/voice/response")
         self.commands = self.record("/cmd_vel")
         self.places = self.record("/yolo/detections_3d")
-        if self._pictures:
+        if self._images:
             ColourDetector(self.graph)
         else:
-            self.detector = self.node.create_timer(_PICTURE_PERIOD, self._detect)
+            self.detector = self.node.create_timer(_IMAGE_PERIOD, self._detect)
             self._detections = self.node.create_publisher(
                 get_message("vision_msgs/msg/Detection2DArray"), "/yolo/detections", 10
             )

@@ -1,4 +1,4 @@
-"""detect_3d_node: boxes in pictures become boxes in metres."""
+"""detect_3d_node: boxes in images become boxes in metres."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The node that finds things in pictures, under all of its names."""
+"""The node that finds objects in images, under all of its names."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def compressed():
 
 
 async def seen(test, recording, topic, message):
-    """What is published for a picture."""
+    """What is published for an image."""
     before = len(recording)
     test.publish(topic, message)
     await test.settle()
@@ -90,7 +90,7 @@ def classes(message):
 
 
 @pytest.mark.parametrize("encoding", ["rgb8", "bgr8"])
-async def test_detections_have_names_centres_sizes_and_the_header_of_the_picture(test, start, encoding):
+async def test_detections_have_names_centres_sizes_and_the_header_of_the_image(test, start, encoding):
     await start(model="colours")
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -104,7 +104,7 @@ async def test_detections_have_names_centres_sizes_and_the_header_of_the_picture
     assert blue.header == message.header
 
 
-async def test_compressed_pictures(test, start):
+async def test_compressed_images(test, start):
     await start(model="colours", input_image_topic="/camera/image_raw/compressed")
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -122,7 +122,7 @@ async def test_a_network(test, start, tmp_path):
     assert set(classes(message)) <= {"ball", "box", "cat"}
 
 
-async def test_the_picture_with_boxes_is_made_when_somebody_wants_it(test, start):
+async def test_the_image_with_boxes_is_made_when_somebody_wants_it(test, start):
     await start(model="colours")
     recording = test.record("/yolo/debug_image")
     await test.settle()
@@ -132,7 +132,7 @@ async def test_the_picture_with_boxes_is_made_when_somebody_wants_it(test, start
     assert (np.frombuffer(bytes(message.data), np.uint8) != scene().reshape(-1)).any()
 
 
-async def test_pictures_are_taken_only_while_somebody_listens(test, start):
+async def test_images_are_taken_only_while_somebody_listens(test, start):
     await start(model="colours")
     await test.settle()
     assert test.graph.count_subscribers("/yolo/image_raw") == 0
@@ -189,7 +189,7 @@ async def test_services_enable_and_set_classes(test, start):
     assert (message.header.stamp.sec, len(recording) - before) == (9, 1)
 
 
-async def test_no_more_pictures_a_second_than_wanted(test, start):
+async def test_no_more_images_a_second_than_wanted(test, start):
     await start(model="colours", max_rate=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -202,7 +202,7 @@ async def test_no_more_pictures_a_second_than_wanted(test, start):
     assert (message.header.stamp.sec, len(recording)) == (3, 2)
 
 
-async def test_a_broken_picture_is_told_of_and_the_next_one_looked_at(test, start):
+async def test_a_broken_image_is_told_of_and_the_next_one_looked_at(test, start):
     await start(model="colours")
     recording = test.record("/yolo/detections")
     await test.settle()
@@ -223,13 +223,13 @@ async def test_colours_of_ones_own(test, start):
 
 async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
     await start(YoloRosNode, model="colours", remappings=[("image_raw", "/camera/rgb/image_raw")])
-    recording, picture = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
+    recording, debug_images = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
     await test.settle()
     message = await seen(test, recording, "/camera/rgb/image_raw", image())
     (blue,) = [detection for detection in message.detections if detection.class_name == "blue"]
     assert (blue.class_id, blue.score) == (4, pytest.approx(1.0))
     assert (blue.bbox.center.position.x, blue.bbox.size.y) == (115.0, 40.0)
-    await eventually(lambda: len(picture) == 1)
+    await eventually(lambda: len(debug_images) == 1)
 
 
 @pytest.mark.parametrize(
@@ -280,7 +280,7 @@ async def test_parameters_that_it_cannot_start_with(test, start, parameters, cod
     ("parameters", "words"),
     [
         ({"model": "gone.onnx"}, "there is neither a file nor a detector 'gone.onnx'"),
-        ({"model": "yolov8n.pt"}, "'yolov8n.pt' is no ONNX file"),
+        ({"model": "yolov8n.pt"}, "'yolov8n.pt' is not an ONNX file"),
         ({"model": "aruco", "dictionary": "5X"}, "'dictionary' of the detector cannot be '5X'"),
         ({"model": "things", "device": "gpu"}, "'device' of the detector cannot be 'gpu'"),
         ({"model": "colours", "classes": ["blu"]}, "parameter 'classes' of 'yolo_node' cannot be 'blu'"),
@@ -296,7 +296,7 @@ async def test_detectors_that_cannot_be_loaded_end_the_node_with_one_error_and_w
     assert words in said[0]
 
 
-# --- where no pictures come -----------------------------------------------------------------------------------------
+# --- where no images come -----------------------------------------------------------------------------------------
 
 
 IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
@@ -308,15 +308,15 @@ def warnings(test):
     return lambda: [record.text for record in test.log if record.level is LogLevel.WARN]
 
 
-async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_pictures(test, start, warnings):
+async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_images(test, start, warnings):
     await start(model="colours")
     test.record("/yolo/detections")
     test.record("/yolo/debug_image")
     test.node.create_publisher(get_message(IMAGE), "/camera/image_raw", 1)
     await test.advance(30.0)
     assert warnings() == [
-        "no pictures come: nobody publishes '/yolo/image_raw'",
-        "there are pictures on '/camera/image_raw'; the parameter 'input_image_topic' names the topic",
+        "no images arrive: no node publishes '/yolo/image_raw'",
+        "there are images on '/camera/image_raw'; set the topic with the parameter 'input_image_topic'",
     ]
 
 
@@ -327,8 +327,8 @@ async def test_a_topic_of_another_type_is_told(test, start, warnings):
     test.node.create_publisher(get_message(IMAGE), "/kinect/image_raw", 1)
     await test.advance(11.0)
     assert warnings()[-2:] == [
-        f"no pictures come: '/camera' has '{COMPRESSED}', and not '{IMAGE}'",
-        "there are pictures on '/kinect/image_raw'; remap '/camera'",
+        f"no images arrive: '/camera' has '{COMPRESSED}', not '{IMAGE}'",
+        "there are images on '/kinect/image_raw'; remap '/camera'",
     ]
 
 
@@ -339,7 +339,7 @@ async def test_qos_that_does_not_fit_is_told(test, start, warnings):
     test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", offered)
     await test.advance(11.0)
     assert warnings()[-2:] == [
-        "no pictures come: '/yolo/image_raw' is published with best effort, and asked for reliably",
+        "no images arrive: '/yolo/image_raw' is published best effort, and this node requests reliable",
         "set 'image_reliability' to 2",
     ]
 
@@ -348,7 +348,7 @@ async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_late
     await start(model="colours")
     recording = test.record("/yolo/detections")
     await test.settle()
-    stopped = "no picture has come on '/yolo/image_raw' for {} s".format
+    stopped = "no image has arrived on '/yolo/image_raw' for {} s".format
     await seen(test, recording, "/yolo/image_raw", image())
     await test.advance(9.0)
     assert warnings() == []
@@ -356,7 +356,7 @@ async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_late
     assert warnings() == [stopped(5)]
     await seen(test, recording, "/yolo/image_raw", image())
     await test.advance(5.0)
-    assert [record.text for record in test.log][-1] == "pictures come now"
+    assert [record.text for record in test.log][-1] == "images arrive now"
     await test.advance(7.0)
     assert warnings() == [stopped(5)]
     await test.advance(5.0)
@@ -450,7 +450,7 @@ class Odd(Detector):
     def names(self):
         return ("red",)
 
-    def detect(self, picture, limits):
+    def detect(self, image, limits):
         raise KeyError("odd")
 
 

@@ -34,7 +34,7 @@ def test_it_goes_to_the_ball(tmp_path, ball):
 
 @pytest.mark.slow
 def test_it_goes_to_the_red_ball_that_its_camera_sees(tmp_path):
-    with SeekingRobot(tmp_path, (1.6, -0.9), pictures=True, laser=True) as test:
+    with SeekingRobot(tmp_path, (1.6, -0.9), images=True, laser=True) as test:
         test.tell("/vision/go_to", "红色的球")
         assert test.go_on_until_said("我到红色的球这里了")
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
@@ -46,7 +46,7 @@ def test_it_goes_to_the_red_ball_that_its_camera_sees(tmp_path):
 @pytest.mark.parametrize("language", ["en", "zh"])
 def test_it_answers_in_the_language_that_it_is_asked_in(tmp_path, language):
     with SeekingRobot(tmp_path, (1.0, 0.0), seeker={"language": language}) as test:
-        for topic, thing in (
+        for topic, seen_object in (
             ("go_to/zh", "ball"),
             ("go_to/en", "球"),
             ("follow/zh", "ball"),
@@ -54,7 +54,7 @@ def test_it_answers_in_the_language_that_it_is_asked_in(tmp_path, language):
             ("go_to", "ball"),
             ("go_to", "球"),
         ):
-            test.tell(f"/vision/{topic}", thing)
+            test.tell(f"/vision/{topic}", seen_object)
             test.settle()
         test.tell_to_stop()
         test.settle()
@@ -106,7 +106,7 @@ def test_a_detector_that_ends_stops_it(tmp_path):
         test.tell("/vision/go_to", "ball")
         test.advance(2.0)
         test.detector.cancel()
-        assert test.go_on_until_said("no detections come", 5.0)
+        assert test.go_on_until_said("no detections arrive", 5.0)
         assert test.commands.last.linear.x == 0.0
         assert test.distance() > 2.0
 
@@ -120,7 +120,7 @@ def test_a_laser_sees_what_stands_in_the_way(tmp_path):
         )
         test.spawn(box, "box", pose=(1.5, 0.0, 0.3, 0.0, 0.0, 0.0))
         test.tell("/vision/go_to", "ball")
-        assert test.go_on_until_said("Something stands between me and the ball")
+        assert test.go_on_until_said("Something is between me and the ball")
         x, *_ = test.robot_pose()
         assert 0.8 < x < 1.2
 

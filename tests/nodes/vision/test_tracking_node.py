@@ -12,11 +12,11 @@ from linkwright.testing import SteppedGraph
 from tests.nodes.vision.red_things import detection, yolo_detection
 
 
-def picture(test, number, *things):
+def image(test, number, *objects):
     header = get_message("std_msgs/msg/Header")(frame_id="camera")
     header.stamp = Time.from_nanoseconds(round(number * 1e9 / 30))
     array = get_message("vision_msgs/msg/Detection2DArray")(header=header)
-    array.detections = [detection(header, x - 20, 80, x + 20, 120, name, score) for x, name, score in things]
+    array.detections = [detection(header, x - 20, 80, x + 20, 120, name, score) for x, name, score in objects]
     test.publish("/yolo/detections", array)
     test.settle()
 
@@ -27,13 +27,13 @@ def test_things_get_ids_and_keep_what_was_said_of_them():
         tracked = test.record("/yolo/tracking")
         test.settle()
         for number in range(10):
-            picture(test, number, (100 + number, "ball", 0.9), (300 - number, "crate", 0.8), (200, "ball", 0.15))
+            image(test, number, (100 + number, "ball", 0.9), (300 - number, "crate", 0.8), (200, "ball", 0.15))
         assert [[detection.id for detection in message.detections] for message in tracked] == [[]] + [["1", "2"]] * 9
         last = tracked.last.detections[1]
         assert last.results[0].hypothesis.class_id == "crate"
         assert last.bbox.center.position.x == pytest.approx(291)
         assert tracked.last.header.frame_id == "camera"
-        picture(test, 11)
+        image(test, 11)
         assert tracked.last.detections == []
 
 

@@ -67,7 +67,7 @@ async def test_nobody_says_anything_and_it_stops(stage, talk):
     assert robot.speed == (0.2, 0.0, 0.0)
     await stage.clock.advance(0.2)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "nobody says anything, so I stop"
+    assert robot.said["response"][-1] == "I hear nothing, so I stop"
 
 
 def travelled(robot):
@@ -218,7 +218,7 @@ async def test_who_listens_to_all_does_not_answer_what_is_uncertain_without_the_
     assert robot.said["response"] == []
     await robot.hold(True)
     await robot.say(final("forward", 0.4, start=2.0))
-    assert robot.said["response"] == ["I am not sure that I heard 'forward': say it again"]
+    assert robot.said["response"] == ["I am not sure that I heard 'forward': please repeat"]
 
 
 async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):
@@ -229,7 +229,7 @@ async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):
     await robot.say(final("forward", start=-0.5), stamp=11.0)  # half a second is missing
     assert robot.said["text"] == ["forward"]
     assert robot.said["command"] == []
-    assert robot.said["response"] == ["I did not hear all of that: say it again"]
+    assert robot.said["response"] == ["I did not hear all of that: please repeat"]
     await robot.say(final("forward", start=0.8), stamp=11.1)
     assert robot.said["command"] == ["forward"]
     for each in range(3):
@@ -246,7 +246,7 @@ async def test_with_a_small_gap_it_is_done_if_it_is_certain_and_asked_for_again_
         await robot.say(stamp=10.0 + 0.1 * each)
     await robot.say(final("forward"), final(""), stamp=10.6)  # a tenth of a second is missing
     assert robot.said["command"] == ["forward"]
-    assert robot.said["response"][-1] == "I did not hear all of that: say it again"
+    assert robot.said["response"][-1] == "I did not hear all of that: please repeat"
 
 
 async def test_the_next_press_of_the_button_has_no_gap_before_it(engine, talk):
@@ -310,7 +310,7 @@ async def test_it_stops_when_the_microphone_is_gone(engine, stage, talk):
     robot.mouth.destroy_node()
     await stage.clock.advance(1.0)
     assert robot.speed == (0.0, 0.0, 0.0)
-    assert robot.said["response"][-1] == "I hear nobody any more, so I stop"
+    assert robot.said["response"][-1] == "the audio source is gone, so I stop"
 
 
 async def test_an_engine_that_is_not_there_ends_the_node(engine, talk, said):
@@ -352,7 +352,7 @@ async def test_a_question_is_answered_first(stage, talk, tmp_path, answer, count
         await robot.type(answer)
     else:
         await stage.clock.advance(11.0)
-        assert robot.said["response"][-1] == "nobody answers, so I leave it"
+        assert robot.said["response"][-1] == "there is no answer, so I leave it"
     assert len(reset) == count
     await robot.type("yes")
     assert len(reset) == count
@@ -438,7 +438,7 @@ async def test_goals_are_canceled(stage, talk, tmp_path, text):
 
 async def test_without_a_server_it_says_so(talk, tmp_path):
     robot = talk(commands_file=commands(tmp_path, PLACES))
-    assert await robot.type("go to the kitchen") == "I cannot: nobody serves 'navigate_to_pose'"
+    assert await robot.type("go to the kitchen") == "I cannot: no node serves 'navigate_to_pose'"
 
 
 async def test_what_a_service_answers_is_said(stage, talk):
@@ -458,7 +458,7 @@ async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, t
     robot = talk()
     await stage.graph.settle()
     assert [client for client in clients(stage) if "/_action/" not in client] == []
-    assert await robot.type("what do you see") == "I cannot: nobody serves '/vision/describe/en'"
+    assert await robot.type("what do you see") == "I cannot: no node serves '/vision/describe/en'"
     kind = get_service("std_srvs/srv/Trigger")
     stage.node.create_service(kind, "/vision/describe/en", lambda request, response: kind.Response(True, "a red ball"))
     await robot.type("what do you see")
@@ -468,7 +468,7 @@ async def test_a_service_that_only_some_commands_need_is_not_waited_for(stage, t
 
 async def test_a_service_of_another_type_is_not_called(stage, talk):
     stage.node.create_service("std_srvs/srv/Empty", "/vision/describe/en", lambda request, response: response)
-    assert await talk().type("what do you see") == "I cannot: nobody serves '/vision/describe/en'"
+    assert await talk().type("what do you see") == "I cannot: no node serves '/vision/describe/en'"
 
 
 LAUNCH = """

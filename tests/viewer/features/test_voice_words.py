@@ -100,7 +100,7 @@ async def test_the_file_goes_from_one_user_to_another():
         await client.send("import_words", text="[]")
         while (problem := (await client.until("voice_words"))["problem"]) is None:
             pass
-        assert "cannot be taken as a file of enrolled words" in problem
+        assert "cannot be read as a file of enrolled words" in problem
         assert Words.read(words_path()).names == ("stop",)
 
 
@@ -110,10 +110,10 @@ async def test_a_damaged_file_is_left_alone_and_told_of():
         words_path().write_text("{")
         await client.send("begin_take", name="stop")
         await client.send("end_take", has_gaps=False)
-        assert "it is no JSON" in (await client.until("voice_words"))["problem"]
+        assert "it is not JSON" in (await client.until("voice_words"))["problem"]
         assert words_path().read_text() == "{"
         await other.send("watch_words", watched=True)
-        assert "it is no JSON" in (await other.until("voice_words"))["problem"]
+        assert "it is not JSON" in (await other.until("voice_words"))["problem"]
 
 
 @pytest.mark.parametrize("language", ["en", "zh"])

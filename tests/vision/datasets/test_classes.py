@@ -1,11 +1,11 @@
-"""Which things of a world are of which class."""
+"""Which objects of a world are of which class."""
 
 from __future__ import annotations
 
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.vision.datasets.classes import ClassRules, read_classes, things_of, usual_class, usual_rules
+from linkwright.vision.datasets.classes import ClassRules, objects_of, read_classes, usual_class, usual_rules
 from tests.simulation.worlds import loaded
 from tests.vision.datasets.places import yard
 
@@ -23,8 +23,8 @@ def test_what_stands_around_is_no_thing(tmp_path):
     simulation = loaded(yard(tmp_path))
     rules = usual_rules([simulation])
     assert list(rules.patterns) == ["ball", "crate", "drums"]
-    things = things_of(simulation, rules)
-    assert [(thing.name, thing.label) for thing in things] == [
+    objects = objects_of(simulation, rules)
+    assert [(scene_object.name, scene_object.label) for scene_object in objects] == [
         ("red_ball", 0),
         ("ball_2", 0),
         ("crate", 1),
@@ -34,8 +34,8 @@ def test_what_stands_around_is_no_thing(tmp_path):
 
 def test_visuals_that_touch_each_other_are_one_thing(tmp_path):
     simulation = loaded(yard(tmp_path))
-    things = things_of(simulation, ClassRules({"drum": ("drums::*",), "ball": ("*ball*",)}))
-    assert [(thing.name, thing.label, len(thing.geoms)) for thing in things] == [
+    objects = objects_of(simulation, ClassRules({"drum": ("drums::*",), "ball": ("*ball*",)}))
+    assert [(scene_object.name, scene_object.label, len(scene_object.geoms)) for scene_object in objects] == [
         ("red_ball", 1, 1),
         ("ball_2", 1, 1),
         ("drums::link::blue", 0, 2),

@@ -28,9 +28,9 @@ def source(tmp_path):
     return Source((str(yard(tmp_path)),), (), None, OPTIONS)
 
 
-def make(source, path, pictures, **options):
+def make(source, path, images, **options):
     words = {"formats": ("coco", "yolo"), "workers": 1, **options}
-    return make_dataset(source, path, pictures, **words)
+    return make_dataset(source, path, images, **words)
 
 
 def files(folder: Path) -> dict[str, bytes]:
@@ -60,10 +60,10 @@ def test_lights_and_background_of_the_world_are_kept_where_that_is_asked_for(tmp
         )
         studio = Studio(source)
         try:
-            pictures = [np.asarray(Image.open(BytesIO(studio.take(index).data)).convert("RGB")) for index in range(4)]
+            images = [np.asarray(Image.open(BytesIO(studio.take(index).data)).convert("RGB")) for index in range(4)]
         finally:
             studio.close()
-        made[kept] = np.concatenate(pictures).reshape(-1, 3).astype(int)
+        made[kept] = np.concatenate(images).reshape(-1, 3).astype(int)
     lit = made["lights",]
     sky = (lit == [0, 255, 255]).all(axis=1)
     assert sky.any()
@@ -81,13 +81,13 @@ def test_all_forms_say_the_same(source, tmp_path):
         "test": "images/test",
         "names": {0: "ball", 1: "crate", 2: "drums"},
     }
-    things = 0
+    objects = 0
     for split, said in lists_of(folder).items():
         assert [each["name"] for each in said["categories"]] == ["ball", "crate", "drums"]
         assert len({each["id"] for each in said["annotations"]}) == len(said["annotations"])
         for image in said["images"]:
-            with Image.open(folder / "images" / split / image["file_name"]) as picture:
-                assert picture.size == (160, 120) == (image["width"], image["height"])
+            with Image.open(folder / "images" / split / image["file_name"]) as opened:
+                assert opened.size == (160, 120) == (image["width"], image["height"])
             lines = (folder / "labels" / split / f"{Path(image['file_name']).stem}.txt").read_text().splitlines()
             known = [each for each in said["annotations"] if each["image_id"] == image["id"] and not each["iscrowd"]]
             assert len(lines) == len(known)
@@ -96,7 +96,7 @@ def test_all_forms_say_the_same(source, tmp_path):
                 x, y, width, height = np.array(shares, float) * [160, 120, 160, 120]
                 assert int(number) + 1 == each["category_id"]
                 assert [x - width / 2, y - height / 2, width, height] == pytest.approx(each["bbox"], abs=1e-3)
-                things += 1
+                objects += 1
         for each in said["annotations"]:
             mask = mask_of(tuple(each["segmentation"]["counts"]), *each["segmentation"]["size"])
             left, top, right, bottom = box_of(mask)
@@ -104,7 +104,7 @@ def test_all_forms_say_the_same(source, tmp_path):
             assert each["area"] == mask.sum()
     card = json.loads((folder / "dataset.json").read_text())
     assert card["splits"] == {"train": 16, "val": 2, "test": 2}
-    assert sum(each["things"] for each in card["statistics"].values()) == things > 10
+    assert sum(each["objects"] for each in card["statistics"].values()) == objects > 10
     assert card["made"][0]["options"]["seed"] == 3
     assert (folder / "contact_sheet.jpg").stat().st_size > 0
 
@@ -118,7 +118,7 @@ def test_the_same_seed_gives_the_same_bytes(source, tmp_path):
 
 
 @pytest.mark.parametrize("way", ["OpenGL", "Embree", "MuJoCo"])
-def test_a_picture_does_not_depend_on_those_before(source, monkeypatch, way):
+def test_a_image_does_not_depend_on_those_before(source, monkeypatch, way):
     if way != "OpenGL":  # as on macOS and Windows
         monkeypatch.setenv("MUJOCO_GL", "disable")
     if way == "MuJoCo":
@@ -150,7 +150,7 @@ def test_splits_have_their_shares():
     assert {split_of(index, replace(OPTIONS, splits=(1.0, 0.0, 0.0))) for index in range(50)} == {"train"}
 
 
-def test_pictures_are_added(source, tmp_path):
+def test_images_are_added(source, tmp_path):
     folder = tmp_path / "set"
     make(source, folder, 3)
     made = make(source, folder, 4, append=True)
@@ -208,7 +208,7 @@ def test_an_interrupted_dataset_is_complete(source, tmp_path):
     made = make(source, folder, 9, progress=stop)
     assert made.interrupted
     assert made.folder.count == 3
-    assert json.loads((folder / "dataset.json").read_text())["pictures"] == 3
+    assert json.loads((folder / "dataset.json").read_text())["images"] == 3
     assert len([name for name in files(folder) if name.startswith("images")]) == 3
     assert make(source, folder, 2, append=True).folder.count == 5
 

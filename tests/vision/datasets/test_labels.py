@@ -10,8 +10,8 @@ from linkwright.simulation.rendering.choice import make_renderer
 from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.renderer import Wanted, axes_of
 from linkwright.vision.datasets.arranging import Shot, arrange
-from linkwright.vision.datasets.classes import things_of, usual_rules
-from linkwright.vision.datasets.labels import box_of, label_picture, mask_of, runs_of
+from linkwright.vision.datasets.classes import objects_of, usual_rules
+from linkwright.vision.datasets.labels import box_of, label_image, mask_of, runs_of
 from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.stage import Stage
 from tests.simulation.worlds import loaded
@@ -23,7 +23,7 @@ OPTIONS = Options(width=320, height=240)
 @pytest.fixture
 def stage(tmp_path):
     simulation = loaded(yard(tmp_path))
-    made = Stage(simulation, things_of(simulation, usual_rules([simulation])), 2, 4)
+    made = Stage(simulation, objects_of(simulation, usual_rules([simulation])), 2, 4)
     made.set_patterns(np.random.default_rng(0))
     yield made
     made.close()
@@ -37,7 +37,7 @@ def shots(stage, count):
 
 def labelled(stage, shot):
     geoms = stage.renderer.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
-    return label_picture(stage, shot, geoms, OPTIONS.least_size, OPTIONS.least_visible), geoms
+    return label_image(stage, shot, geoms, OPTIONS.least_size, OPTIONS.least_visible), geoms
 
 
 def alone(shot, prop):
@@ -162,14 +162,14 @@ def test_a_sign_counts_where_its_plate_is_seen(tmp_path, height, focal, ignored)
     path = tmp_path / "signs.world"
     path.write_text(world_text(SIGN))
     simulation = loaded(path)
-    stage = Stage(simulation, things_of(simulation, usual_rules([simulation])), 1, 0)
+    stage = Stage(simulation, objects_of(simulation, usual_rules([simulation])), 1, 0)
     try:
         stage.set_patterns(np.random.default_rng(0))
         stage.put(stage.props[0], np.zeros(3), np.eye(3))
         optics = Optics(320, 240, focal, focal, 160, 120, 0.03, 30.0)
         shot = Shot(optics, (-2.0, 0.0, height, 0.0, 0.0, 0.0, 1.0), (stage.props[0],), ())
         geoms = stage.renderer.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
-        (label,) = label_picture(stage, shot, geoms, 12, 0.3)
+        (label,) = label_image(stage, shot, geoms, 12, 0.3)
     finally:
         stage.close()
     assert label.visibility >= 0.3  # of the whole sign; without its plate it is a pole
@@ -189,14 +189,14 @@ def test_shapes_without_a_label_are_far_from_balls_and_drums(stage):
 
 def test_few_things_are_put_behind_walls(stage):
     """The wall of the yard is 6 m long, 3 m ahead of its middle."""
-    behind = things = 0
+    behind = objects = 0
     for shot in shots(stage, 40):
         for prop in shot.shown:
             there = stage.simulation.data.geom_xpos[prop.geoms, :2].mean(axis=0)
             here = np.array(shot.pose[:2])
-            things += 1
+            objects += 1
             if min(here[1], there[1]) < 2.95 and max(here[1], there[1]) > 3.05:
                 crossing = here[0] + (there[0] - here[0]) * (3.0 - here[1]) / (there[1] - here[1])
                 behind += bool(shot.structures) and abs(crossing) < 3.0
-    assert things > 50
-    assert behind < 0.2 * things
+    assert objects > 50
+    assert behind < 0.2 * objects

@@ -23,7 +23,7 @@ LIMITS = Limits(threshold=0.6, iou=0.45)
 
 
 @pytest.fixture
-def picture():
+def image():
     random = np.random.default_rng(7)
     coarse = random.integers(0, 256, (12, 20, 3), dtype=np.uint8)
     return cv2.resize(coarse, (200, 120), interpolation=cv2.INTER_CUBIC)
@@ -33,22 +33,22 @@ def opened(path, **options):
     return make_detector(str(path), DetectorOptions(**options))
 
 
-def by_hand(path, picture, rows, cols, padded=None):
+def by_hand(path, image, rows, cols, padded=None):
     """The input made step by step, and what onnxruntime makes of it."""
-    height, width = picture.shape[:2]
+    height, width = image.shape[:2]
     scale = min(rows / height, cols / width)
     new = (round(width * scale), round(height * scale))
     free = cols - new[0], rows - new[1]
     if padded:
         free = free[0] % padded, free[1] % padded
     left, top = round(free[0] / 2 - 0.1), round(free[1] / 2 - 0.1)
-    image = cv2.resize(picture, new, interpolation=cv2.INTER_LINEAR)
-    image = cv2.copyMakeBorder(
-        image, top, free[1] - top, left, free[0] - left, cv2.BORDER_CONSTANT, value=(114, 114, 114)
+    resized = cv2.resize(image, new, interpolation=cv2.INTER_LINEAR)
+    bordered = cv2.copyMakeBorder(
+        resized, top, free[1] - top, left, free[0] - left, cv2.BORDER_CONSTANT, value=(114, 114, 114)
     )
     session = onnxruntime.InferenceSession(path, providers=["CPUExecutionProvider"])
     kind = np.float16 if "float16" in session.get_inputs()[0].type else np.float32
-    tensor = (image.astype(np.float32) / 255).astype(kind).transpose(2, 0, 1)[None]
+    tensor = (bordered.astype(np.float32) / 255).astype(kind).transpose(2, 0, 1)[None]
     scales = new[0] / width, new[1] / height
     return session.run(None, {"images": tensor})[0].astype(np.float32), scales, left, top
 
@@ -78,9 +78,9 @@ def slowly(rows, classes, limits, objectness=False):
     return kept[: limits.most]
 
 
-def check(found, kept, picture, scale, left, top, tolerance=1e-3):
+def check(found, kept, image, scale, left, top, tolerance=1e-3):
     assert len(found) == len(kept) > 3
-    height, width = picture.shape[:2]
+    height, width = image.shape[:2]
     for index, (score, which, box) in enumerate(kept):
         placed = [(each - (left, top)[axis % 2]) / scale[axis % 2] for axis, each in enumerate(box)]
         limits = [width, height, width, height]
@@ -92,91 +92,91 @@ def check(found, kept, picture, scale, left, top, tolerance=1e-3):
     assert len(set(map(found.name, range(len(found))))) > 1
 
 
-def test_columns_as_of_v8(tmp_path, picture):
+def test_columns_as_of_v8(tmp_path, image):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
-    output, *place = by_hand(path, picture, 96, 128)
+    output, *place = by_hand(path, image, 96, 128)
     assert output.shape == (1, 7, 252)
     detector = opened(path)
     assert detector.names == ("ball", "box", "cat")
     assert detector.notes == ()
-    check(detector.detect(picture, LIMITS), slowly(output[0].T, 3, LIMITS), picture, *place)
+    check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
 
 
-def test_rows_with_objectness_as_of_classic_yolov5(tmp_path, picture):
+def test_rows_with_objectness_as_of_classic_yolov5(tmp_path, image):
     limits = Limits(threshold=0.3, iou=0.45)
     path = columns(tmp_path / "v5.onnx", transposed=True, objectness=True, metadata={"names": "['ball', 'box', 'cat']"})
-    output, *place = by_hand(path, picture, 96, 128)
+    output, *place = by_hand(path, image, 96, 128)
     assert output.shape == (1, 756, 8)
-    check(opened(path).detect(picture, limits), slowly(output[0], 3, limits, True), picture, *place)
+    check(opened(path).detect(image, limits), slowly(output[0], 3, limits, True), image, *place)
 
 
-def test_one_class_of_classic_yolov5_is_not_taken_for_final_boxes(tmp_path, picture):
+def test_one_class_of_classic_yolov5_is_not_taken_for_final_boxes(tmp_path, image):
     limits = Limits(threshold=0.3, iou=0.45)
     path = columns(tmp_path / "v5.onnx", 1, transposed=True, objectness=True, metadata={"names": "['ball']"})
-    output, *_ = by_hand(path, picture, 96, 128)
+    output, *_ = by_hand(path, image, 96, 128)
     assert output.shape == (1, 756, 6)
-    found = opened(path).detect(picture, limits)
+    found = opened(path).detect(image, limits)
     assert len(found) == len(slowly(output[0], 1, limits, True))
 
 
 @pytest.mark.parametrize("said", [{"end2end": "True"}, {"args": "{'batch': 1, 'nms': True}"}, {}])
-def test_final_boxes(tmp_path, picture, said):
+def test_final_boxes(tmp_path, image, said):
     rows = np.zeros((1, 300, 6), np.float32)
     rows[0, 0] = [10, 20, 40, 60, 0.9, 2]
     rows[0, 1] = [11, 20, 40, 60, 0.8, 2]
     rows[0, 2] = [0, 0, 128, 96, 0.7, 0]
     rows[0, 3] = [0, 0, 50, 50, 0.3, 1]
     path = constant(tmp_path / "v10.onnx", rows, {**NAMES, **said})
-    found = opened(path).detect(picture, LIMITS)
+    found = opened(path).detect(image, LIMITS)
     assert [found.name(index) for index in range(len(found))] == ["cat", "cat", "ball"]
     across, down, top = 128 / 200, 77 / 120, round((96 - 77) / 2 - 0.1)
     assert found.boxes[0] == pytest.approx([10 / across, (20 - top) / down, 40 / across, (60 - top) / down], abs=1e-4)
     assert found.boxes[2].tolist() == [0, 0, 200, 120]
 
 
-def test_an_input_of_any_size_is_as_small_as_the_picture_lets_it_be(tmp_path, picture):
+def test_an_input_of_any_size_is_as_small_as_the_image_lets_it_be(tmp_path, image):
     path = columns(tmp_path / "any.onnx", size=None, metadata=NAMES)
-    output, *place = by_hand(path, picture, 128, 160, padded=32)
+    output, *place = by_hand(path, image, 128, 160, padded=32)
     assert output.shape[2] == 12 * 20 + 6 * 10 + 3 * 5  # 96 x 160
-    found = opened(path, size=(120, 160)).detect(picture, LIMITS)
-    check(found, slowly(output[0].T, 3, LIMITS), picture, *place)
+    found = opened(path, size=(120, 160)).detect(image, LIMITS)
+    check(found, slowly(output[0].T, 3, LIMITS), image, *place)
 
 
-def test_half_precision(tmp_path, picture):
+def test_half_precision(tmp_path, image):
     path = columns(tmp_path / "half.onnx", metadata=NAMES, half=True)
-    output, *place = by_hand(path, picture, 96, 128)
-    check(opened(path).detect(picture, LIMITS), slowly(output[0].T, 3, LIMITS), picture, *place, tolerance=1e-2)
+    output, *place = by_hand(path, image, 96, 128)
+    check(opened(path).detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place, tolerance=1e-2)
 
 
 @pytest.mark.parametrize("task", ["segment", ""])
-def test_masks_are_left_out_and_that_is_said(tmp_path, picture, task):
+def test_masks_are_left_out_and_that_is_said(tmp_path, image, task):
     said = {**NAMES, "task": task}
     path = columns(tmp_path / "seg.onnx", metadata=said, masks=32)
-    output, *place = by_hand(path, picture, 96, 128)
+    output, *place = by_hand(path, image, 96, 128)
     detector = opened(path)
-    check(detector.detect(picture, LIMITS), slowly(output[0].T, 3, LIMITS), picture, *place)
+    check(detector.detect(image, LIMITS), slowly(output[0].T, 3, LIMITS), image, *place)
     assert [str(note) for note in detector.notes] == ["of 'seg.onnx' the boxes are taken; masks are left out"]
 
 
-def test_key_points_are_left_out_and_that_is_said(tmp_path, picture):
+def test_key_points_are_left_out_and_that_is_said(tmp_path, image):
     said = {"names": "{0: 'person'}", "task": "pose", "kpt_shape": "[17, 3]"}
     path = columns(tmp_path / "pose.onnx", 1, metadata=said, more=51)
-    output, *_ = by_hand(path, picture, 96, 128)
+    output, *_ = by_hand(path, image, 96, 128)
     detector = opened(path)
-    assert len(detector.detect(picture, LIMITS)) == len(slowly(output[0].T, 1, LIMITS))
+    assert len(detector.detect(image, LIMITS)) == len(slowly(output[0].T, 1, LIMITS))
     assert "key points are left out" in str(detector.notes[0])
 
 
-def test_only_classes_that_are_wanted_and_no_more_than_that(tmp_path, picture):
+def test_only_classes_that_are_wanted_and_no_more_than_that(tmp_path, image):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     detector = opened(path)
-    found = detector.detect(picture, Limits(0.6, 0.45, classes=frozenset({"cat"})))
+    found = detector.detect(image, Limits(0.6, 0.45, classes=frozenset({"cat"})))
     assert {found.name(index) for index in range(len(found))} == {"cat"}
-    assert len(detector.detect(picture, Limits(0.6, 0.45, most=2))) == 2
-    assert len(detector.detect(picture, Limits(0.9999))) == 0
+    assert len(detector.detect(image, Limits(0.6, 0.45, most=2))) == 2
+    assert len(detector.detect(image, Limits(0.9999))) == 0
 
 
-def test_labels_of_a_file_go_before_those_of_the_network(tmp_path, picture):
+def test_labels_of_a_file_go_before_those_of_the_network(tmp_path, image):
     path = columns(tmp_path / "v8.onnx", metadata=NAMES)
     for name, text in {
         "labels.txt": "one\ntwo\n\nthree\n",
@@ -289,10 +289,10 @@ def test_sizes_that_no_memory_is_enough_for(tmp_path):
 
 
 @pytest.mark.parametrize("number", [np.nan, np.inf])
-def test_boxes_that_are_no_numbers(tmp_path, picture, number):
+def test_boxes_that_are_no_numbers(tmp_path, image, number):
     path = constant(tmp_path / "broken.onnx", np.full((1, 7, 252), number, np.float32), NAMES)
     with pytest.raises(LinkwrightError, match="not numbers") as raised:
-        opened(path).detect(picture, LIMITS)
+        opened(path).detect(image, LIMITS)
     assert raised.value.diagnostics[0].code == "VISION106"
 
 
@@ -329,14 +329,14 @@ def test_networks_in_other_forms(tmp_path, ending):
 @pytest.mark.parametrize(
     ("shape", "names", "words"),
     [
-        ((4, 3, 96, 128), ("images",), "4 pictures at once"),
-        ((1, 96, 128, 3), ("images",), "does not take a picture"),
-        ((1, 1, 96, 128), ("images",), "does not take a picture"),
-        ((1, 10), ("images",), "does not take a picture"),
-        ((1, 3, 96, 128), ("images", "sizes"), "does not take a picture"),
+        ((4, 3, 96, 128), ("images",), "4 images at once"),
+        ((1, 96, 128, 3), ("images",), "does not take an image"),
+        ((1, 1, 96, 128), ("images",), "does not take an image"),
+        ((1, 10), ("images",), "does not take an image"),
+        ((1, 3, 96, 128), ("images", "sizes"), "does not take an image"),
     ],
 )
-def test_inputs_that_are_no_picture(tmp_path, shape, names, words):
+def test_inputs_that_are_no_image(tmp_path, shape, names, words):
     path = constant(tmp_path / "other.onnx", np.zeros((1, 7, 252), np.float32), NAMES, shape, names)
     code, message, _ = refused(path)
     assert (code, words in message) == ("VISION105", True)

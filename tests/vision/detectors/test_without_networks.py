@@ -1,4 +1,4 @@
-"""Colours, markers, codes and lines: found in drawn pictures."""
+"""Colours, markers, codes and lines: found in drawn images."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def names(found):
 
 
 def test_balls_and_boxes_of_different_colours():
-    picture = blank()
-    cv2.circle(picture, (80, 100), 30, (200, 20, 30), cv2.FILLED)
-    picture[40:80, 200:260] = (20, 60, 200)
-    picture[150:152, 10:14] = (20, 200, 40)
-    found = detector("colours").detect(picture, LIMITS)
+    image = blank()
+    cv2.circle(image, (80, 100), 30, (200, 20, 30), cv2.FILLED)
+    image[40:80, 200:260] = (20, 60, 200)
+    image[150:152, 10:14] = (20, 200, 40)
+    found = detector("colours").detect(image, LIMITS)
     assert names(found) == ["blue", "red"]
     assert found.boxes[0].tolist() == [200, 40, 260, 80]
     assert found.boxes[1] == pytest.approx([50, 70, 111, 131], abs=1)
@@ -45,14 +45,14 @@ def test_balls_and_boxes_of_different_colours():
 
 
 def test_colours_of_ones_own_and_only_those_that_are_wanted():
-    picture = blank()
-    picture[40:80, 200:260] = (20, 60, 200)
-    picture[40:80, 20:60] = (200, 20, 30)
+    image = blank()
+    image[40:80, 200:260] = (20, 60, 200)
+    image[40:80, 20:60] = (200, 20, 30)
     own = detector("colours", colours={"sky": [100, 100, 50, 130, 255, 255], "rose": [170, 100, 50, 5, 255, 255]})
-    assert sorted(names(own.detect(picture, LIMITS))) == ["rose", "sky"]
-    assert names(own.detect(picture, Limits(classes=frozenset({"sky"})))) == ["sky"]
-    assert names(own.detect(picture, Limits(most=1))) == ["sky"]
-    assert len(detector("colours", least_area=1e6).detect(picture, LIMITS)) == 0
+    assert sorted(names(own.detect(image, LIMITS))) == ["rose", "sky"]
+    assert names(own.detect(image, Limits(classes=frozenset({"sky"})))) == ["sky"]
+    assert names(own.detect(image, Limits(most=1))) == ["sky"]
+    assert len(detector("colours", least_area=1e6).detect(image, LIMITS)) == 0
 
 
 @pytest.mark.parametrize(
@@ -64,10 +64,10 @@ def test_colours_of_ones_own_and_only_those_that_are_wanted():
     ],
 )
 def test_markers_are_named_by_their_numbers(name, dictionary, kind, number):
-    picture = np.full((240, 320, 3), 255, np.uint8)
+    image = np.full((240, 320, 3), 255, np.uint8)
     marker = cv2.aruco.generateImageMarker(cv2.aruco.getPredefinedDictionary(kind), number, 80)
-    picture[60:140, 100:180] = marker[..., np.newaxis]
-    found = detector(name, **({"dictionary": dictionary} if dictionary else {})).detect(picture, LIMITS)
+    image[60:140, 100:180] = marker[..., np.newaxis]
+    found = detector(name, **({"dictionary": dictionary} if dictionary else {})).detect(image, LIMITS)
     assert names(found) == [str(number)]
     assert found.boxes[0] == pytest.approx([100, 60, 180, 140], abs=1)
     assert found.corners is not None
@@ -77,18 +77,18 @@ def test_markers_are_named_by_their_numbers(name, dictionary, kind, number):
 def test_qr_codes_are_named_by_their_texts():
     code = cv2.QRCodeEncoder.create().encode("kitchen")
     large = cv2.resize(code, None, fx=5, fy=5, interpolation=cv2.INTER_NEAREST)
-    picture = np.full((300, 400, 3), 255, np.uint8)
-    picture[50 : 50 + large.shape[0], 80 : 80 + large.shape[1]] = large[..., np.newaxis]
-    found = detector("qr").detect(picture, LIMITS)
+    image = np.full((300, 400, 3), 255, np.uint8)
+    image[50 : 50 + large.shape[0], 80 : 80 + large.shape[1]] = large[..., np.newaxis]
+    found = detector("qr").detect(image, LIMITS)
     assert names(found) == ["kitchen"]
     left, top, right, bottom = found.boxes[0]
     assert 70 <= left < right <= 90 + large.shape[1]
     assert 40 <= top < bottom <= 60 + large.shape[0]
-    assert len(detector("qr").detect(picture, Limits(classes=frozenset({"bath"})))) == 0
+    assert len(detector("qr").detect(image, Limits(classes=frozenset({"bath"})))) == 0
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.3], ids=["from the front", "from the side"])
-def test_a_qr_code_is_read_that_is_small_in_the_picture(turned):
+def test_a_qr_code_is_read_that_is_small_in_the_image(turned):
     code = cv2.copyMakeBorder(cv2.QRCodeEncoder.create().encode("kitchen"), *(4,) * 4, cv2.BORDER_CONSTANT, value=255)
     side = code.shape[0]
     corners = np.array([(0, 0), (side, 0), (side, side), (0, side)], np.float32)
@@ -97,49 +97,49 @@ def test_a_qr_code_is_read_that_is_small_in_the_picture(turned):
         [(100, 80), (100 + high, 80 + turned * 20), (100 + high, 80 + high - turned * 20), (100, 80 + high)], np.float32
     )
     larger = cv2.getPerspectiveTransform(corners, 4 * seen)
-    picture = cv2.warpPerspective(code, larger, (4 * 320, 4 * 240), flags=cv2.INTER_NEAREST, borderValue=120)
-    picture = cv2.resize(picture, (320, 240), interpolation=cv2.INTER_AREA)
-    found = detector("qr").detect(np.repeat(picture[..., np.newaxis], 3, axis=2), LIMITS)
+    image = cv2.warpPerspective(code, larger, (4 * 320, 4 * 240), flags=cv2.INTER_NEAREST, borderValue=120)
+    image = cv2.resize(image, (320, 240), interpolation=cv2.INTER_AREA)
+    found = detector("qr").detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
     assert names(found) == ["kitchen"]
     # Its quiet zone of six modules is not in the box.
     assert found.boxes[0] == pytest.approx([118, 98, 182, 162], abs=4)
 
 
-def test_pictures_in_which_a_code_is_only_half_there_are_no_error():
+def test_images_in_which_a_code_is_only_half_there_are_no_error():
     code = cv2.resize(cv2.QRCodeEncoder.create().encode("kitchen"), None, fx=6, fy=6, interpolation=cv2.INTER_NEAREST)
     numbers = np.random.default_rng(4)
     look = detector("qr")
     for _ in range(40):
-        picture = numbers.integers(0, 255, (240, 320), dtype=np.uint8)
+        image = numbers.integers(0, 255, (240, 320), dtype=np.uint8)
         top, left = (int(integer) for integer in numbers.integers(0, 120, 2))
         part = code[: 240 - top, : 320 - left]
-        picture[top : top + part.shape[0], left : left + part.shape[1]] = part
+        image[top : top + part.shape[0], left : left + part.shape[1]] = part
         for _ in range(int(numbers.integers(0, 4))):
             y, x = (int(integer) for integer in numbers.integers(0, 200, 2))
-            picture[y : y + 30, x : x + 30] = 255
-        found = look.detect(np.repeat(picture[..., np.newaxis], 3, axis=2), LIMITS)
+            image[y : y + 30, x : x + 30] = 255
+        found = look.detect(np.repeat(image[..., np.newaxis], 3, axis=2), LIMITS)
         assert set(names(found)) <= {"kitchen"}
 
 
 def test_a_line_on_the_floor():
-    picture = blank()
-    cv2.line(picture, (200, 239), (200, 100), (20, 20, 20), 21)
-    picture[:100] = 0  # above the part that is looked at
-    found = detector("line").detect(picture, LIMITS)
+    image = blank()
+    cv2.line(image, (200, 239), (200, 100), (20, 20, 20), 21)
+    image[:100] = 0  # above the part that is looked at
+    found = detector("line").detect(image, LIMITS)
     assert names(found) == ["line"]
     left, top, right, bottom = found.boxes[0]
     assert (left + right) / 2 == pytest.approx(200.5, abs=1)
     assert (top, bottom) == (180, 240)
     assert found.scores[0] == 1.0
-    whole = detector("line", part=1.0, colour=[0, 0, 100, 179, 60, 200]).detect(picture, LIMITS)
+    whole = detector("line", part=1.0, colour=[0, 0, 100, 179, 60, 200]).detect(image, LIMITS)
     assert whole.boxes[0][1] == 100
 
 
 @pytest.mark.parametrize("name", ["colours", "aruco", "apriltag", "qr", "line"])
 @pytest.mark.parametrize("shape", [(240, 320), (1, 1), (3, 400), (0, 0)])
-def test_pictures_without_anything(name, shape):
-    picture = np.full((*shape, 3), 200, np.uint8)
-    assert len(detector(name).detect(picture, LIMITS)) == 0
+def test_images_without_anything(name, shape):
+    image = np.full((*shape, 3), 200, np.uint8)
+    assert len(detector(name).detect(image, LIMITS)) == 0
 
 
 @pytest.mark.parametrize(
@@ -162,15 +162,15 @@ def test_settings_that_mean_nothing(name, settings, words):
     assert words in str(finding.message)
 
 
-def test_what_was_found_is_drawn_and_the_picture_is_left_as_it_is():
-    picture = blank()
+def test_what_was_found_is_drawn_and_the_image_is_left_as_it_is():
+    image = blank()
     boxes = np.array([[50, 60, 150, 160], [200, 5, 400, 90]], np.float32)
     found = Detections(boxes, np.array([0.9, 0.6], np.float32), np.array([0, 1], np.int32), ("ball", "box"))
-    canvas = drawn(picture, found)
+    canvas = drawn(image, found)
     assert tuple(canvas[160, 100]) == colour_of("ball")
     assert tuple(canvas[90, 300]) == colour_of("box")
-    assert (picture == FLOOR).all()
-    assert (drawn(picture, Detections.none(("ball",))) == picture).all()
+    assert (image == FLOOR).all()
+    assert (drawn(image, Detections.none(("ball",))) == image).all()
     marker = Detections(
         boxes[:1],
         found.scores[:1],
@@ -178,7 +178,7 @@ def test_what_was_found_is_drawn_and_the_picture_is_left_as_it_is():
         found.names,
         np.array([[[50, 60], [150, 60], [150, 160], [50, 160]]], np.float32),
     )
-    assert tuple(drawn(picture, marker)[160, 100]) == colour_of("ball")
+    assert tuple(drawn(image, marker)[160, 100]) == colour_of("ball")
     assert colour_of("red") == colour_of("red cube") == PAINTS["red"]
 
 

@@ -1,4 +1,4 @@
-"""The network that comes with us, in pictures of our worlds that are rendered here."""
+"""The network that comes with us, in images of our worlds that are rendered here."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def things():
 
 
 def look(playground, eye, model):
-    """A picture with a model in the middle, and the box around the pixels that show it."""
+    """An image with a model in the middle, and the box around the pixels that show it."""
     simulation, renderer = playground
     geoms = [
         number
@@ -60,15 +60,15 @@ def look(playground, eye, model):
     x, y, z = simulation.data.geom_xpos[geoms].mean(axis=0) - eye
     turn = quaternion_from_rpy((0.0, atan2(-z, hypot(x, y)), atan2(y, x)))
     optics = Optics(WIDTH, HEIGHT, FOCAL, FOCAL, WIDTH / 2, HEIGHT / 2, 0.05, 30.0)
-    picture = renderer.render(optics, (*eye, *turn), Wanted.COLOUR | Wanted.GEOMS)
-    rows, columns = np.nonzero(np.isin(picture.geoms, geoms))
-    return picture.colour, np.array([[columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]], np.float32)
+    image = renderer.render(optics, (*eye, *turn), Wanted.COLOUR | Wanted.GEOMS)
+    rows, columns = np.nonzero(np.isin(image.geoms, geoms))
+    return image.colour, np.array([[columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]], np.float32)
 
 
 @pytest.mark.parametrize(("eye", "model", "name"), LOOKS, ids=[look[1] for look in LOOKS])
 def test_it_finds_what_stands_before_it(playground, things, eye, model, name):
-    picture, box = look(playground, eye, model)
-    found = things.detect(picture, Limits())
+    image, box = look(playground, eye, model)
+    found = things.detect(image, Limits())
     shares = overlap(box, found.boxes)[0]
     right = [shares[place] for place in range(len(found)) if found.name(place) == name]
     assert max(right, default=0.0) > 0.5

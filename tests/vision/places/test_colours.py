@@ -30,12 +30,12 @@ def test_colours_have_the_names_that_people_give_them(name):
 
 
 def disc(colour, ground=(180, 180, 180), shade=1.0):
-    picture = np.full((120, 160, 3), ground, np.uint8)
+    image = np.full((120, 160, 3), ground, np.uint8)
     rows, columns = np.mgrid[:120, :160]
     inside = (rows - 60) ** 2 + (columns - 80) ** 2 <= 30**2
     light = np.where(rows > 60, shade, 1.0)[inside][:, None]
-    picture[inside] = (np.array(colour) * light).astype(np.uint8)
-    return picture, np.array([50.0, 30.0, 110.0, 90.0])
+    image[inside] = (np.array(colour) * light).astype(np.uint8)
+    return image, np.array([50.0, 30.0, 110.0, 90.0])
 
 
 @pytest.mark.parametrize("shade", [1.0, 0.4])
@@ -45,14 +45,14 @@ def test_a_ball_with_a_shadow_on_grey_ground(shade):
 
 
 def test_a_white_ball_with_black_spots_is_white():
-    picture, box = disc((245, 245, 245))
-    picture[50:60, 70:80] = 5
-    assert colour_of(picture, box) == "white"
+    image, box = disc((245, 245, 245))
+    image[50:60, 70:80] = 5
+    assert colour_of(image, box) == "white"
 
 
 def test_what_cannot_be_said():
-    picture, box = disc((200, 20, 20))
-    assert colour_of(picture, box + 500) is None
+    image, box = disc((200, 20, 20))
+    assert colour_of(image, box + 500) is None
     stripes = np.zeros((60, 60, 3), np.uint8)
     for row, colour in enumerate([(200, 10, 10), (20, 150, 30), (20, 40, 190), (240, 200, 20)] * 15):
         stripes[row] = colour

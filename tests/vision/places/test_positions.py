@@ -1,4 +1,4 @@
-"""Where the things in boxes are."""
+"""Where the objects in boxes are."""
 
 from __future__ import annotations
 

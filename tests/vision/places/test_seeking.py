@@ -1,4 +1,4 @@
-"""How a robot looks for a thing and goes to it, with a robot that is made up."""
+"""How a robot looks for an object and goes to it, with a robot that is made up."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PERIOD = 0.1
 
 
 class Robot:
-    """A robot that does what it is told, in a plane with one thing; it sees 40 degrees to either side."""
+    """A robot that does what it is told, in a plane with one object; it sees 40 degrees to either side."""
 
     def __init__(self, seeker, thing=None, radius=0.15):
         self.seeker, self.thing, self.radius = seeker, thing, radius

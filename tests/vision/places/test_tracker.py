@@ -1,4 +1,4 @@
-"""Which thing is which, on trajectories that are made up."""
+"""Which object is which, on trajectories that are made up."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ NAMES = ("ball", "crate")
 PERIOD = 1 / 30
 
 
-def found(*things):
+def found(*objects):
     """Detections of (centre x, centre y, size, score, class)."""
-    if not things:
+    if not objects:
         return Detections.none(NAMES)
-    boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in things]
-    scores = [thing[3] if len(thing) > 3 else 0.9 for thing in things]
-    classes = [thing[4] if len(thing) > 4 else 0 for thing in things]
+    boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in objects]
+    scores = [thing[3] if len(thing) > 3 else 0.9 for thing in objects]
+    classes = [thing[4] if len(thing) > 4 else 0 for thing in objects]
     return Detections(np.array(boxes, np.float32), np.array(scores, np.float32), np.array(classes, np.int32), NAMES)
 
 
@@ -82,13 +82,13 @@ def test_time_that_jumps_back_begins_anew_and_ids_go_on():
     assert tracker.update(found((100, 100, 40)), PERIOD) == [2]
 
 
-def test_pictures_that_come_seldom():
+def test_images_that_come_seldom():
     tracker = Tracker()
     ids = [tracker.update(found((100 + 10 * step, 200, 60)), step * 0.2)[0] for step in range(20)]
     assert set(ids[1:]) == {1}
 
 
-def test_thirty_things_cross_a_picture():
+def test_thirty_things_cross_a_image():
     numbers = np.random.default_rng(7)
     start, speed = numbers.uniform(0, 2000, (30, 2)), numbers.uniform(-60, 60, (30, 2))
     tracker, switches, before = Tracker(), 0, None

@@ -1,4 +1,4 @@
-"""Things in words, in English and Chinese."""
+"""Objects in words, in English and Chinese."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from linkwright.vision.places.words import Answer, Sighting, answer, described, 
 
 
 @pytest.mark.parametrize(
-    ("text", "thing", "colour"),
+    ("text", "noun", "colour"),
     [
         ("ball", "ball", None),
         ("the red ball", "ball", "red"),
@@ -36,9 +36,9 @@ from linkwright.vision.places.words import Answer, Sighting, answer, described, 
         ("茶壶", "茶壶", None),
     ],
 )
-def test_what_somebody_asks_for(text, thing, colour):
+def test_what_somebody_asks_for(text, noun, colour):
     found = wanted(text)
-    assert (found.thing, found.colour) == (thing, colour)
+    assert (found.noun, found.colour) == (noun, colour)
     assert found.language == ("en" if text.isascii() else "zh")
 
 

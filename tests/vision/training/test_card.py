@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from linkwright.vision.detections import Detections
-from linkwright.vision.evaluation import Things, evaluate
+from linkwright.vision.evaluation import GroundTruth, evaluate
 from linkwright.vision.training.card import Examination, card, confusion, made_of, origin
 
 BOXES = np.array([[0, 0, 8, 8], [20, 20, 60, 60]], np.float32)
 
 
 def figures(classes):
-    truth = Things(BOXES, np.array([0, 1], np.int32), np.zeros(2, bool))
+    truth = GroundTruth(BOXES, np.array([0, 1], np.int32), np.zeros(2, bool))
     kept = [place for place, kind in enumerate(classes) if kind is not None]
     kinds = np.array([classes[place] for place in kept], np.int32)
     return evaluate(
@@ -27,19 +27,19 @@ def test_a_card_says_what_was_done_how_well_it_is_and_where_it_fails():
     assert text.startswith("# eye\n")
     assert "| command | `a \\| b` |" in text
     assert "| ball | 1 | 0.000 | 0.000 | 0.000 | 0.000 |" in text
-    assert "- Rooms: of things under 16 pixels it misses 100%." in text
+    assert "- Rooms: of objects under 16 pixels it misses 100%." in text
     assert "- Rooms: it takes 100% of box for ball." in text
 
 
 def test_a_card_of_a_network_without_faults_says_so():
     text = card("eye", {}, [Examination("Rooms", figures([0, 1]))])
     assert "| all | 2 | 1.000 | 1.000 | | |" in text
-    assert text.endswith("## Where it fails\n\nNothing stands out in these pictures.\n")
+    assert text.endswith("## Where it fails\n\nNothing stands out in these images.\n")
 
 
 def test_confusion_has_a_row_for_what_is_there_and_a_column_for_what_was_said():
     assert confusion(figures([None, 0])) == [
-        "| is \\ said | ball | box | nothing |",
+        "| label \\ detection | ball | box | nothing |",
         "| --- | ---: | ---: | ---: |",
         "| ball |  |  | 1 |",
         "| box | 1 |  |  |",
@@ -52,7 +52,7 @@ def sum_of(world):
 
 
 def write_card(folder, *worlds, more=()):
-    """What `linkwright dataset` writes down of pictures that were made in one run, or in more."""
+    """What `linkwright dataset` writes down of images that were made in one run, or in more."""
     folder.mkdir(exist_ok=True)
     listed = [{"name": f"rooms/{world}.world", "file": f"{world}.world", "sha256": sum_of(world)} for world in worlds]
     runs = [{"seed": 3, "most": 10}, *more]
@@ -64,12 +64,12 @@ def write_card(folder, *worlds, more=()):
 def test_a_card_says_which_worlds_judge_and_which_of_them_taught_too(tmp_path):
     lesson = write_card(tmp_path / "lesson", "playground", "house")
     assert origin(write_card(tmp_path / "unseen", "maze", "line_track"), lesson) == (
-        "Worlds: line_track, maze. Options: seed 3, most 10. None of them taught it."
+        "Worlds: line_track, maze. Options: seed 3, most 10. It was trained on none of them."
     )
     seen = origin(write_card(tmp_path / "seen", "maze", "house"), lesson)
-    assert seen.endswith(" It was taught with other pictures of house.")
+    assert seen.endswith(" It was trained on other images of house.")
     text = card("eye", {}, [Examination("Rooms", figures([0, 1]), seen)])
-    assert f"## Rooms\n\n{seen}\n\n1 pictures." in text
+    assert f"## Rooms\n\n{seen}\n\n1 images." in text
     assert origin(tmp_path, lesson) == ""
     assert origin(write_card(tmp_path / "unseen", "maze"), tmp_path).endswith(" Options: seed 3, most 10.")
 

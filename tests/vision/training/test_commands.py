@@ -36,7 +36,7 @@ def test_a_size_that_the_network_cannot_have_is_wrong_usage(size, capsys):
 def test_a_detector_is_judged(colours, capsys):
     assert main(["vision", "evaluate", "colours", str(colours), "--confusion"]) == 0
     told = capsys.readouterr().out
-    assert told.startswith("6 pictures: mAP50 1.000, ")
+    assert told.startswith("6 images: mAP50 1.000, ")
     assert "| red | 6 | 1.000 |" in told
     assert "| blue |  | 6 |" in told
 
@@ -44,7 +44,7 @@ def test_a_detector_is_judged(colours, capsys):
 def test_figures_are_printed_for_programs(colours, capsys):
     assert main(["vision", "evaluate", "colours", str(colours), "--split", "train", "--format", "json"]) == 0
     figures = json.loads(capsys.readouterr().out)
-    assert figures["pictures"] == 6
+    assert figures["images"] == 6
     assert figures["map50"] == pytest.approx(1)
     assert [each["name"] for each in figures["classes"]] == ["red", "blue"]
 

@@ -56,7 +56,7 @@ def weights(course: Course) -> np.ndarray:
     return np.concatenate([parameter.detach().numpy().ravel() for parameter in course.network.parameters()])
 
 
-def test_a_network_overfits_eight_pictures(shapes, tmp_path):
+def test_a_network_overfits_eight_images(shapes, tmp_path):
     course = course_of(options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
     epochs = []
     course.run(epochs.append)
@@ -129,12 +129,12 @@ def test_the_exported_network_says_what_the_network_says():
     with torch.no_grad():  # the file's weights have 16 bits; with such ones here, too, only the export is compared
         for parameter in network.parameters():
             parameter.copy_(parameter.half().float())
-    picture = torch.rand(1, 3, 96, 64)
+    image = torch.rand(1, 3, 96, 64)
     with torch.no_grad():
-        boxes, logits = network(picture)
+        boxes, logits = network(image)
     content = to_onnx(network, ("a", "b", "c"), 64, 96, {"seed": "2"}, 0.2)
     session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
-    told = session.run(None, {"images": picture.numpy()})[0][0].T
+    told = session.run(None, {"images": image.numpy()})[0][0].T
     left, right = told[:, :2] - told[:, 2:4] / 2, told[:, :2] + told[:, 2:4] / 2
     assert np.abs(np.concatenate((left, right), 1) - boxes[0].numpy()).max() < 0.05  # pixels
     assert np.abs(told[:, 4:] - (logits[0] + np.log(4)).sigmoid().numpy()).max() < 1e-4
@@ -157,35 +157,35 @@ def exported(tmp_path):
     return network, file
 
 
-def said_by(network, picture):
+def said_by(network, image):
     with torch.no_grad():
-        boxes, logits = network.eval()(picture)
+        boxes, logits = network.eval()(image)
     return boxes[0], logits[0]
 
 
 def test_a_network_that_begins_with_a_file_says_what_the_file_says(exported):
     other, file = exported
-    network, picture = Network(Shape(3, 4)), torch.rand(1, 3, 64, 64)
+    network, image = Network(Shape(3, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("disc", "square", "bar"), file, [torch.rand(8, 3, 64, 64)])
-    for found, wanted in zip(said_by(network, picture), said_by(other, picture), strict=True):
+    for found, wanted in zip(said_by(network, image), said_by(other, image), strict=True):
         assert torch.allclose(found, wanted, rtol=0.02, atol=0.1)  # the file's weights have 16 bits
 
 
 def test_as_it_learns_it_says_nearly_the_same_because_its_statistics_are_measured(exported):
     _, file = exported
-    network, pictures = Network(Shape(3, 4)), torch.rand(16, 3, 64, 64)
-    load_weights(network, ("disc", "square", "bar"), file, [pictures])
+    network, images = Network(Shape(3, 4)), torch.rand(16, 3, 64, 64)
+    load_weights(network, ("disc", "square", "bar"), file, [images])
     with torch.no_grad():
-        _, wanted = network.eval()(pictures)
-        _, found = network.train()(pictures)
+        _, wanted = network.eval()(images)
+        _, found = network.train()(images)
     assert (found - wanted).abs().mean() < 0.2 * wanted.std()
 
 
 def test_classes_of_a_file_keep_their_weights_by_their_names_and_others_begin_anew(exported):
     other, file = exported
-    network, picture = Network(Shape(2, 4)), torch.rand(1, 3, 64, 64)
+    network, image = Network(Shape(2, 4)), torch.rand(1, 3, 64, 64)
     load_weights(network, ("ring", "square"), file, [torch.rand(8, 3, 64, 64)])
-    (boxes, logits), (wanted_boxes, wanted) = said_by(network, picture), said_by(other, picture)
+    (boxes, logits), (wanted_boxes, wanted) = said_by(network, image), said_by(other, image)
     assert torch.allclose(boxes, wanted_boxes, rtol=0.02, atol=0.1)
     assert torch.allclose(logits[:, 1], wanted[:, 1], rtol=0.02, atol=0.1)
     assert network.heads[0].scores[-1].bias[0].item() == pytest.approx(-np.log(99))
@@ -220,10 +220,10 @@ def test_a_training_begins_with_weights_of_an_earlier_one_and_its_card_says_so(s
         onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
         for file in (begun, tmp_path / "second" / "detector.onnx")
     ]
-    picture = np.random.default_rng(0).random((1, 3, 96, 96), np.float32)
-    first, second = (each.run(None, {"images": picture})[0][0, :4] for each in session)
+    image = np.random.default_rng(0).random((1, 3, 96, 96), np.float32)
+    first, second = (each.run(None, {"images": image})[0][0, :4] for each in session)
     assert np.abs(first - second).max() < 1.0  # pixels
-    assert "| began with | first.onnx, sha256 " in (tmp_path / "second" / "detector.md").read_text(encoding="utf-8")
+    assert "| started from | first.onnx, sha256 " in (tmp_path / "second" / "detector.md").read_text(encoding="utf-8")
 
 
 def test_boxes_that_do_not_touch_are_told_apart_by_the_generalised_overlap():
@@ -238,8 +238,8 @@ def test_cells_answer_for_the_thing_they_are_in_and_may_say_what_they_like_of_wh
     middles, _ = cells(64, 64)
     boxes = torch.cat((middles - 12, middles + 12), 1)[None]
     logits = torch.zeros(1, len(middles), 2)
-    things = torch.tensor([[[1.0, 8, 8, 32, 32], [-2.0, 40, 40, 60, 60], [-1.0, -1, -1, -1, -1]]])
-    wanted = assign(boxes, logits, middles, things)
+    objects = torch.tensor([[[1.0, 8, 8, 32, 32], [-2.0, 40, 40, 60, 60], [-1.0, -1, -1, -1, -1]]])
+    wanted = assign(boxes, logits, middles, objects)
     inside = (middles >= 8).all(1) & (middles <= 32).all(1)
     assert wanted.taken[0].sum() == 10
     assert not (wanted.taken[0] & ~inside).any()
@@ -270,7 +270,7 @@ def test_the_command_trains_judges_and_writes_a_card(shapes, tmp_path, capsys, m
     assert f"vision train {shapes}" in card
     assert "## Held out: shapes (val)" in card
     assert main(["vision", "evaluate", str(tmp_path / "eye.onnx"), str(shapes), "--confusion"]) == 0
-    assert "8 pictures: mAP50" in capsys.readouterr().out
+    assert "8 images: mAP50" in capsys.readouterr().out
     assert main([*words, "--resume", "--epochs", "3"]) == 0
     assert capsys.readouterr().err.startswith("epoch 3 of 3")
 

@@ -7,7 +7,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.training.options import Options, View
-from linkwright.vision.training.pictures import Lesson, changed, read_lesson, read_picture, repeated, repeats
+from linkwright.vision.training.pictures import Lesson, changed, read_image, read_lesson, repeated, repeats
 from linkwright.vision.training.reading import open_dataset
 from tests.vision.training.pictures_of_shapes import NAMES, write_shapes
 
@@ -28,18 +28,18 @@ def problem(function, *words):
 def test_a_dataset_is_read(shapes):
     dataset = open_dataset(shapes)
     assert dataset.names == NAMES
-    pictures = dataset.read("train")
-    assert [picture.path.name for picture in pictures] == ["000.png", "001.png", "002.png"]
-    assert pictures[0].classes.tolist() == [0, 1]
-    assert not pictures[0].ignored.any()
-    assert (pictures[0].boxes >= 0).all()
-    assert (pictures[0].boxes <= 1).all()
+    images = dataset.read("train")
+    assert [image.path.name for image in images] == ["000.png", "001.png", "002.png"]
+    assert images[0].classes.tolist() == [0, 1]
+    assert not images[0].ignored.any()
+    assert (images[0].boxes >= 0).all()
+    assert (images[0].boxes <= 1).all()
 
 
 def test_the_boxes_are_where_the_colours_are(shapes):
     for each in open_dataset(shapes).read("train"):
         left, top, right, bottom = np.rint(each.boxes[0] * 96).astype(int)
-        red = read_picture(each)[..., 0] > 200
+        red = read_image(each)[..., 0] > 200
         assert (np.flatnonzero(red.any(0))[[0, -1]] == (left, right - 1)).all()
         assert (np.flatnonzero(red.any(1))[[0, -1]] == (top, bottom - 1)).all()
 
@@ -55,13 +55,13 @@ def test_what_coco_says_of_a_crowd_is_ignored(shapes):
         ],
     }
     (shapes / "annotations" / "instances_train.json").write_text(json.dumps(content))
-    picture = open_dataset(shapes).read("train")[1]
-    assert picture.ignored.tolist() == [False, False, True]
-    assert picture.classes[2] == 1
-    assert picture.boxes[2].tolist() == [0.25, 0.25, 0.75, 0.75]
+    image = open_dataset(shapes).read("train")[1]
+    assert image.ignored.tolist() == [False, False, True]
+    assert image.classes[2] == 1
+    assert image.boxes[2].tolist() == [0.25, 0.25, 0.75, 0.75]
 
 
-def test_a_picture_without_labels_has_nothing_in_it(shapes):
+def test_a_image_without_labels_has_nothing_in_it(shapes):
     (shapes / "labels" / "train" / "002.txt").unlink()
     assert open_dataset(shapes).read("train")[2].boxes.shape == (0, 4)
 
@@ -77,7 +77,7 @@ def test_the_yaml_file_itself_may_be_named(shapes):
         ("train: images/train\nnames: {0: a, 2: b}\n", "'names' does not name the classes"),
         ("names: [a]\n", "neither 'train' nor 'val'"),
         ("- 1\n", "does not hold names and values"),
-        ("names: [a\n", "is no dataset"),
+        ("names: [a\n", "is not a dataset"),
     ],
 )
 def test_what_is_no_dataset_is_said(tmp_path, content, said):
@@ -98,7 +98,7 @@ def test_a_part_that_is_not_there_is_said(shapes):
     assert "'train' and 'val'" in str(found.hint)
 
 
-def test_a_part_without_pictures_is_said(shapes):
+def test_a_part_without_images_is_said(shapes):
     for path in (shapes / "images" / "train").iterdir():
         path.unlink()
     assert problem(open_dataset(shapes).read, "train").code == "VISION303"
@@ -109,10 +109,10 @@ def test_a_part_without_pictures_is_said(shapes):
     [
         ("0 0.5 0.5 0.1", "five numbers"),
         ("0 0.5 0.5 0.1 b", "five numbers"),
-        ("2 0.5 0.5 0.1 0.1", "the class 2 is none of the 2"),
-        ("0.5 0.5 0.5 0.1 0.1", "the class 0.5 is none of the 2"),
-        ("0 50 0.5 0.1 0.1", "shares of the picture"),
-        ("0 nan 0.5 0.1 0.1", "shares of the picture"),
+        ("2 0.5 0.5 0.1 0.1", "the class 2 is not one of the 2"),
+        ("0.5 0.5 0.5 0.1 0.1", "the class 0.5 is not one of the 2"),
+        ("0 50 0.5 0.1 0.1", "shares of the image"),
+        ("0 nan 0.5 0.1 0.1", "shares of the image"),
     ],
 )
 def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, said):
@@ -125,68 +125,68 @@ def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, said):
     assert found.span.line == 2
 
 
-def test_a_picture_that_is_none_is_said(shapes):
+def test_a_image_that_is_none_is_said(shapes):
     dataset = open_dataset(shapes)
     (shapes / "images" / "train" / "001.png").write_bytes(b"none")
     found = problem(read_lesson, dataset.read("train"), 96, 96)
     assert (found.code, "001.png" in str(found.message)) == ("VISION305", True)
 
 
-def test_pictures_of_another_shape_are_fitted_in_with_grey(shapes):
-    pictures = open_dataset(shapes).read("train")
-    lesson = read_lesson(pictures, 160, 96)
-    assert lesson.pictures.shape == (3, 96, 160, 3)
-    assert (lesson.pictures[:, :, :32] == 114).all()
-    assert np.allclose(lesson.things[0][:, 1:], pictures[0].boxes * 96 + (32, 0, 32, 0), atol=1e-4)
+def test_images_of_another_shape_are_fitted_in_with_grey(shapes):
+    images = open_dataset(shapes).read("train")
+    lesson = read_lesson(images, 160, 96)
+    assert lesson.images.shape == (3, 96, 160, 3)
+    assert (lesson.images[:, :, :32] == 114).all()
+    assert np.allclose(lesson.objects[0][:, 1:], images[0].boxes * 96 + (32, 0, 32, 0), atol=1e-4)
 
 
 def test_boxes_stay_with_what_they_are_around(shapes):
     lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
     seen = 0
     for seed in range(40):
-        picture, things = changed(lesson, seed % 3, VIEW, np.random.default_rng(seed))
-        assert picture.shape == (64, 64, 3)
-        for kind, left, top, right, bottom in things:
+        image, objects = changed(lesson, seed % 3, VIEW, np.random.default_rng(seed))
+        assert image.shape == (64, 64, 3)
+        for kind, left, top, right, bottom in objects:
             assert 0 <= left < right <= 64
             assert 0 <= top < bottom <= 64
             if kind == 0 and min(right - left, bottom - top) > 8:
-                middle = picture[int((top + bottom) / 2), int((left + right) / 2)].astype(int)
+                middle = image[int((top + bottom) / 2), int((left + right) / 2)].astype(int)
                 seen += 1
                 assert middle[0] > middle[2]  # the disc is the red one
     assert seen > 10
 
 
-def test_the_same_dice_change_a_picture_in_the_same_way(shapes):
+def test_the_same_dice_change_a_image_in_the_same_way(shapes):
     lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
     one, other = (changed(lesson, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
     assert (one[0] == other[0]).all()
     assert (one[1] == other[1]).all()
 
 
-def test_the_last_epochs_are_of_whole_pictures(shapes):
+def test_the_last_epochs_are_of_whole_images(shapes):
     options = Options(shapes, shapes, epochs=5, whole_epochs=2, width=96, height=96)
     assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
     assert options.view(4).scales[0] > options.view(0).scales[0]
     lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
     same = View((96, 96), (1.0, 1.0))
-    (_, things) = changed(lesson, 0, same, np.random.default_rng(5))
-    here = lesson.things[0]
-    sides = (things[:, 3:] - things[:, 1:3]) / (here[:, 3:] - here[:, 1:3])
-    assert (things[:, 0] == here[:, 0]).all()
+    (_, objects) = changed(lesson, 0, same, np.random.default_rng(5))
+    here = lesson.objects[0]
+    sides = (objects[:, 3:] - objects[:, 1:3]) / (here[:, 3:] - here[:, 1:3])
+    assert (objects[:, 0] == here[:, 0]).all()
     assert np.median(sides) == pytest.approx(1, abs=0.12)  # seen whole, and as large as they are
 
 
-def test_pictures_of_rare_classes_are_seen_more_often():
-    def picture(*classes):
+def test_images_of_rare_classes_are_seen_more_often():
+    def image(*classes):
         return np.array([[each, 0, 0, 9, 9] for each in classes], np.float32).reshape(-1, 5)
 
-    things = (*[picture(0)] * 16, *[picture(1, 0)] * 8, picture(2), picture(-4, 0), picture())
-    lesson = Lesson(np.zeros((len(things), 1, 1, 3), np.uint8), things)
+    objects = (*[image(0)] * 16, *[image(1, 0)] * 8, image(2), image(-4, 0), image())
+    lesson = Lesson(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
     times = repeats(lesson, 4)
     assert times[:24] == pytest.approx(1)  # classes 0 and 1 are at the median of 8, or more frequent
     assert times[24] == pytest.approx(np.sqrt(8))
     assert times[25:] == pytest.approx(1)  # what is to be ignored, or nothing
     chosen = [repeated(times, np.random.default_rng(seed)) for seed in range(200)]
-    counts = np.mean([np.bincount(each, minlength=len(things)) for each in chosen], 0)
+    counts = np.mean([np.bincount(each, minlength=len(objects)) for each in chosen], 0)
     assert counts[:24] == pytest.approx(1)
     assert counts[24] == pytest.approx(np.sqrt(8), abs=0.15)

@@ -1,4 +1,4 @@
-"""``linkwright vision``: try detectors on pictures."""
+"""``linkwright vision``: try detectors on images."""
 
 from linkwright.cli.vision.verb import VERBS, configure, run
 

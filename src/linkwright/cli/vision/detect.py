@@ -1,4 +1,4 @@
-"""``linkwright vision detect``: what a detector finds in picture files."""
+"""``linkwright vision detect``: run a detector on image files."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "-m",
         "--model",
         metavar="FILE|NAME",
-        help="an ONNX file, or a detector: things (default), colours, aruco, apriltag, qr, line",
+        help="an ONNX file, or the name of a detector: things (default), colours, aruco, apriltag, qr, line",
     )
     parser.add_argument("--labels", metavar="FILE", type=Path, help="names of the network's classes, one in each line")
     parser.add_argument(
@@ -41,12 +41,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--classes", metavar="NAME", action="append", help="only this class; may be given again")
     parser.add_argument("--device", default="cpu", help="where a network runs: cpu (the default), or cuda:0")
-    parser.add_argument("-o", "--output", metavar="FOLDER", type=Path, help="write the pictures with boxes there")
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print what is found")
+    parser.add_argument(
+        "-o", "--output", metavar="FOLDER", type=Path, help="write the images with boxes to this folder"
+    )
+    parser.add_argument(
+        "--format", choices=("text", "json"), default="text", help="the format of the printed detections"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print what is found in each picture; those that cannot be read are told of, and the others go on."""
+    """Print the detections in each image. An image that cannot be read is reported and skipped."""
     from linkwright.vision.detector import Limits
     from linkwright.vision.detectors.markers import MarkerDetector
     from linkwright.vision.detectors.options import DetectorOptions
@@ -68,16 +72,16 @@ def run(arguments: argparse.Namespace) -> int:
     written: set[str] = set()
     for name in arguments.images:
         try:
-            picture = _read(name)
+            image = _read(name)
         except LinkwrightError as error:
             problems += error.diagnostics
             continue
-        found = detector.detect(picture, limits)
-        rows.append({"image": name, "width": picture.shape[1], "height": picture.shape[0], "detections": _data(found)})
+        found = detector.detect(image, limits)
+        rows.append({"image": name, "width": image.shape[1], "height": image.shape[0], "detections": _data(found)})
         if arguments.format == "text":
             _print(name, found)
         if arguments.output is not None:
-            _draw(picture, found, arguments.output, _unused(Path(name).stem, written))
+            _draw(image, found, arguments.output, _unused(Path(name).stem, written))
     if arguments.format == "json":
         print(json.dumps(rows, indent=2, ensure_ascii=False))
     print_diagnostics(problems, sys.stderr)
@@ -105,7 +109,7 @@ def _read(name: str) -> NDArray[np.uint8]:
         pixels = file_pixels(np.frombuffer(read_file(name, _LARGEST_FILE), np.uint8))
     except (OSError, BadImageError) as error:
         reason = foreign(error.strerror if isinstance(error, OSError) else error)
-        message = phrase("cannot read the picture '{path}': {reason}", path=name, reason=reason)
+        message = phrase("cannot read the image '{path}': {reason}", path=name, reason=reason)
         raise LinkwrightError(Diagnostic("VISION110", message)) from None
     return Picture((pixels >> 8).astype(np.uint8) if pixels.dtype == np.uint16 else pixels).rgb()
 
@@ -130,7 +134,7 @@ def _print(name: str, found: Detections) -> None:
         print(f"{name}: {found.name(index)} {found.scores[index]:.2f} [{box}]")
 
 
-def _draw(picture: NDArray[np.uint8], found: Detections, folder: Path, stem: str) -> None:
+def _draw(image: NDArray[np.uint8], found: Detections, folder: Path, stem: str) -> None:
     from io import BytesIO
 
     from PIL import Image
@@ -138,7 +142,7 @@ def _draw(picture: NDArray[np.uint8], found: Detections, folder: Path, stem: str
     from linkwright.vision.detectors.drawing import drawn
 
     file = BytesIO()
-    Image.fromarray(drawn(picture, found)).save(file, "PNG")
+    Image.fromarray(drawn(image, found)).save(file, "PNG")
     write_output(folder / f"{stem}_detections.png", file.getvalue())
 
 

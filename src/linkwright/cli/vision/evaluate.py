@@ -1,4 +1,4 @@
-"""``linkwright vision evaluate``: how well a detector finds what is in the pictures of a dataset."""
+"""``linkwright vision evaluate``: how well a detector finds what is in the images of a dataset."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "dataset", metavar="DATASET", type=Path, help="its folder, as linkwright dataset makes it, or its data.yaml"
     )
     parser.add_argument("--split", metavar="NAME", help="train, val or test; default test, or val where there is none")
-    parser.add_argument("--confusion", action="store_true", help="also print what was taken for what")
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it")
+    parser.add_argument("--confusion", action="store_true", help="also print the confusion matrix")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="the output format")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> int:
         content = {**asdict(figures), "confusion": figures.confusion.tolist()}
         print(json.dumps(content, indent=2, ensure_ascii=False))
         return FINE
-    print(f"{figures.pictures} pictures: mAP50 {figures.map50:.3f}, mAP50-95 {figures.map:.3f}")
+    print(f"{figures.images} images: mAP50 {figures.map50:.3f}, mAP50-95 {figures.map:.3f}")
     print("\n".join(table(figures)))
     if arguments.confusion:
         print("\n".join(["", *confusion(figures)]))

@@ -1,4 +1,4 @@
-"""``linkwright vision train``: a network taught with the pictures of a dataset."""
+"""``linkwright vision train``: a network taught with the images of a dataset."""
 
 from __future__ import annotations
 
@@ -28,30 +28,33 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", metavar="FOLDER", type=Path, default=Path("training"), help="default training"
     )
-    parser.add_argument("--name", default="detector", help="of the network and its card, default detector")
-    parser.add_argument("--epochs", type=positive_int, default=40, help="how often it sees each picture, default 40")
+    parser.add_argument("--name", default="detector", help="the name of the network and its card, default detector")
+    parser.add_argument("--epochs", type=positive_int, default=40, help="passes over all images, default 40")
     parser.add_argument(
         "--whole-epochs",
         metavar="N",
         type=unsigned_int,
         default=2,
-        help="so many of them, the last ones, with whole pictures instead of parts, default 2",
+        help="the number of last epochs with full images instead of parts, default 2",
     )
-    parser.add_argument("--batch", type=positive_int, default=16, help="pictures in a step, default 16")
+    parser.add_argument("--batch", type=positive_int, default=16, help="images in a step, default 16")
     parser.add_argument("--rate", type=positive_float, default=0.002, help="the highest learning rate, default 0.002")
     parser.add_argument(
-        "--size", metavar="WIDTHxHEIGHT", type=_size, default=(480, 384), help="of its input, default 480x384"
+        "--size", metavar="WIDTHxHEIGHT", type=_size, default=(480, 384), help="the size of its input, default 480x384"
     )
     parser.add_argument(
-        "--channels", type=positive_int, default=8, help="of its first layer; the others have multiples, default 8"
+        "--channels",
+        type=positive_int,
+        default=8,
+        help="the channels of its first layer; the others have multiples, default 8",
     )
-    parser.add_argument("--seed", type=unsigned_int, default=0, help="of all that is drawn by lot, default 0")
-    parser.add_argument("--threads", type=positive_int, default=2, help="of the processor, default 2")
+    parser.add_argument("--seed", type=unsigned_int, default=0, help="the random seed, default 0")
+    parser.add_argument("--threads", type=positive_int, default=2, help="the number of CPU threads, default 2")
     parser.add_argument(
         "--precision",
         choices=("float32", "bfloat16"),
         default="float32",
-        help="what it computes with while it learns: float32 (default), or bfloat16, faster where the processor has it",
+        help="the number format of training: float32 (default), or bfloat16, faster if the CPU supports it",
     )
     parser.add_argument(
         "--device",
@@ -62,16 +65,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--weights",
         metavar="FILE",
-        help="begin with this network instead of random weights: things, or an ONNX file that this command wrote",
+        help="start from this network instead of random weights: things, or an ONNX file that this command wrote",
     )
-    parser.add_argument("--resume", action="store_true", help="go on from the last epoch that is in the folder")
+    parser.add_argument("--resume", action="store_true", help="resume after the last epoch in the folder")
     parser.add_argument(
         "--held-out",
         metavar="DATASET",
         type=Path,
         action="append",
         default=[],
-        help="judge the result with this one, too; may be given again",
+        help="evaluate the result on this dataset, too; may be repeated",
     )
 
 

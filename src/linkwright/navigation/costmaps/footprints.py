@@ -34,15 +34,15 @@ def read_footprint(text: str) -> Footprint:
     """Parse the footprint of a parameter, such as ``[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]``.
 
     Raises:
-        BadFootprintError: it is no list of three or more points.
+        BadFootprintError: it is not a list of three or more points.
     """
     try:
         value: Any = literal_eval(text.strip())
         corners: Footprint = np.array(value, np.float64)
     except (TypeError, ValueError, SyntaxError):
-        raise BadFootprintError(f"'{text}' is no list of points such as [[x1, y1], [x2, y2], [x3, y3]]") from None
+        raise BadFootprintError(f"'{text}' is not a list of points such as [[x1, y1], [x2, y2], [x3, y3]]") from None
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
-        raise BadFootprintError(f"'{text}' is no list of points such as [[x1, y1], [x2, y2], [x3, y3]]")
+        raise BadFootprintError(f"'{text}' is not a list of points such as [[x1, y1], [x2, y2], [x3, y3]]")
     if len(corners) < _LEAST_CORNERS:
         raise BadFootprintError(f"a footprint has three corners or more, and '{text}' has {len(corners)}")
     return corners

@@ -30,7 +30,7 @@ _PGM = re.compile(rb"P([25])" + rb"(?:\s|#[^\n]*\n)+(\d{1,9})" * 3 + rb"\s")
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class MapImage:
     """Pixels from the top row down, each between 0 and 1.
 
     Attributes:
@@ -42,12 +42,12 @@ class Picture:
     opacity: NDArray[np.float64] | None = None
 
 
-def read_picture(path: Path) -> Picture:
+def read_image(path: Path) -> MapImage:
     """Read an image.
 
     Raises:
-        LinkwrightError: NAV203, it is not there, is none, or is broken; NAV204, it is no PGM, and Pillow, which reads
-            others, is not installed.
+        LinkwrightError: NAV203, the file does not exist, is not an image, or is broken; NAV204, it is not PGM, and
+            Pillow, which reads other formats, is not installed.
     """
     try:
         data = read_file(path, _LARGEST_FILE)
@@ -87,7 +87,7 @@ def _grey_with_opacity(pixels: NDArray[np.uint8]) -> Any:
     return _pillow().fromarray(np.stack((grey, grey, grey, pixels[..., 1]), axis=-1))
 
 
-def _pgm(path: Path, data: bytes, header: re.Match[bytes]) -> Picture:
+def _pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
     columns, rows, most = (int(group) for group in header.groups()[1:])
     if not 0 < rows * columns <= MOST_PIXELS or not 0 < most < 1 << 16:
         raise _unreadable(path, phrase("its header says {size}", size=f"{columns} x {rows}, {most}"))
@@ -96,16 +96,16 @@ def _pgm(path: Path, data: bytes, header: re.Match[bytes]) -> Picture:
         try:
             values = np.array(rest.split()[: rows * columns], np.float64)
         except ValueError:
-            raise _unreadable(path, phrase("its pixels are no numbers")) from None
+            raise _unreadable(path, phrase("its pixels are not numbers")) from None
     else:
         values = np.frombuffer(rest, ">u2" if most > 255 else np.uint8, -1 if most < 256 else len(rest) // 2)
     if values.size < rows * columns:
         reason = phrase("it has {count} of {size} pixels", count=values.size, size=rows * columns)
         raise _unreadable(path, reason)
-    return Picture(np.minimum(values[: rows * columns].reshape(rows, columns) / most, 1.0))
+    return MapImage(np.minimum(values[: rows * columns].reshape(rows, columns) / most, 1.0))
 
 
-def _by_pillow(path: Path, data: bytes) -> Picture:
+def _by_pillow(path: Path, data: bytes) -> MapImage:
     pillow = _pillow()
     try:
         with pillow.open(BytesIO(data)) as file:
@@ -117,9 +117,9 @@ def _by_pillow(path: Path, data: bytes) -> Picture:
     except (OSError, ValueError, SyntaxError, pillow.DecompressionBombError) as error:
         raise _unreadable(path, foreign(str(error).replace(repr(BytesIO), "it"))) from None
     if wide:
-        return Picture(values / 65535.0)
+        return MapImage(values / 65535.0)
     values = values / 255.0
-    return Picture(values[..., :3].mean(axis=-1), values[..., 3] if clear else None)
+    return MapImage(values[..., :3].mean(axis=-1), values[..., 3] if clear else None)
 
 
 def _pillow() -> Any:

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path, foreign, phrase
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.maps.images import pgm_bytes, pillow_bytes, read_picture
+from linkwright.navigation.maps.images import pgm_bytes, pillow_bytes, read_image
 from linkwright.navigation.maps.map_yaml import MapMode, read_map_yaml
-from linkwright.navigation.maps.pixels import UNKNOWN_DARKNESS, cells_of_picture, pixels_of_cells
+from linkwright.navigation.maps.pixels import UNKNOWN_DARKNESS, cells_of_image, pixels_of_cells
 from linkwright.whole_files import write_whole_file
 
 OCCUPIED_THRESH = 0.65
@@ -30,11 +30,11 @@ class SavedAs:
     """The settings of a saved map.
 
     Attributes:
-        name: of the files, with their folder but without an ending.
-        occupied_thresh: 0 to 1; cells of so much or more are occupied.
-        free_thresh: cells of so much or less are free.
-        image_format: ending of the image; "" for what goes with the mode.
-        mode: what the pixels tell.
+        name: the path of the files, without an extension.
+        occupied_thresh: cells of this probability or more are occupied, 0 to 1.
+        free_thresh: cells of this probability or less are free.
+        image_format: the extension of the image; "" for the default of the mode.
+        mode: the meaning of the pixels.
     """
 
     name: str
@@ -48,10 +48,10 @@ def load_map(path: str | Path) -> Grid:
     """Load the grid of a map's YAML and image, in the frame of the map.
 
     Raises:
-        LinkwrightError: NAV201 or NAV202, see `read_map_yaml`; NAV203 or NAV204, see `read_picture`.
+        LinkwrightError: NAV201 or NAV202, see `read_map_yaml`; NAV203 or NAV204, see `read_image`.
     """
     said = read_map_yaml(path)
-    cells = cells_of_picture(read_picture(said.image), said)
+    cells = cells_of_image(read_image(said.image), said)
     x, y, yaw = said.origin
     return Grid(cells=cells, resolution=said.resolution, x=x, y=y, yaw=yaw)
 
@@ -60,9 +60,9 @@ def save_map(grid: Grid, saved: SavedAs, warn: Callable[[str], object] = _unhear
     """Write a map.
 
     Args:
-        grid: per cent or unknown.
-        saved: under which name and how.
-        warn: is told what the reader of the files should know.
+        grid: the cells, per cent or unknown.
+        saved: the name and settings.
+        warn: called with warnings for the user.
 
     Returns:
         The image and the YAML.

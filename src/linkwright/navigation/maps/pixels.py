@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN
-from linkwright.navigation.maps.images import Picture
+from linkwright.navigation.maps.images import MapImage
 from linkwright.navigation.maps.map_yaml import MapMode, MapYaml
 
 _FREE_GREY, _UNKNOWN_GREY = 254, 205
@@ -15,17 +15,17 @@ UNKNOWN_DARKNESS = 1.0 - _UNKNOWN_GREY / 255.0
 _OPAQUE = 255
 
 
-def cells_of_picture(picture: Picture, said: MapYaml) -> NDArray[np.int8]:
+def cells_of_image(image: MapImage, said: MapYaml) -> NDArray[np.int8]:
     """Convert pixels to cells.
 
     Args:
-        picture: the pixels, from the top row down.
-        said: thresholds, mode and whether black is free.
+        image: the pixels, from the top row down.
+        said: the thresholds, the mode and whether black is free.
 
     Returns:
-        Per cent or `UNKNOWN`, from the lowest row up, of the picture's shape.
+        Per cent or `UNKNOWN`, from the lowest row up, of the image's shape.
     """
-    shade, opacity = picture.shade[::-1], None if picture.opacity is None else picture.opacity[::-1]
+    shade, opacity = image.shade[::-1], None if image.opacity is None else image.opacity[::-1]
     if said.mode is MapMode.RAW:
         value = np.floor(shade * 255.0 + 0.5)
         return np.where(value <= OCCUPIED, value, UNKNOWN).astype(np.int8)
@@ -49,10 +49,10 @@ def pixels_of_cells(
     """Convert cells to pixels, from the top row down.
 
     Args:
-        cells: per cent or `UNKNOWN`, from the lowest row up.
-        mode: what the pixels tell.
-        occupied_thresh: 0 to 1, from which on cells are occupied in the mode ``trinary``.
-        free_thresh: up to which they are free.
+        cells: the cells, per cent or `UNKNOWN`, from the lowest row up.
+        mode: the meaning of the pixels.
+        occupied_thresh: the least probability of an occupied cell in the mode ``trinary``, 0 to 1.
+        free_thresh: the greatest probability of a free cell.
 
     Returns:
         Grey, of the shape of the cells; with ``scale`` grey and opacity, of shape (rows, columns, 2).

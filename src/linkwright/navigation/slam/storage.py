@@ -64,10 +64,10 @@ def save_graph(mapper: Mapper, path: Path) -> None:
 
 
 def load_graph(mapper: Mapper, path: Path) -> None:
-    """Load a graph into a mapper; nothing of it is drawn yet.
+    """Load a graph into a mapper, without drawing it yet.
 
     Raises:
-        LinkwrightError: NAV501, the file is not there, or is no graph that was written here; the mapper is as it was.
+        LinkwrightError: NAV501, the file does not exist, or is not a graph of ours; the mapper is unchanged.
     """
     try:
         data = read_file(path, _LARGEST_FILE)
@@ -81,7 +81,7 @@ def load_graph(mapper: Mapper, path: Path) -> None:
     try:
         graph, scans, odometry = _read(data)
     except (BadZipFile, KeyError, ValueError, IndexError, OSError, EOFError):
-        raise _unreadable(path, phrase("it is no pose graph")) from None
+        raise _unreadable(path, phrase("it is not a pose graph")) from None
     mapper.replace(graph, scans, odometry)
 
 
@@ -111,5 +111,5 @@ def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[Floats]]:
 
 def _unreadable(path: Path, reason: Phrase) -> LinkwrightError:
     message = phrase("the pose graph '{path}' cannot be read: {reason}", path=display_path(path), reason=reason)
-    hint = phrase("map the place anew, and save it by the service serialize_map")
+    hint = phrase("map the place again, and save it with the service serialize_map")
     return LinkwrightError(Diagnostic("NAV501", message, hint=hint))

@@ -111,7 +111,7 @@ class Ros2ControlNode(SingleNode):
             self._node.get_logger().warning("'update_rate' parameter not set, using default value.")
             return _DEFAULT_RATE
         if not isinstance(value, int) or isinstance(value, bool) or not 0 < value <= 100_000:
-            message = phrase("the update_rate {value} is no whole number of Hz above 0", value=value)
+            message = phrase("the update_rate {value} is not a positive integer (Hz)", value=value)
             raise LinkwrightError(Diagnostic("NODE830", message, hint=phrase("write 'update_rate: 100'")))
         return value
 

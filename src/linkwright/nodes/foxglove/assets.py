@@ -36,10 +36,10 @@ class Assets:
         self._packages.update(_PACKAGE.findall(text))
 
     def read(self, uri: str) -> bytes:
-        """The content of a file.
+        """Return the content of a file.
 
         Raises:
-            AssetRefusedError: it may not be read, or is not there.
+            AssetRefusedError: the file may not be read, or does not exist.
         """
         found = _PACKAGE.match(uri)
         relative = PurePosixPath(uri[found.end() :]) if found else PurePosixPath()
@@ -70,7 +70,7 @@ def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
         if enclosing is None or enclosing[0] != package:
             raise AssetRefusedError("a link leads out of the package")
     if not path.is_file() or path.suffix.lower() not in _ENDINGS:
-        raise AssetRefusedError("it is no mesh and no image")
+        raise AssetRefusedError("it is neither a mesh nor an image")
     if path.stat().st_size > _LARGEST:
         raise AssetRefusedError("it is too large")
     return path.read_bytes()

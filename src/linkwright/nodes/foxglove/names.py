@@ -8,18 +8,18 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph.names.expressions import Expression, ExpressionError, TooCostlyError
 
 _MOST_KNOWN = 10_000
-"""Names of which it is remembered whether they are wanted; clients may ask for as many as they like."""
+"""The number of cached decisions; clients may ask for as many names as they like."""
 
 
 class NameFilter:
-    """Filters names by regular expressions that match as a whole. One that takes too long is not used again.
+    """Filters names by regular expressions that match the full name. A slow expression is not used again.
 
     Args:
-        parameter: whose value they are, for messages.
-        expressions: of them.
+        parameter: the parameter with the expressions, for messages.
+        expressions: the regular expressions.
 
     Raises:
-        LinkwrightError: NODE701, one is no regular expression.
+        LinkwrightError: NODE701, one is not a regular expression.
     """
 
     def __init__(self, parameter: str, expressions: Sequence[str]) -> None:
@@ -48,7 +48,7 @@ def _read(parameter: str, expression: str) -> Expression:
         return Expression(expression)
     except ExpressionError as error:
         message = phrase(
-            "parameter '{parameter}': '{expression}' is no regular expression: {error}",
+            "parameter '{parameter}': '{expression}' is not a regular expression: {error}",
             parameter=parameter,
             expression=expression,
             error=foreign(error),

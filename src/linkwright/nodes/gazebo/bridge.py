@@ -51,8 +51,8 @@ class BridgedTopic:
         ros_type: such as ``sensor_msgs/msg/Imu``.
         gz_type: such as ``gz.msgs.IMU``.
         direction: ``GZ_TO_ROS``, ``ROS_TO_GZ`` or ``BIDIRECTIONAL``.
-        publisher_queue, subscriber_queue: how many messages wait on each way out and in.
-        lazy: whether messages are taken only while somebody listens on the other side; None for what the node says.
+        publisher_queue, subscriber_queue: the depths of the queues.
+        lazy: whether to subscribe only while the other side has a subscriber; None for the node's setting.
     """
 
     ros_topic: str
@@ -69,8 +69,8 @@ class _Way:
     """One direction of a bridge: messages from a topic of one node to that of another.
 
     Args:
-        listen: makes the subscription.
-        lazy: whether there is one only while somebody hears what is sent on.
+        listen: creates the subscription.
+        lazy: whether to subscribe only while the output has a subscriber.
     """
 
     def __init__(self, listen: Callable[[], Subscription[Any]], *, lazy: bool) -> None:
@@ -153,7 +153,7 @@ class _Bridge(SingleNode):
             drivers = DriverWatch.of(self._node)
 
         def take(message: Any, info: MessageInfo) -> None:
-            # What was sent by the bridge comes back where messages go both ways.
+            # A bidirectional bridge receives its own messages.
             if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
                 if commander is not None and drivers is not None:
                     commander.obey(info)
@@ -184,7 +184,7 @@ class ParameterBridge(_Bridge):
     """The running bridge: its arguments, or the file of its parameter ``config_file``, name the topics.
 
     Raises:
-        LinkwrightError: NODE820, what it is told cannot be understood; NODE821, the file cannot be read.
+        LinkwrightError: NODE820, an argument or the file is invalid; NODE821, the file cannot be read.
     """
 
     DEFAULT_NAME = "ros_gz_bridge"
@@ -219,7 +219,7 @@ class StaticBridge(_Bridge):
 
 
 class ImageBridge(_Bridge):
-    """The running bridge of images whose topics are its arguments; also as JPEG, where anybody subscribes."""
+    """The running bridge of image topics, its arguments; also publishes JPEG while a node subscribes to it."""
 
     DEFAULT_NAME = "ros_gz_image"
 
@@ -230,7 +230,7 @@ class ImageBridge(_Bridge):
             self._compress(word)
 
     def _compress(self, topic: str) -> None:
-        """Publish pictures as JPEG too, while anybody subscribes."""
+        """Publish images as JPEG too while a node subscribes to them."""
         name = f"{self._node.resolve_topic_name(topic)}/compressed"
 
         def take(image: Any) -> None:
@@ -238,7 +238,7 @@ class ImageBridge(_Bridge):
                 message = compressed(image)
             except ModuleNotFoundError as error:
                 text = phrase(
-                    "pictures are not compressed: {name} is missing; {hint}",
+                    "images are not compressed: {name} is missing; {hint}",
                     name=error.name,
                     hint=install_hint("image"),
                 )
@@ -266,7 +266,9 @@ def topic_of_word(word: str) -> BridgedTopic:
     ros_type, _, gz_type = types.partition(mark or "@")
     if not (name and at and mark and ros_type and gz_type):
         hint = phrase("write it as {form}", form="/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan")
-        raise LinkwrightError(Diagnostic("NODE820", phrase("'{word}' is no topic to bridge", word=word), hint=hint))
+        raise LinkwrightError(
+            Diagnostic("NODE820", phrase("'{word}' does not describe a topic to bridge", word=word), hint=hint)
+        )
     return BridgedTopic(name, name, _full(ros_type), _modern(gz_type), _DIRECTIONS[mark])
 
 
@@ -274,7 +276,7 @@ def topics_of_file(path: str) -> list[BridgedTopic]:
     """Read the topics of a YAML file.
 
     Raises:
-        LinkwrightError: NODE821, it cannot be read; NODE820, it is no list of topics with their types.
+        LinkwrightError: NODE821, it cannot be read; NODE820, it is not a list of topics with their types.
     """
     try:
         entries = yaml.safe_load(read_text(path))
@@ -283,16 +285,16 @@ def topics_of_file(path: str) -> list[BridgedTopic]:
         message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
         raise LinkwrightError(Diagnostic("NODE821", message)) from error
     except yaml.YAMLError as error:
-        message = phrase("'{path}' is no YAML: {reason}", path=path, reason=foreign(" ".join(str(error).split())))
+        message = phrase("'{path}' is not YAML: {reason}", path=path, reason=foreign(" ".join(str(error).split())))
         raise LinkwrightError(Diagnostic("NODE821", message)) from error
     if not isinstance(entries, list):
-        raise _no_topics(path, phrase("it is no list"))
+        raise _no_topics(path, phrase("it is not a list"))
     return [_topic_of(entry, number, path) for number, entry in enumerate(entries, start=1)]
 
 
 def _topic_of(entry: Any, number: int, path: str) -> BridgedTopic:
     if not isinstance(entry, dict):
-        raise _no_topics(path, phrase("entry {number} is no mapping", number=number))
+        raise _no_topics(path, phrase("entry {number} is not a mapping", number=number))
     both = entry.get("topic_name", "")
     ros_topic = entry.get("ros_topic_name") or both or entry.get("gz_topic_name", "")
     gz_topic = entry.get("gz_topic_name") or both or ros_topic
@@ -307,7 +309,9 @@ def _topic_of(entry: Any, number: int, path: str) -> BridgedTopic:
     queues = [entry.get(f"{side}_queue", _QUEUE) for side in ("publisher", "subscriber")]
     for side, value in zip(("publisher", "subscriber"), queues, strict=True):
         if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-            raise _no_topics(path, phrase("entry {number}: '{key}' is no number", number=number, key=f"{side}_queue"))
+            raise _no_topics(
+                path, phrase("entry {number}: '{key}' is not a number", number=number, key=f"{side}_queue")
+            )
     lazy = entry.get("lazy")
     if lazy is not None and not isinstance(lazy, bool):
         raise _no_topics(path, phrase("entry {number}: '{key}' is neither true nor false", number=number, key="lazy"))
@@ -315,7 +319,7 @@ def _topic_of(entry: Any, number: int, path: str) -> BridgedTopic:
 
 
 def _no_topics(path: str, reason: Any) -> LinkwrightError:
-    message = phrase("'{path}' does not say which topics to bridge: {reason}", path=path, reason=reason)
+    message = phrase("'{path}' does not list topics to bridge: {reason}", path=path, reason=reason)
     hint = phrase("each entry needs ros_topic_name, gz_topic_name, ros_type_name, gz_type_name and direction")
     return LinkwrightError(Diagnostic("NODE820", message, hint=hint))
 

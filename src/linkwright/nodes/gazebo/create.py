@@ -99,5 +99,5 @@ def _number(name: str, value: Any) -> float:
     try:
         return float(value)
     except ValueError:
-        message = phrase("'{value}' for '{name}' is no number", value=str(value), name=name)
+        message = phrase("'{value}' for '{name}' is not a number", value=str(value), name=name)
         raise LinkwrightError(Diagnostic("NODE812", message, hint=phrase("give metres, or radians"))) from None

@@ -1,8 +1,8 @@
 """amcl of nav2: localizes the robot on a map by a laser and odometry.
 
-Parameters, topics, services and texts are those of nav2. Different on purpose: what is drawn follows from a fixed seed,
-so twice the same data give the same; a scan that fits nowhere near is told; clusters of particles go on where a turn
-begins anew; and ``save_pose_rate`` and ``freespace_downsampling`` change nothing.
+Parameters, topics, services and texts are those of nav2. Deliberate differences: the random seed is fixed, so the same
+data give the same result; a scan that matches nowhere near is logged; clusters of particles continue across the end of
+a turn; ``save_pose_rate`` and ``freespace_downsampling`` have no effect.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ class AmclNode(ManagedNode):
         try:
             grid = grid_of(message)
         except BadGridError as error:
-            self.get_logger().error(f"what came on '{self._settings.map_topic}' is no map: {error}")
+            self.get_logger().error(f"the message on '{self._settings.map_topic}' is not a map: {error}")
             return
         self.get_logger().info(f"Received a {grid.columns} X {grid.rows} map @ {grid.resolution:.3f} m/pix")
         if message.header.frame_id != self._settings.world:
@@ -139,7 +139,7 @@ class AmclNode(ManagedNode):
         self._heard_ns = self.get_clock().now().nanoseconds
         if self._map is None:
             topic = self.resolve_topic_name(self._settings.map_topic)
-            nobody = "" if self.count_publishers(topic) else f" Nobody publishes on '{topic}'."
+            nobody = "" if self.count_publishers(topic) else f" No node publishes on '{topic}'."
             self.get_logger().warning(f"Waiting for map....{nobody}", throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
             return
         self._waiting.append(message)
@@ -316,7 +316,7 @@ class AmclNode(ManagedNode):
             then, _ = self._buffer.lookup(self._settings.odom, self._settings.base, stamp_ns)
             now, _ = self._buffer.lookup(self._settings.odom, self._settings.base, 0)
         except TransformException:
-            return pose  # as long as odometry says nothing, nothing was driven that could be told
+            return pose  # without odometry there is no known motion
         return _flat(compose(_transform(pose), compose(invert(then), now)))
 
     def _set_pose(self, pose: Pose, covariance: NDArray[np.float64]) -> None:

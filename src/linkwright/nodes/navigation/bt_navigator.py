@@ -1,9 +1,10 @@
-"""bt_navigator of nav2: navigates to poses by the planner, controller and behaviour servers.
+"""bt_navigator of nav2: navigates to poses with the planner, controller and behaviour servers.
 
-The actions ``navigate_to_pose`` and ``navigate_through_poses``, and the topic ``goal_pose`` (RViz's 2D Goal Pose). What
-is done is what nav2's usual trees do (``navigate_to_pose_w_replanning_and_recovery.xml``): a new path each second; when
-that or driving fails the costmaps are cleared, and if that does not help the robot spins, waits, backs up, and tries
-again, six times at most. Different on purpose: behaviour trees of users are not read, which is told in a line.
+The actions ``navigate_to_pose`` and ``navigate_through_poses``, and the topic ``goal_pose`` (RViz's 2D Goal Pose). It
+does what nav2's default trees do (``navigate_to_pose_w_replanning_and_recovery.xml``): it plans a new path each second;
+when planning or driving fails it clears the costmaps, and if that does not help the robot spins, waits, backs up and
+tries again, six times at most. A deliberate difference: it does not read behaviour trees of users, and logs a line
+about that.
 """
 
 from __future__ import annotations
@@ -240,7 +241,7 @@ class NavigatorNode(StepNode):
             return ""
         cost = int(self._costmap.cost_at(np.array([at.x, at.y]), outside=_OUTSIDE))
         if cost == _OUTSIDE:
-            return f"the goal ({at.x:.2f}, {at.y:.2f}) is outside of the map, or nobody has seen what is there"
+            return f"the goal ({at.x:.2f}, {at.y:.2f}) is outside of the map or in unknown space"
         if cost == LETHAL:
             return f"the goal ({at.x:.2f}, {at.y:.2f}) is in an obstacle"
         if cost == INSCRIBED:
@@ -263,7 +264,7 @@ class NavigatorNode(StepNode):
         yield from self._clear("global")
 
     def _clear(self, which: str) -> Step:
-        """Clear a costmap, if its server is there."""
+        """Clear a costmap if its server is available."""
         client = self._clearing[which]
         if not client.service_is_ready():
             self.get_logger().warning(f"the {which} costmap is not cleared: there is no {client.service_name}")

@@ -143,12 +143,12 @@ class CostmapNode(ManagedNode):
         return self.pose_of((0.0, 0.0, 0.0), self.robot_base_frame)
 
     def pose_of(self, pose: Pose, frame: str, time_ns: int = 0) -> Pose | None:
-        """A pose of another frame in that of the costmap; None without a transform.
+        """Transform a pose to the frame of the costmap; None if there is no transform.
 
         Args:
             pose: x, y (metres) and yaw (radians).
-            frame: in which it is given; an empty one is that of the costmap.
-            time_ns: when it holds; 0 for as it was last known.
+            frame: the frame of the pose; empty for that of the costmap.
+            time_ns: the time of the transform; 0 for the latest.
         """
         if not frame or frame == self.global_frame:
             return pose
@@ -251,7 +251,7 @@ class CostmapNode(ManagedNode):
             take_unread(self, name)
         if self._filters:
             named = ", ".join(self._filters)
-            self.get_logger().warning(f"there are no filters of costs here: the costmap does without {named}")
+            self.get_logger().warning(f"costmap filters are not supported: the costmap ignores {named}")
 
     def _begin_updates(self) -> None:
         self.end_cycles()

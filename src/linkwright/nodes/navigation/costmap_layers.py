@@ -40,13 +40,13 @@ class Surroundings:
     """The node and data that the layers of a costmap share.
 
     Attributes:
-        node: of the costmap.
-        transforms: where frames are.
-        frame: of the costmap.
-        on_map: told of a map and its frame, by the static layer.
-        topics: what layers listen to, which is to be destroyed in the end.
-        sensors: those of the topics that are taken in when the costmap is updated.
-        layers: by name, from the bottom to the top.
+        node: the node of the costmap.
+        transforms: the transforms between frames.
+        frame: the frame of the costmap.
+        on_map: called by the static layer with a map and its frame.
+        topics: the topics of the layers, to be destroyed in the end.
+        sensors: the topics whose messages are processed when the costmap is updated.
+        layers: the layers by name, from the bottom to the top.
     """
 
     node: Node
@@ -99,7 +99,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
     for name in given:
         take_unread(node, name)
     if given:
-        node.get_logger().info(f"layers that 'plugins' does not name are not there: {', '.join(given)}")
+        node.get_logger().info(f"layers that 'plugins' does not name are ignored: {', '.join(given)}")
 
 
 def follow(shared: Surroundings, changed: list[Parameter]) -> bool:

@@ -51,7 +51,7 @@ def make_follower(node: Node, plugin: str) -> Follower:
     unread = take_unread(node, plugin)
     if kind in (DWB, MPPI):
         told = f"; without effect here: {', '.join(unread)}" if unread else ""
-        logger.info(f"{plugin}: a follower of our own that tries velocities stands for {kind}{told}")
+        logger.info(f"{plugin}: our own follower that samples velocities replaces {kind}{told}")
     elif kind != PURE_PURSUIT:
         logger.warning(f"{plugin}: there is no {kind} here; regulated pure pursuit takes its place")
     elif unread:

@@ -1,8 +1,8 @@
 """lifecycle_manager of nav2: configures and activates managed nodes in order, and takes all down when one dies.
 
-Services, parameters, order and lines are those of nav2. Different on purpose: an answer is waited for as long as its
-node is there, with a word each ``service_timeout``, so that a slow machine is no failure; and when a node dies the
-others are brought down without waiting for it.
+Services, parameters, order and log lines are those of nav2. Deliberate differences: the manager waits for an answer as
+long as the node exists, with a log line each ``service_timeout``, so that a slow machine does not cause a failure; and
+when a node dies the others are brought down without waiting for it.
 """
 
 from __future__ import annotations
@@ -62,8 +62,8 @@ class _ManagedNodeClient:
     """A client of one managed node.
 
     Args:
-        node: who asks.
-        name: of the managed node, relative to the namespace of `node`.
+        node: the node that asks.
+        name: the name of the managed node, relative to the namespace of `node`.
     """
 
     def __init__(self, node: Node, name: str) -> None:
@@ -132,7 +132,7 @@ class LifecycleManager(SingleNode):
     """The running node.
 
     Raises:
-        LinkwrightError: NODE433, ``node_names`` is no list of names.
+        LinkwrightError: NODE433, ``node_names`` is not a list of names.
     """
 
     DEFAULT_NAME = "lifecycle_manager"
@@ -198,7 +198,7 @@ class LifecycleManager(SingleNode):
         if request.command < len(commands):
             response.success = await self._alone(commands[request.command])
         else:
-            self._logger.error(f"{request.command} is no command of ManageLifecycleNodes")
+            self._logger.error(f"{request.command} is not a command of ManageLifecycleNodes")
         return response
 
     def _on_is_active(self, _request: Any, response: Any) -> Any:
@@ -279,7 +279,7 @@ class LifecycleManager(SingleNode):
         if wait:
             await managed.wait(self._word_each)
         if step is not _Step.ACTIVATE:
-            managed.end_bond()  # before the node leaves it: that is no failure
+            managed.end_bond()  # before the node leaves it, which is not a failure
         if not await managed.change(step, self._word_each):
             self._logger.error(f"Failed to change state for node: {managed.name}")
             return False
@@ -316,7 +316,7 @@ class LifecycleManager(SingleNode):
     async def _bring_down(self, dead: _ManagedNodeClient) -> bool:
         """Take the other nodes down after one died, and all up again when it comes back."""
         if dead.bond is None:
-            return True  # it went with another one, or was told to
+            return True  # it left with another one, or on command
         if self._state not in (_State.ACTIVE, _State.UNKNOWN):
             return True
         self._logger.info(f"Have not received a heartbeat from {dead.name}.")
@@ -348,7 +348,7 @@ class LifecycleManager(SingleNode):
             self._logger.info("Failed to re-establish connection from a server crash after maximum timeout.")
 
     def _stays_down(self) -> bool:
-        """Whether nobody has commanded anything since the nodes were taken down."""
+        """Return whether no command has come since the nodes were taken down."""
         return self._state is _State.UNCONFIGURED
 
     def _begin(self, work: Coroutine[Any, Any, Any]) -> None:

@@ -59,7 +59,7 @@ class _Saving:
             return MapMode.TRINARY
 
     async def save(self, topic: str, name: str, kind: str, mode: MapMode, free: float, occupied: float) -> bool:
-        """Save the map of a topic; whether that succeeded. Thresholds of 0 stand for those of the parameters."""
+        """Save the map of a topic, and return whether that succeeded. A threshold of 0 means that of the parameters."""
         logger = self._node.get_logger()
         logger.info(f"Saving map from '{topic}' topic to '{name}' file")
         if not topic:
@@ -94,7 +94,7 @@ class _Saving:
             for path in save_map(grid, saved, io.warning):
                 io.info(f"Wrote {path}")
         except BadGridError as error:
-            return f"what came is no map: {error}"
+            return f"the message is not a map: {error}"
         except LinkwrightError as error:
             return "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
         return None
@@ -116,9 +116,9 @@ class _Saving:
             if not await answered(node, come, self._timeout):
                 senders = node.count_publishers(topic)
                 why = (
-                    f"nobody publishes on '{subscription.name}'"
+                    f"no node publishes on '{subscription.name}'"
                     if not senders
-                    else f"{senders} publish on '{subscription.name}', and none sent a map that this node can hear"
+                    else f"{senders} publish on '{subscription.name}', but no map with a compatible QoS arrived"
                 )
                 node.get_logger().error(
                     f"Failed to spin map subscription: no map came within {self._timeout:g} s; {why}"

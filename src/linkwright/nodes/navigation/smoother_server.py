@@ -1,7 +1,7 @@
 """smoother_server of nav2: smooths paths for the action ``smooth_path``.
 
-Parameters, topics and results are those of nav2, Humble and Jazzy. All types of smoothers are recognised, and the work
-of all is done as nav2's simple smoother does it; where it is not that of the type, a line says so.
+Parameters, topics and results are those of nav2, Humble and Jazzy. All types of smoothers are recognised, and all work
+as nav2's simple smoother does; a line is logged if the type has another method.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ class SmootherNode(ManagedNode):
             self._hand_over(request, path, poses, began_ns)
 
     def _hand_over(self, request: Any, path: Any, poses: Any, began_ns: int) -> None:
-        assert self._costmap is not None, "what was smoothed has one"
+        assert self._costmap is not None, "a path is smoothed on a costmap"
         took = Duration(nanoseconds=self.get_clock().now().nanoseconds - began_ns).to_msg()
         if request.check_for_collisions:
             costs = self._costmap.cost_at(poses[:, :2], outside=LETHAL)

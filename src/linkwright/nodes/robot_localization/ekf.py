@@ -2,10 +2,10 @@
 
 They follow robot_localization 3.5 (ROS 2 Humble) and later, with these deliberate differences:
 
-- Where simulated time jumps back, as when a world is reset, the filter begins anew whatever ``reset_on_time_jump``
-  says: there the filter would stand still until time has caught up.
-- A sensor that gives no acceleration (or no position) does not measure it as 0 where its ``_config`` says true.
-- Lookups of transforms never wait, so ``transform_timeout`` changes nothing; nor does ``debug``.
+- When simulated time jumps back, as on the reset of a world, the filter restarts whatever ``reset_on_time_jump`` is set
+  to: the original would wait until time has caught up.
+- A sensor that gives no acceleration (or no position) does not measure it as 0 where its ``_config`` is true.
+- Lookups of transforms never wait, so ``transform_timeout`` has no effect; nor has ``debug``.
 - ``process_noise_covariance`` and ``initial_estimate_covariance`` may be the 15 numbers of the diagonal.
 - Sensors and their rules: see `linkwright.control.filters.readings`.
 """
@@ -94,7 +94,7 @@ class EkfNode(SingleNode):
 
     def _time_jumped(self) -> None:
         if self._filter.initialized:
-            self._node.get_logger().warning("Time has jumped: the filter begins anew.")
+            self._node.get_logger().warning("Time has jumped: the filter restarts.")
         self._reset()
 
     def _message_from_the_past(self) -> None:
@@ -133,7 +133,7 @@ class EkfNode(SingleNode):
         if not np.isfinite(kalman.state).all():
             self._node.get_logger().error(
                 "Critical Error, NaNs were detected in the output state of the filter. This was likely due to poorly "
-                "conditioned process, noise, or sensor covariances. The filter begins anew."
+                "conditioned process, noise, or sensor covariances. The filter restarts."
             )
             self._reset()
             return

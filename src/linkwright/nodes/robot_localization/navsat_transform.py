@@ -119,7 +119,7 @@ class NavsatTransformNode(SingleNode):
             node.create_service(get_service(f"robot_localization/srv/{service}"), name, answer)
         node.create_timer(1.0 / self._frequency, self._update)
 
-    # --- what comes in -----------------------------------------------------------------------------------------------
+    # --- input -------------------------------------------------------------------------------------------------------
 
     def _hear_odometry(self, message: Any) -> None:
         self._world_frame = message.header.frame_id or self._world_frame
@@ -161,7 +161,7 @@ class NavsatTransformNode(SingleNode):
         self._place_map()
 
     def _place_map(self) -> None:
-        """Compute the transform of the map, once all inputs are there."""
+        """Compute the transform of the map once all inputs have arrived."""
         if self._first_fix is None or self._first_pose is None or self._heading is None:
             return
         latitude, longitude, altitude = self._first_fix
@@ -227,7 +227,7 @@ class NavsatTransformNode(SingleNode):
         assert self._map is not None, "it was placed"
         return self._place(compose(invert(self._map), (*point, 0.0, 0.0, 0.0, 1.0))[:3])
 
-    # --- what goes out -----------------------------------------------------------------------------------------------
+    # --- output ------------------------------------------------------------------------------------------------------
 
     def _update(self) -> None:
         if self._map is None:
@@ -303,7 +303,7 @@ class NavsatTransformNode(SingleNode):
                 self._map = None
                 self._place_map()
         else:
-            self._node.get_logger().error(f"'{request.utm_zone}' is no zone of UTM, such as 31U")
+            self._node.get_logger().error(f"'{request.utm_zone}' is not a UTM zone, such as 31U")
         return response
 
     def _ready(self) -> bool:

@@ -84,7 +84,7 @@ class TeleopTwistKeyboard(SingleNode):
         return value
 
     def _say(self, text: str) -> None:
-        with contextlib.suppress(OSError):  # of a terminal that is being closed; reading tells of that
+        with contextlib.suppress(OSError):  # the terminal is closing; reading reports that
             self._output(text)
 
     def _typed(self, text: str) -> None:
@@ -132,7 +132,7 @@ class TeleopTwistKeyboard(SingleNode):
             self._unheard = False
         elif self._direction != STILL and not self._unheard:
             self._unheard = True
-            message = phrase("nobody listens to {topic}; `linkwright doctor` tells more", topic=self._topic.name)
+            message = phrase("no node subscribes to {topic}; `linkwright doctor` shows more", topic=self._topic.name)
             self._node.get_logger().warning(localized(message))
 
     def _publish(self) -> None:

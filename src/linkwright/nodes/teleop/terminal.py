@@ -16,21 +16,21 @@ _POLL_SECONDS = 0.02
 class KeyTerminal:
     """Reads keys from a terminal while it is open.
 
-    Keys are not echoed. Ctrl-C stays a signal. What would suspend or abort the program (Ctrl-Z and the like) is a
-    key as others: a program that stands still cannot stop a robot.
+    Keys are not echoed. Ctrl-C stays a signal. Keys that would suspend or abort the program (Ctrl-Z and the like) are
+    ordinary keys: a suspended program cannot stop a robot.
 
     Args:
         descriptor: the terminal's file descriptor.
-        on_text: called with what was typed.
-        on_end: called once when the terminal is gone.
+        on_text: called with the typed text.
+        on_end: called once when the terminal closes.
 
     Raises:
-        OSError: it is no terminal.
+        OSError: it is not a terminal.
     """
 
     def __init__(self, descriptor: int, on_text: Callable[[str], None], on_end: Callable[[], None]) -> None:
         if not os.isatty(descriptor):
-            raise OSError(f"{descriptor} is no terminal")
+            raise OSError(f"{descriptor} is not a terminal")
         self._on_text, self._on_end = on_text, on_end
         self._undo = _watch_windows(self._took) if sys.platform == "win32" else self._watch(descriptor)
 

@@ -1,7 +1,8 @@
 """teleop_node of teleop_twist_joy: publishes velocities for a joystick while a button is held.
 
-Parameters and defaults are those of the ROS node. Different on purpose: unless ``publish_stamped_twist`` is set it
-publishes what the topic's subscribers take; and when nobody publishes ``joy`` any more, the robot is stopped.
+Parameters and defaults are those of the ROS node. Deliberate differences: unless ``publish_stamped_twist`` is set it
+publishes the type that the topic's subscribers expect; and when the last publisher of ``joy`` is gone, it stops the
+robot.
 """
 
 from __future__ import annotations
@@ -129,7 +130,7 @@ class TeleopTwistJoy(SingleNode):
         ):
             self._stop()
             self._node.get_logger().warning(
-                phrase("nobody publishes '{topic}' any more: the robot is stopped", topic=self._joy)
+                phrase("no node publishes '{topic}' any more: the robot is stopped", topic=self._joy)
             )
 
 

@@ -160,7 +160,7 @@ def _source(path: str, name: str, given: Mapping[str, Any]) -> _Source:
             path, phrase("parameter '{name}' must be seconds, 0 for no time-out, such as 0.5", name=f"{path}.timeout")
         )
     if isinstance(priority, bool) or not isinstance(priority, int):
-        raise _wrong(path, phrase("parameter '{name}' must be a whole number, 0 to 255", name=f"{path}.priority"))
+        raise _wrong(path, phrase("parameter '{name}' must be an integer, 0 to 255", name=f"{path}.priority"))
     return _Source(name, topic, float(timeout), priority)
 
 

@@ -1,8 +1,8 @@
 """velocity_smoother of nav2: forwards ``cmd_vel`` within limits to ``cmd_vel_smoothed``.
 
-A managed node; parameters, defaults and rules are those of nav2. Different on purpose: unless
-``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; and it stops
-the robot when it is deactivated, or who commanded is lost, and says so.
+A managed node; parameters, defaults and rules are those of nav2. Deliberate differences: unless
+``enable_stamped_cmd_vel`` is set it accepts Twist and TwistStamped, and publishes the type that subscribers expect; and
+it stops the robot, with a log line, when it is deactivated or the commanding publisher is lost.
 """
 
 from __future__ import annotations
@@ -170,8 +170,8 @@ class _ManagedSmoother(ManagedNode):
             self._command = [0.0] * len(_AXES)
             self.get_logger().info(
                 phrase(
-                    "no command for {seconds:g} s (velocity_timeout), and the last one was no stop: "
-                    "the robot is stopped",
+                    "no command for {seconds:g} s (velocity_timeout), and the last one was not a stop: the "
+                    "robot is stopped",
                     seconds=self._timeout,
                 )
             )

@@ -1,1 +1,1 @@
-"""Nodes of object detection: boxes in pictures, positions in space, seeking."""
+"""Nodes of object detection: boxes in images, positions in space, seeking."""

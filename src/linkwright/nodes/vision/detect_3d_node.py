@@ -1,9 +1,9 @@
 """detect_3d_node: positions in metres of detected objects.
 
 Source: yolo_ros 4 (the executable, the topics ``detections``, ``depth_image``, ``depth_info`` and ``detections_3d``,
-the parameters, and that pictures half a second apart belong together). Different on purpose: detections are those of
-vision_msgs, but for the node that goes by the name in yolo_ros; depth images of 32FC1 are metres whatever the divisor,
-as REP 118 has them; and with a ``ground_frame`` things that no depth is known of are where they stand on the ground.
+the parameters, and that images half a second apart belong together). Deliberate differences: detections are those of
+vision_msgs, except in the node with yolo_ros's own name; depth images of 32FC1 are metres whatever the divisor, as in
+REP 118; and with a ``ground_frame``, objects without a known depth are placed where their boxes touch the ground.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ _FORWARD = (0.5, -0.5, 0.5, 0.5)
 class Detect3DNode(SingleNode):
     """The running node.
 
-    Parameters: ``target_frame`` (of the result), ``depth_image_units_divisor`` (what a metre is in images of 16UC1),
-    ``maximum_detection_threshold`` (how far depths may be from the middle of the thing's surface, metres),
-    ``depth_image_reliability`` and ``depth_info_reliability`` (1 reliable, 2 best effort), ``ground_frame`` (whose x
-    and y lie on the ground; empty where things are not to be looked for there), ``maximum_distance`` (metres).
+    Parameters: ``target_frame`` (of the result), ``depth_image_units_divisor`` (units per metre in images of 16UC1),
+    ``maximum_detection_threshold`` (the greatest distance of depths from the middle of the object's surface, metres),
+    ``depth_image_reliability`` and ``depth_info_reliability`` (1 reliable, 2 best effort), ``ground_frame`` (its x and
+    y span the ground; empty to place no objects on the ground), ``maximum_distance`` (metres).
 
     Raises:
         LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
@@ -84,7 +84,7 @@ class Detect3DNode(SingleNode):
         node.create_subscription(
             info, "camera_info", lambda message: self._see_camera("colour", message), SENSOR_DATA_QOS
         )
-        node.create_subscription(get_message(self.FORM.pictures), "detections", self._see, _DEPTH)
+        node.create_subscription(get_message(self.FORM.images), "detections", self._see, _DEPTH)
 
     def _see_camera(self, which: str, message: Any) -> None:
         try:
@@ -110,7 +110,7 @@ class Detect3DNode(SingleNode):
             self._markers.publish(_markers(self.FORM, found, places))
 
     def _places(self, message: Any) -> list[Place | None]:
-        """The positions of detections, in the optical frame of their picture."""
+        """The positions of detections, in the optical frame of their image."""
         camera = self._cameras.get("colour") or self._cameras.get("depth")
         if camera is None:
             self._complain("no camera_info has come")
@@ -127,7 +127,7 @@ class Detect3DNode(SingleNode):
         return places
 
     def _depths_at(self, message: Any) -> NDArray[np.float64] | None:
-        """The depth image for detections, metres; None without one."""
+        """Return the depth image for detections, metres; None if there is none."""
         time_ns = message.header.stamp.nanoseconds
         image = min(self._depths, key=lambda depth: abs(depth.header.stamp.nanoseconds - time_ns), default=None)
         if image is None or abs(image.header.stamp.nanoseconds - time_ns) > _SLOP_NS:
@@ -137,7 +137,7 @@ class Detect3DNode(SingleNode):
         if image.header.frame_id != message.header.frame_id:
             self._complain(
                 f"the depth image is in the frame '{image.header.frame_id}' and the detections in "
-                f"'{message.header.frame_id}': it must be registered to the picture"
+                f"'{message.header.frame_id}': it must be registered to the image"
             )
             return None
         try:

@@ -1,4 +1,4 @@
-"""Converting detections and pictures to messages."""
+"""Converting detections and images to messages."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ MESSAGES: Mapping[str, Callable[[Any, Detections], Any]] = {VISION: vision_messa
 """The functions that make messages, by type."""
 
 
-def picture_message(header: Any, picture: NDArray[np.uint8]) -> Any:
-    """Convert a picture, shape ``(height, width, 3)``, to sensor_msgs/msg/Image."""
+def image_message(header: Any, image: NDArray[np.uint8]) -> Any:
+    """Convert an image, shape ``(height, width, 3)``, to sensor_msgs/msg/Image."""
     message = get_message("sensor_msgs/msg/Image")(header=header, encoding="rgb8")
-    message.height, message.width, _ = picture.shape
+    message.height, message.width, _ = image.shape
     message.step = 3 * message.width
-    message.data = np.ascontiguousarray(picture).reshape(-1)
+    message.data = np.ascontiguousarray(image).reshape(-1)
     return message
 
 

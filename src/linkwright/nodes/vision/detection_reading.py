@@ -18,12 +18,12 @@ class DetectionForm(ABC):
     """The form of a package's detection messages.
 
     Args:
-        pictures: the type of message with detections in a picture.
+        images: the type of message with detections in an image.
         places: that with detections in metres.
     """
 
-    def __init__(self, pictures: str, places: str) -> None:
-        self.pictures, self.places = pictures, places
+    def __init__(self, images: str, places: str) -> None:
+        self.images, self.places = images, places
 
     def read(self, message: Any) -> Detections:
         """The detections of a message, in its order, each by its best hypothesis."""

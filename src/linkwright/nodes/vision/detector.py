@@ -1,24 +1,26 @@
 """The detector node, and its names in other packages.
 
-Pictures are taken only while somebody listens to what is found in them; a thread looks at the latest one, so that a
-slow network never makes a queue. The same thread loads the detector, which may take seconds: until then no pictures are
-taken, `set_classes` waits with its answer, and all else is answered. What others differ in is in `dialects`.
+The node subscribes to images only while its detections have a subscriber. A thread processes the latest image, so that
+a slow network never builds up a queue. The same thread loads the detector, which may take seconds: until then the node
+takes no images, `set_classes` delays its answer, and everything else is answered. The differences between the packages
+are in `dialects`.
 
 Parameters, by the names of yolo_ros:
 
 ``model``
-    an ONNX file, or a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, and those of packages.
+    an ONNX file, or the name of a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, and those of
+    packages.
 ``labels``
     a file with the names of the classes, instead of those in the network.
 ``device``
     where the network runs: ``cpu``, ``cuda:0``.
 ``imgsz_height``, ``imgsz_width``
-    size of the input of a network that takes any; 0 for that of its training.
+    the input size of a network that takes any size; 0 for that of its training.
 ``threshold``, ``iou``, ``max_det``, ``classes``, ``enable``, ``max_rate``
-    which detections count, whether pictures are looked at, and how many a second at most (0: all). These may be set
-    while it runs. ``classes`` are names; none means all.
+    which detections count, whether images are processed, and how many a second at most (0: all). These may be set at
+    run time. ``classes`` are names; none means all.
 ``input_image_topic``, ``image_transport``, ``image_reliability``
-    where pictures come from: a topic of Image, or one that ends in ``/compressed``; 1 reliable, 2 best effort.
+    the source of images: a topic of Image, or one that ends in ``/compressed``; 1 reliable, 2 best effort.
 ``colours.NAME``, ``dictionary``, ``least_area``, ``part``, ``colour``
     settings of the detectors without networks.
 """
@@ -54,10 +56,10 @@ from linkwright.messages import get_message, get_service
 from linkwright.nodes.lazy import LazySubscriptions
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import bad_value, tell_unknown
-from linkwright.nodes.vision.detection_messages import MESSAGES, picture_message
+from linkwright.nodes.vision.detection_messages import MESSAGES, image_message
 from linkwright.nodes.vision.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
 from linkwright.nodes.vision.latest import LatestWorker
-from linkwright.nodes.vision.picture_watch import PictureWatch
+from linkwright.nodes.vision.picture_watch import ImageWatch
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.drawing import drawn
@@ -76,12 +78,12 @@ _SETTINGS = ("dictionary", "least_area", "part", "colour")
 _COLOURS = "colours"
 _CLASSES = "classes"
 _RATE_SLACK = 0.9
-"""The part of a period after which a picture is taken, so that one that comes a little early is not skipped."""
+"""The part of a period after which an image is taken, so that one that comes a little early is not skipped."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Task:
-    """A picture for the detector, its limits, and whether boxes are to be drawn."""
+    """An image for the detector, its limits, and whether boxes are to be drawn."""
 
     message: Any
     limits: Limits
@@ -89,10 +91,10 @@ class _Task:
 
 
 class DetectorNode(SingleNode):
-    """The running node. It ends by itself where there is no such detector, or none with such classes.
+    """The running node. It exits if there is no such detector, or if the detector lacks the classes.
 
     Attributes:
-        loaded: is done when the detector is there.
+        loaded: a future that is done when the detector is loaded.
 
     Raises:
         LinkwrightError: a parameter cannot have its value (NODE433, VISION109).
@@ -120,8 +122,8 @@ class DetectorNode(SingleNode):
         self._done: deque[Callable[[], None]] = deque()
         output = node.get_parameter(dialect.output_topic).value if dialect.output_topic else dialect.detections
         self._detections = node.create_publisher(get_message(dialect.message), output, _DEPTH)
-        image = get_message("sensor_msgs/msg/Image")
-        self._pictures = [node.create_publisher(image, topic, _DEPTH) for topic in dialect.debug_images]
+        message_class = get_message("sensor_msgs/msg/Image")
+        self._images = [node.create_publisher(message_class, topic, _DEPTH) for topic in dialect.debug_images]
         node.create_service(get_service("std_srvs/srv/SetBool"), "enable", self._on_enable)
         choose, waiting = get_service("yolo_msgs/srv/SetClasses"), MutuallyExclusiveCallbackGroup()
         node.create_service(choose, "set_classes", self._on_set_classes, callback_group=waiting)
@@ -130,7 +132,7 @@ class DetectorNode(SingleNode):
         self._finished = node.create_guard_condition(self._tell)
         self._lazy: LazySubscriptions | None = None
         load = partial(self._load, self._value(dialect.model), settings)
-        self._worker = LatestWorker(load, f"{node.get_name()} looks at pictures")
+        self._worker = LatestWorker(load, f"{node.get_name()} detector")
 
     def close(self) -> None:
         """End it."""
@@ -266,7 +268,7 @@ class DetectorNode(SingleNode):
         self._watch.came()
         if not self._value("enable") or self._is_too_early():
             return
-        draws = any(publisher.get_subscription_count() for publisher in self._pictures)
+        draws = any(publisher.get_subscription_count() for publisher in self._images)
         self._worker.offer(_Task(message, self._limits, draws))
 
     def _is_too_early(self) -> bool:
@@ -279,7 +281,7 @@ class DetectorNode(SingleNode):
     # --- in the worker's thread ----------------------------------------------------------------------------------
 
     def _load(self, model: str, options: DetectorOptions) -> Callable[[_Task], None] | None:
-        """Load the detector; a function that runs it on a picture."""
+        """Load the detector; a function that runs it on an image."""
         try:
             detector = make_detector(model, options)
         except LinkwrightError as error:
@@ -292,31 +294,31 @@ class DetectorNode(SingleNode):
         return partial(self._look, detector)
 
     def _look(self, detector: Detector, task: _Task) -> None:
-        """Detect objects in a picture."""
+        """Detect objects in an image."""
         try:
-            image = self._unpacker.image(task.message, self._source.transport)
-            picture = picture_of(image, self._ranges).rgb()
-            found = detector.detect(picture, task.limits)
-            picture_with_boxes = drawn(picture, found) if task.draws else None
+            message = self._unpacker.image(task.message, self._source.transport)
+            image = picture_of(message, self._ranges).rgb()
+            found = detector.detect(image, task.limits)
+            image_with_boxes = drawn(image, found) if task.draws else None
         except (BadImageError, LinkwrightError) as error:
             self._hand_over(partial(self._complain, str(error)))
         except Exception as error:  # noqa: BLE001 - of a detector that others may bring
             self._hand_over(partial(self._complain, str(_failure(error))))
         else:
-            self._hand_over(partial(self._publish, task.message.header, found, picture_with_boxes))
+            self._hand_over(partial(self._publish, task.message.header, found, image_with_boxes))
 
     def _hand_over(self, result: Callable[[], None]) -> None:
         self._done.append(result)
         self._finished.trigger()
 
-    # --- what comes of it, in the node's callbacks ---------------------------------------------------------------
+    # --- results, in the node's callbacks ------------------------------------------------------------------------
 
     def _tell(self) -> None:
         while self._done:
             self._done.popleft()()
 
     def _begin(self, detector: Detector) -> None:
-        """Start to take pictures."""
+        """Start to take images."""
         for note in detector.notes:
             self._node.get_logger().info(str(note))
         try:
@@ -326,9 +328,9 @@ class DetectorNode(SingleNode):
             return
         self._names = detector.names
         lazy = self._lazy = LazySubscriptions(
-            self._graph, self._node, [self._detections, *self._pictures], self._subscribe
+            self._graph, self._node, [self._detections, *self._images], self._subscribe
         )
-        self._watch = PictureWatch(self._node, self._source, self._qos, lambda: lazy.are_open, self.DIALECT.image_topic)
+        self._watch = ImageWatch(self._node, self._source, self._qos, lambda: lazy.are_open, self.DIALECT.image_topic)
         self.loaded.set_result(None)
 
     def _fail(self, error: LinkwrightError) -> None:
@@ -343,12 +345,12 @@ class DetectorNode(SingleNode):
     def _complain(self, problem: str) -> None:
         self._node.get_logger().error(problem, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
 
-    def _publish(self, header: Any, found: Detections, picture: NDArray[np.uint8] | None) -> None:
+    def _publish(self, header: Any, found: Detections, image: NDArray[np.uint8] | None) -> None:
         self._detections.publish(MESSAGES[self.DIALECT.message](header, found))
-        if picture is None:
+        if image is None:
             return
-        message = picture_message(header, picture)
-        for publisher in self._pictures:
+        message = image_message(header, image)
+        for publisher in self._images:
             if publisher.get_subscription_count():
                 publisher.publish(message)
 

@@ -13,22 +13,22 @@ VISION, YOLO = "vision_msgs/msg/Detection2DArray", "yolo_msgs/msg/DetectionArray
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """Names of parameters, empty for those that a node lacks, and of topics.
+    """The names of topics, and of parameters; empty for parameters that a node lacks.
 
     Attributes:
-        model: the parameter that has the ONNX file or the detector.
-        labels: that has the file of labels.
-        threshold: that has the least score.
+        model: the parameter with the ONNX file or the detector.
+        labels: the parameter with the file of labels.
+        threshold: the parameter with the least score.
         least_score: its default.
-        iou: that says how much boxes of a class may overlap.
+        iou: the parameter with the largest overlap of boxes of a class.
         overlap: its default.
-        most: that says how many detections a picture may have.
+        most: the parameter with the largest number of detections in an image.
         largest_number: its default.
-        image_topic: that has the topic of the pictures.
-        images: that topic where nothing else is said.
-        output_topic: the parameter that has the topic of detections.
-        detections: that topic where nothing else is said.
-        debug_images: topics of pictures with boxes.
+        image_topic: the parameter with the topic of images.
+        images: its default.
+        output_topic: the parameter with the topic of detections.
+        detections: its default.
+        debug_images: the topics of images with boxes.
         message: the type of detections.
     """
 

@@ -28,7 +28,7 @@ class Nav2Trip:
 
     @property
     def is_served(self) -> bool:
-        """Whether nav2's server is there."""
+        """Whether nav2's server is available."""
         return self._client.server_is_ready()
 
     @property
@@ -36,17 +36,17 @@ class Nav2Trip:
         """Whether a goal is active."""
         return self._trip is not None
 
-    def begin(self, frame: str, robot: tuple[float, float], thing: tuple[float, float], distance: float) -> None:
+    def begin(self, frame: str, robot: tuple[float, float], target: tuple[float, float], distance: float) -> None:
         """Send a goal: in front of an object, on the robot's side of it, facing it.
 
         Args:
             frame: of the places.
             robot: where the robot is, x and y in metres.
-            thing: where the thing is.
+            target: the position of the object.
             distance: between the middles of both in the end, metres.
         """
-        yaw = atan2(thing[1] - robot[1], thing[0] - robot[0])
-        way = max(0.0, hypot(thing[0] - robot[0], thing[1] - robot[1]) - distance)
+        yaw = atan2(target[1] - robot[1], target[0] - robot[0])
+        way = max(0.0, hypot(target[0] - robot[0], target[1] - robot[1]) - distance)
         goal = get_action(_ACTION).Goal()
         goal.pose.header.frame_id = frame
         goal.pose.header.stamp = self._node.get_clock().now().to_msg()

@@ -1,8 +1,8 @@
-"""object_seeker: seeks an object by its name, drives to it or follows it, and tells what it sees.
+"""object_seeker: seeks an object by its name, drives to it or follows it, and describes what it sees.
 
 ``vision/go_to`` and ``vision/follow`` take a name, perhaps with a colour (``red ball``, 红色的球), ``vision/stop``
-ends it; what comes of it is said on ``/voice/response``. ``vision/describe`` answers what is seen. Below each of the
-three are ``en`` and ``zh`` (``vision/go_to/zh``), to be answered in that language.
+ends it; the outcome is published on ``/voice/response``. ``vision/describe`` lists the visible objects. Each of the
+three has variants ``en`` and ``zh`` (``vision/go_to/zh``) for the language of the answer.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, start
 from linkwright.nodes.settings import bad_value, positive, tell_unknown
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.nodes.vision.nav2_trip import Nav2Trip
-from linkwright.nodes.vision.seen_things import SeenThings, Thing
+from linkwright.nodes.vision.seen_things import SeenObject, SeenObjects
 from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
 from linkwright.vision.places.words import LANGUAGES, Answer, Sighting, Wanted, answer, described, wanted
 
 _DEPTH = 10
 _PERIOD = 0.05
 _SAME_PLACE = 0.6
-"""Metres between two pictures of one thing whose id has changed."""
+"""Metres between two images of one object whose id has changed."""
 _SEEN_NOW_SECONDS = 1.0
 _SILENT_LASER_SECONDS = 1.0
 
@@ -37,10 +37,10 @@ _SILENT_LASER_SECONDS = 1.0
 class ObjectSeeker(SingleNode):
     """The running node.
 
-    Parameters: ``distance`` (from the robot's middle to the thing's nearest side, m), ``max_linear_velocity`` (m/s),
+    Parameters: ``distance`` (from the robot's middle to the object's nearest side, m), ``max_linear_velocity`` (m/s),
     ``max_angular_velocity`` (rad/s), ``lost_time`` (s), ``obstacle_distance`` (m), ``blocked_time`` (s),
-    ``robot_radius`` (m), ``base_frame``, ``fixed_frame``, ``use_nav2`` (go by ``navigate_to_pose`` once the thing is
-    seen, where that is served), ``language`` (en or zh; a request in Chinese is answered in Chinese anyway).
+    ``robot_radius`` (m), ``base_frame``, ``fixed_frame``, ``use_nav2`` (use ``navigate_to_pose`` once the object is
+    seen, if a server is available), ``language`` (en or zh; a request in Chinese is always answered in Chinese).
 
     Raises:
         LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
@@ -55,10 +55,10 @@ class ObjectSeeker(SingleNode):
             self._declare()
             tell_unknown(node)
         self._poses = FramePoses(node, "it is not known where the robot is:")
-        self._seen = SeenThings(node, self._poses, self._fixed)
+        self._seen = SeenObjects(node, self._poses, self._fixed)
         self._wanted: Wanted | None = None
         self._answers_in = self._language
-        self._target: Thing | None = None
+        self._target: SeenObject | None = None
         self._began_ns = 0
         self._scan: Any = None
         text = get_message("std_msgs/msg/String")
@@ -142,10 +142,13 @@ class ObjectSeeker(SingleNode):
         pose = self._poses.pose(self._fixed, self._base, 0)
         since = self._now_ns() - round(_SEEN_NOW_SECONDS * 1e9)
         if pose is None or self._seen.heard_ns is None or self._seen.heard_ns < since:
-            things = []
+            objects = []
         else:
-            things = [Sighting(thing.name, thing.colour, *_within(pose, thing)) for thing in self._seen.things]
-        response.success, response.message = True, described(things, language)
+            objects = [
+                Sighting(seen_object.name, seen_object.colour, *_within(pose, seen_object))
+                for seen_object in self._seen.objects
+            ]
+        response.success, response.message = True, described(objects, language)
         self._node.get_logger().info(response.message)
         return response
 
@@ -201,13 +204,13 @@ class ObjectSeeker(SingleNode):
             free=free,
         )
 
-    def _chosen(self, pose: Transform) -> Thing | None:
+    def _chosen(self, pose: Transform) -> SeenObject | None:
         """The seen object to drive to: the same as before, or else the nearest."""
         assert self._wanted is not None, "it is asked for while it seeks"
         fitting = [
-            thing
-            for thing in self._seen.things
-            if self._wanted.is_it(thing.name, thing.colour, thing.shape, thing.score)
+            seen_object
+            for seen_object in self._seen.objects
+            if self._wanted.is_it(seen_object.name, seen_object.colour, seen_object.shape, seen_object.score)
         ]
         before = self._target
         if before is not None:
@@ -243,8 +246,8 @@ class ObjectSeeker(SingleNode):
         self._response.publish(get_message("std_msgs/msg/String")(data=text))
 
 
-def _within(pose: Transform, thing: Thing) -> tuple[float, float]:
+def _within(pose: Transform, seen_object: SeenObject) -> tuple[float, float]:
     """The distance of an object ahead and to the left of the robot, metres."""
     x, y, _, *turn = invert(pose)
-    ahead, left, _ = rotate((turn[0], turn[1], turn[2], turn[3]), (thing.x, thing.y, 0.0))
+    ahead, left, _ = rotate((turn[0], turn[1], turn[2], turn[3]), (seen_object.x, seen_object.y, 0.0))
     return ahead + x, left + y

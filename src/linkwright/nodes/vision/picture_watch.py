@@ -1,4 +1,4 @@
-"""Diagnosing missing pictures: a wrong topic, another type, QoS, a camera that stopped."""
+"""Diagnosing missing images: a wrong topic, another type, QoS, a camera that stopped."""
 
 from __future__ import annotations
 
@@ -14,18 +14,17 @@ _IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 _MOST_TOPICS = 5
 
 
-class PictureWatch:
-    """Warns once when no picture has come for some seconds, and reports when they come again.
+class ImageWatch:
+    """Warns once when no image has arrived for some seconds, and reports when images resume.
 
-    After each time that they came again it waits twice as long, so that a camera that is slow is told of a few times
-    only.
+    The timeout doubles each time that images resume, so that a slow camera causes only a few warnings.
 
     Args:
-        node: logs, and knows who publishes.
-        source: where pictures are to come from.
-        qos: what the node asks for.
-        is_waiting: whether it takes pictures now.
-        topic_parameter: the parameter that has the topic; empty where it is only remapped.
+        node: the node that logs.
+        source: the source of the images.
+        qos: the QoS of the node's subscription.
+        is_waiting: returns whether the node subscribes to images now.
+        topic_parameter: the parameter with the topic; empty if the topic can only be remapped.
     """
 
     def __init__(
@@ -40,7 +39,7 @@ class PictureWatch:
         node.create_timer(_SECONDS, self._look, clock=clock)
 
     def came(self) -> None:
-        """Note that a picture came."""
+        """Note that an image came."""
         self._came = True
 
     def _look(self) -> None:
@@ -50,7 +49,7 @@ class PictureWatch:
             if came and self._told:
                 self._told = False
                 self._patience *= 2
-                self._node.get_logger().info(localized(phrase("pictures come now")))
+                self._node.get_logger().info(localized(phrase("images arrive now")))
             return
         self._quiet += 1
         if self._told or self._quiet < self._patience:
@@ -63,27 +62,27 @@ class PictureWatch:
             logger.warning(localized(hint))
 
     def _reason(self) -> tuple[Phrase, Phrase | None]:
-        """The reason why no pictures come, and a hint."""
+        """The reason why no images come, and a hint."""
         topic, wanted = self._source.topic, self._source.message_type
         publishers = self._node.get_publishers_info_by_topic(topic)
         if not publishers:
-            return phrase("no pictures come: nobody publishes '{topic}'", topic=topic), self._others()
+            return phrase("no images arrive: no node publishes '{topic}'", topic=topic), self._others()
         fitting = [publisher for publisher in publishers if publisher.topic_type == wanted]
         if not fitting:
             types = quoted_names(sorted({publisher.topic_type for publisher in publishers}))
             return phrase(
-                "no pictures come: '{topic}' has {types}, and not '{wanted}'", topic=topic, types=types, wanted=wanted
+                "no images arrive: '{topic}' has {types}, not '{wanted}'", topic=topic, types=types, wanted=wanted
             ), self._others()
         offered = {endpoint.qos_profile.reliability for endpoint in fitting}
         if self._qos.reliability is ReliabilityPolicy.RELIABLE and offered == {ReliabilityPolicy.BEST_EFFORT}:
             return phrase(
-                "no pictures come: '{topic}' is published with best effort, and asked for reliably", topic=topic
+                "no images arrive: '{topic}' is published best effort, and this node requests reliable", topic=topic
             ), phrase("set '{parameter}' to {value}", parameter="image_reliability", value=2)
         seconds = round(_SECONDS * self._quiet)
-        return phrase("no picture has come on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None
+        return phrase("no image has arrived on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None
 
     def _others(self) -> Phrase | None:
-        """The topics that have pictures."""
+        """The topics that have images."""
         passed = {self._source.topic, *(publisher.name for publisher in self._node.publishers)}
         topics = [
             name
@@ -95,8 +94,8 @@ class PictureWatch:
         names = quoted_names(topics[:_MOST_TOPICS])
         if self._topic_parameter:
             return phrase(
-                "there are pictures on {topics}; the parameter '{parameter}' names the topic",
+                "there are images on {topics}; set the topic with the parameter '{parameter}'",
                 topics=names,
                 parameter=self._topic_parameter,
             )
-        return phrase("there are pictures on {topics}; remap '{topic}'", topics=names, topic=self._source.topic)
+        return phrase("there are images on {topics}; remap '{topic}'", topics=names, topic=self._source.topic)

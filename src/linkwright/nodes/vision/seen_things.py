@@ -15,13 +15,13 @@ from linkwright.nodes.vision.detection_reading import VISION_FORM
 from linkwright.vision.places.colours import colour_of
 
 _DEPTH = 10
-_KEPT_PICTURES = 10
+_KEPT_IMAGES = 10
 _KEPT_COLOURS = 200
 _VOTES = 30
 
 
 @dataclass(frozen=True, slots=True)
-class Thing:
+class SeenObject:
     """A seen object.
 
     Attributes:
@@ -32,7 +32,7 @@ class Thing:
         radius: half of its width, metres.
         shape: its width by its height.
         score: of its detection.
-        seen_ns: the time of the picture, nanoseconds.
+        seen_ns: the time of the image, nanoseconds.
     """
 
     name: str
@@ -46,8 +46,8 @@ class Thing:
     seen_ns: int
 
 
-class SeenThings:
-    """Listens to detections with positions, and finds the colours of the objects in the pictures.
+class SeenObjects:
+    """Listens to detections with positions, and finds the colours of the objects in the images.
 
     Colours are those of the boxes that have the same id: topics ``tracking`` and ``image_raw``.
 
@@ -57,19 +57,19 @@ class SeenThings:
         fixed_frame: the frame of the things.
 
     Attributes:
-        things: those of the latest picture.
+        objects: those of the latest image.
         heard_ns: when it came, by the node's clock; None before the first.
     """
 
     def __init__(self, node: Node, poses: FramePoses, fixed_frame: str) -> None:
         self._node, self._poses, self._frame = node, poses, fixed_frame
-        self.things: list[Thing] = []
+        self.objects: list[SeenObject] = []
         self.heard_ns: int | None = None
-        self._pictures: deque[Any] = deque(maxlen=_KEPT_PICTURES)
+        self._images: deque[Any] = deque(maxlen=_KEPT_IMAGES)
         self._votes: OrderedDict[str, Counter[str]] = OrderedDict()
         self._ranges = RangeFinder()
         node.create_subscription(
-            get_message("sensor_msgs/msg/Image"), "image_raw", self._pictures.append, SENSOR_DATA_QOS
+            get_message("sensor_msgs/msg/Image"), "image_raw", self._images.append, SENSOR_DATA_QOS
         )
         node.create_subscription(get_message("vision_msgs/msg/Detection2DArray"), "tracking", self._look, _DEPTH)
         node.create_subscription(get_message("vision_msgs/msg/Detection3DArray"), "detections_3d", self._see, _DEPTH)
@@ -77,7 +77,7 @@ class SeenThings:
     def _look(self, message: Any) -> None:
         """Record the colours of objects with ids."""
         time_ns = message.header.stamp.nanoseconds
-        image = next((picture for picture in self._pictures if picture.header.stamp.nanoseconds == time_ns), None)
+        image = next((candidate for candidate in self._images if candidate.header.stamp.nanoseconds == time_ns), None)
         if image is None or not any(detection.id for detection in message.detections):
             return
         try:
@@ -100,7 +100,7 @@ class SeenThings:
     def _see(self, message: Any) -> None:
         self.heard_ns = self._node.get_clock().now().nanoseconds
         time_ns = message.header.stamp.nanoseconds
-        self.things = []
+        self.objects = []
         pose = self._poses.pose(self._frame, message.header.frame_id, time_ns) if message.detections else None
         if pose is None:
             return
@@ -112,4 +112,4 @@ class SeenThings:
             name, score = VISION_FORM.best(detection)
             size = detection.bbox.size
             shape = size.y / size.z if size.z > 0 else 1.0
-            self.things.append(Thing(name, detection.id, colour, x, y, size.y / 2, shape, score, time_ns))
+            self.objects.append(SeenObject(name, detection.id, colour, x, y, size.y / 2, shape, score, time_ns))

@@ -1,8 +1,8 @@
-"""tracking_node: gives detected objects ids that stay from picture to picture.
+"""tracking_node: assigns ids to detected objects that persist from image to image.
 
-Source: yolo_ros 4 (the executable, the topics ``detections`` and ``tracking``); its parameters are in a file of
-ByteTrack's there, and parameters of the node here. Different on purpose: it needs no pictures, and both topics are
-vision_msgs/msg/Detection2DArray, but for the node that goes by the name in yolo_ros.
+Source: yolo_ros 4 (the executable, the topics ``detections`` and ``tracking``); its parameters are in a ByteTrack file
+there, and parameters of the node here. Deliberate differences: it needs no images, and both topics are
+vision_msgs/msg/Detection2DArray, except in the node with yolo_ros's own name.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from linkwright.vision.places.tracker import Tracker, TrackerSettings
 
 _ANY = ParameterDescriptor(dynamic_typing=True)
 _DEPTH = 10
-_PICTURES_A_SECOND = 30.0
-"""The rate of pictures in which ``track_buffer`` counts."""
+_IMAGES_PER_SECOND = 30.0
+"""The rate of images in which ``track_buffer`` counts."""
 
 
 class TrackingNode(SingleNode):
     """The running node.
 
     Parameters: ``track_high_thresh``, ``track_low_thresh`` and ``new_track_thresh`` (scores), ``match_thresh`` (1 - IoU
-    at most), ``track_buffer`` (how long a thing is waited for, in pictures of 1/30 s), ``min_hits`` (pictures in a row
-    before a thing gets an id).
+    at most), ``track_buffer`` (how long an object is waited for, in images of 1/30 s), ``min_hits`` (images in a row
+    before an object gets an id).
 
     Raises:
         LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
@@ -45,7 +45,7 @@ class TrackingNode(SingleNode):
                 node.declare_parameter(name, None, _ANY)
             self._tracker = Tracker(self._settings())
             tell_unknown(node)
-        self._array = get_message(self.FORM.pictures)
+        self._array = get_message(self.FORM.images)
         self._publisher = node.create_publisher(self._array, "tracking", _DEPTH)
         node.create_subscription(self._array, "detections", self._see, _DEPTH)
 
@@ -56,7 +56,7 @@ class TrackingNode(SingleNode):
             low=self._share("track_low_thresh", usual.low),
             new=self._share("new_track_thresh", usual.new),
             match=self._share("match_thresh", usual.match),
-            patience=self._positive("track_buffer", round(usual.patience * _PICTURES_A_SECOND)) / _PICTURES_A_SECOND,
+            patience=self._positive("track_buffer", round(usual.patience * _IMAGES_PER_SECOND)) / _IMAGES_PER_SECOND,
             births=int(self._positive("min_hits", usual.births)),
         )
 
@@ -82,4 +82,4 @@ class YoloTrackingNode(TrackingNode):
     """tracking_node of yolo_ros: both topics are yolo_msgs/msg/DetectionArray."""
 
     FORM = YOLO_FORM
-    IGNORED = (*TrackingNode.IGNORED, "image_reliability")  # it needs no pictures
+    IGNORED = (*TrackingNode.IGNORED, "image_reliability")  # it needs no images

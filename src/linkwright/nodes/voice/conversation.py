@@ -28,18 +28,18 @@ from linkwright.speech.commands.command_set import ANY, CommandSet, Understood, 
 
 
 class Conversation:
-    """Carries commands out.
+    """Executes commands and answers them.
 
     Args:
-        node: whose it is.
-        commands: those that are understood.
-        language: of the answers, until something was said in another.
+        node: the node.
+        commands: the commands.
+        language: the language of answers, until the user speaks another.
         driver: moves the robot.
-        requests: asks others.
-        patience: s that a question waits for its answer.
-        tell_command: told each command that is carried out: its intent, and ``slot=value`` for what was said in slots,
-            in m, rad, s and m/s.
-        say: told what the robot answers.
+        requests: calls services and actions of other nodes.
+        patience: the timeout of a question, s.
+        tell_command: called with each command that is executed: its intent, and ``slot=value`` for each filled slot, in
+            m, rad, s and m/s.
+        say: called with each answer of the robot.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class Conversation:
         """Stop everything.
 
         Args:
-            text: what was said, which is answered; empty where nobody said anything.
+            text: the spoken text to answer; empty if there was none.
         """
         self._forget()
         self._driver.stop()
@@ -171,12 +171,12 @@ class Conversation:
         elif isinstance(action, GoTo):
             name = str(values[action.place.name]) if isinstance(action.place, Slot) else action.place
             if not self._requests.send_pose(action.action, self._commands.places[name]):
-                return phrase("I cannot: nobody serves '{name}'", name=action.action)
+                return phrase("I cannot: no node serves '{name}'", name=action.action)
         elif isinstance(action, SendGoal):
             if not self._requests.send_goal(action, values):
-                return phrase("I cannot: nobody serves '{name}'", name=action.action)
+                return phrase("I cannot: no node serves '{name}'", name=action.action)
         elif isinstance(action, CallService) and not self._requests.call(action, values):
-            return phrase("I cannot: nobody serves '{name}'", name=action.name)
+            return phrase("I cannot: no node serves '{name}'", name=action.name)
         return None
 
     def _make_way(self, found: Understood) -> None:
@@ -185,7 +185,7 @@ class Conversation:
         self._requests.leave(but=action.action if isinstance(action, GoTo) else "")
         if not isinstance(action, Drive) and self._driver.is_moving:
             self._driver.stop()
-        if not isinstance(action, Publish):  # whom it tells may be told to begin
+        if not isinstance(action, Publish):  # its subscriber may start on it
             self._tell_others()
 
     def _tell_others(self) -> None:
@@ -199,4 +199,4 @@ class Conversation:
 
     def _unanswered(self) -> None:
         self._forget()
-        self.answer(phrase("nobody answers, so I leave it"))
+        self.answer(phrase("there is no answer, so I leave it"))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.speech.engine import Heard
 
-SAY_IT_AGAIN = phrase("I did not hear all of that: say it again")
+SAY_IT_AGAIN = phrase("I did not hear all of that: please repeat")
 
 _MISSED = 3
 """Presses in a row without any command after which enrolling is proposed."""
@@ -19,9 +19,9 @@ class _Press:
     """The results of one press.
 
     Attributes:
-        is_settled: something of it was done or answered.
-        has_gaps: sound of it was lost.
-        unknown: what was heard last that is none of the commands.
+        is_settled: whether a command of it was executed or answered.
+        has_gaps: whether sound of it was lost.
+        unknown: the last recognized text that is not a command.
     """
 
     is_settled: bool = False
@@ -64,7 +64,7 @@ class Presses:
             self._presses[-1].has_gaps = True
 
     def note_unknown(self, heard: Heard) -> None:
-        """Record speech that is no command."""
+        """Record speech that is not a command."""
         if self._presses:
             self._presses[0].unknown = heard
 
@@ -80,7 +80,7 @@ class Presses:
         self._missed += 1
         self.proposes_enrolling = self._can_enrol and self._missed % _MISSED == 0
         if self.proposes_enrolling:
-            return phrase("I know none of what you say: enrol your words in the Voice panel, here where you speak")
+            return phrase("I do not know your words: enrol them in the Voice panel, in the room where you speak")
         if press.unknown.nearest:
             return phrase(
                 "I heard something that is none of the commands: '{text}' is the nearest", text=press.unknown.nearest

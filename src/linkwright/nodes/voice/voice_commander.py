@@ -52,14 +52,13 @@ _NEARLY = 0.5
 class VoiceCommander(SingleNode):
     """The running node.
 
-    Parameters: ``engine`` (empty: only texts are taken), ``language``, ``model``, ``words_file`` (of the engine
-    ``enrolled``), ``commands_file``, ``confidence`` (0 to 1: what is less certain is not done), ``open_listening``,
-    ``speed`` (m/s), ``turn_speed`` (rad/s), ``silence_timeout`` (s after which a robot that drives without an end
-    stands still, when nobody says anything), ``confirmation_timeout`` (s), ``stamped`` (not set: what the subscribers
-    of ``cmd_vel`` take), ``frame_id``.
+    Parameters: ``engine`` (empty: only texts are accepted), ``language``, ``model``, ``words_file`` (of the engine
+    ``enrolled``), ``commands_file``, ``confidence`` (0 to 1: less certain commands are not executed),
+    ``open_listening``, ``speed`` (m/s), ``turn_speed`` (rad/s), ``silence_timeout`` (s of silence after which an
+    endless drive stops), ``confirmation_timeout`` (s), ``stamped`` (not set: follows the subscribers of ``cmd_vel``),
+    ``frame_id``.
 
-    A stop is done at once, from what the engine has heard so far, however uncertain, while a button is held or the
-    robot moves.
+    A stop is executed at once, on a partial and uncertain result, while a button is held or the robot moves.
 
     Raises:
         LinkwrightError: VOICE301 to VOICE306, the file of commands; NODE433, a parameter cannot have its value.
@@ -233,7 +232,7 @@ class VoiceCommander(SingleNode):
         elif lost and (self._is_addressed or (heard.text and is_certain)):
             self._conversation.answer(SAY_IT_AGAIN)
         elif heard.text and not is_certain and self._is_addressed and heard.confidence >= _NEARLY * self._confidence:
-            self._conversation.answer(phrase("I am not sure that I heard '{text}': say it again", text=heard.text))
+            self._conversation.answer(phrase("I am not sure that I heard '{text}': please repeat", text=heard.text))
         else:
             return bool(heard.text) and is_certain  # it was not understood, and that was answered
         return True
@@ -304,7 +303,7 @@ class VoiceCommander(SingleNode):
     def _silent(self) -> None:
         self._silence.cancel()
         if self._driver.is_endless:
-            self._conversation.rest(phrase("nobody says anything, so I stop"))
+            self._conversation.rest(phrase("I hear nothing, so I stop"))
 
     def _look(self) -> None:
         """Stop when the source of sound was lost while its commands had the robot drive on."""
@@ -314,11 +313,13 @@ class VoiceCommander(SingleNode):
     def _deaf(self) -> None:
         if self._spoken and self._conversation.is_busy:
             self._conversation.stop()
-            self._conversation.answer(phrase("I hear nobody any more, so I stop"))
+            self._conversation.answer(phrase("the audio source is gone, so I stop"))
 
     def _lost(self, publisher: EndpointInfo) -> None:
         if not self._spoken and self._conversation.is_busy:
             self._conversation.stop()
             self._node.get_logger().warning(
-                localized(phrase("who commanded by '{topic}' was lost, so the robot stops", topic=publisher.name))
+                localized(
+                    phrase("the publisher of commands on '{topic}' was lost, so the robot stops", topic=publisher.name)
+                )
             )

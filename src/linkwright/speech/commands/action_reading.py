@@ -38,13 +38,13 @@ class ActionReader:
     """Reads the action of one command.
 
     Args:
-        document: it is in.
-        keys: of the command.
-        places: those of the file.
-        samples: a value for each slot that all phrases of the command have.
+        document: the document with the command.
+        keys: the keys of the command.
+        places: the places of the file.
+        samples: an example value for each slot that all phrases of the command have.
 
     Attributes:
-        KINDS: the keys that say what a command does.
+        KINDS: the keys that define the action of a command.
     """
 
     KINDS: ClassVar[tuple[str, ...]] = (
@@ -97,16 +97,16 @@ class ActionReader:
         limits = [name for name in ("duration", "distance", "angle") if keys.node(name) is not None]
         x, y, turn = (keys.number(name) for name in ("x", "y", "turn"))
         if not (x or y or turn):
-            raise keys.error(phrase("'drive' moves nothing: give 'x', 'y' or 'turn'"))
+            raise keys.error(phrase("'drive' has no motion: give 'x', 'y' or 'turn'"))
         if len(limits) > 1:
             message = phrase(
                 "'drive' ends by '{first}' or by '{second}', not by both", first=limits[0], second=limits[1]
             )
             raise keys.error(message)
         if limits == ["distance"] and not (x or y):
-            raise keys.error(phrase("a turn has no 'distance': give 'angle'"), keys.node("distance"))
+            raise keys.error(phrase("a rotation has no 'distance': give 'angle'"), keys.node("distance"))
         if limits == ["angle"] and not turn:
-            raise keys.error(phrase("a way that is straight has no 'angle': give 'distance'"), keys.node("angle"))
+            raise keys.error(phrase("a straight drive has no 'angle': give 'distance'"), keys.node("angle"))
         amounts = {name: self._amount(keys, name) for name in limits}
         return Drive(x, y, turn, **amounts)
 
@@ -215,16 +215,16 @@ class ActionReader:
         return value
 
     def _slot(self, text: str, keys: Keys, key: str) -> Slot | None:
-        """The slot that a text stands for.
+        """Return the slot that a text names.
 
         Raises:
-            LinkwrightError: a phrase of the command does not have it.
+            LinkwrightError: a phrase of the command lacks it.
         """
         match = _SLOT.fullmatch(text)
         if match is None:
             return None
         if match[1] not in self._samples:
-            message = phrase("'{slot}' is not said in every phrase of {what}", slot=text, what=self._keys.what)
+            message = phrase("'{slot}' does not occur in every phrase of {what}", slot=text, what=self._keys.what)
             raise keys.error(message, keys.node(key))
         return Slot(match[1])
 

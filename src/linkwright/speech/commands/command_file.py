@@ -64,9 +64,9 @@ class _Reader:
         top = Keys(self._document, self._document.root, phrase("a file of commands"), _TOP)
         commands = top.mapping("commands")
         if commands is None:
-            raise top.error(phrase("'commands' is missing: it says what the robot can be told"))
+            raise top.error(phrase("'commands' is missing: it lists the commands for the robot"))
         if not commands:
-            message = phrase("there is no command in 'commands': it says what the robot can be told")
+            message = phrase("there is no command in 'commands': it lists the commands for the robot")
             raise top.error(message, top.node("commands"))
         places = {name: self._place(name, node) for name, node in self._entries(top, "places")}
         for name, node in self._entries(top, "objects"):
@@ -98,18 +98,18 @@ class _Reader:
                 words = words_of(text)
                 other = self._names[slot].setdefault(words, name)
                 if other != name:
-                    message = phrase("'{text}' is a name of '{other}', too", text=text, other=other)
+                    message = phrase("'{text}' is also a name of '{other}'", text=text, other=other)
                     raise self._error("VOICE304", message, where)
 
     def _add_said(self, slot: str, node: yaml.Node, top: Keys) -> None:
         if slot not in SAYABLE:
             raise top.error(
-                phrase("there is no slot '{slot}' of quantities", slot=slot), node, did_you_mean(slot, list(SAYABLE))
+                phrase("there is no quantity slot '{slot}'", slot=slot), node, did_you_mean(slot, list(SAYABLE))
             )
         for language, each in self._texts(node).items():
             for text, where in each:
                 if quantity(slot, words_of(text)) is None:
-                    raise self._document.error(phrase("'{text}' is no {slot}", text=text, slot=slot), where)
+                    raise self._document.error(phrase("'{text}' is not a value of {slot}", text=text, slot=slot), where)
             usual = SAYABLE[slot].get(language, ())
             self._said.setdefault(slot, dict(SAYABLE[slot]))[language] = (*usual, *(text for text, _ in each))
 
@@ -117,7 +117,7 @@ class _Reader:
         what = phrase("the command '{intent}'", intent=intent)
         keys = Keys(self._document, node, what, ("phrases", "confirm", "response", "moves", *ActionReader.KINDS))
         if keys.node("phrases") is None:
-            raise keys.error(phrase("{what} has no 'phrases': nobody can say it", what=what))
+            raise keys.error(phrase("{what} has no 'phrases': it cannot be spoken", what=what))
         phrases = self._phrases(keys.node("phrases"), tuple(self._names), intent)
         every = [set(template.slots) for phrase in phrases.values() for template in phrase]
         slots = set.intersection(*every) if every else set()
@@ -157,7 +157,7 @@ class _Reader:
         for template in read:
             other = self._seen.setdefault((template.pieces, template.slots), intent)
             if intent and other != intent:
-                message = phrase("'{text}' is said for '{other}', too", text=template.text, other=other)
+                message = phrase("'{text}' is also a phrase of '{other}'", text=template.text, other=other)
                 raise self._error("VOICE304", message, where)
         return read
 

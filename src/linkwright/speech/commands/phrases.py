@@ -1,6 +1,6 @@
 """Phrases with slots: ``turn left {angle}``, ``[go|drive] to [the] {place}``.
 
-What stands in brackets may be left out, and of what has a bar between it one is said.
+Words in brackets are optional; a bar separates alternatives.
 """
 
 from __future__ import annotations
@@ -53,10 +53,10 @@ class Template:
         return self._rest(words, 0, names)
 
     def spoken(self, said: Mapping[str, Sequence[str]]) -> Iterator[str]:
-        """All phrases that it stands for, with all values of its slots.
+        """Yield all phrases of the template, with all values of its slots.
 
         Args:
-            said: slot -> what can be said in it.
+            said: slot -> its possible values.
         """
         for chosen in product(*(said.get(slot, ()) for slot in self.slots)):
             text = self.text
@@ -97,17 +97,17 @@ def templates(text: str, slots: Sequence[str]) -> list[Template]:
     found = []
     for plain in _without_brackets(text):
         if re.search(r"[\[\]{}]", _SLOT.sub("", plain)):
-            raise TemplateError(phrase("a bracket or brace is not closed, or lies in another one"))
+            raise TemplateError(phrase("a bracket or brace is not closed, or is inside another one"))
         used = tuple(_SLOT.findall(plain))
         for slot in used:
             if slot not in SAYABLE and slot not in slots:
                 known = ", ".join([*SAYABLE, *slots])
                 raise TemplateError(phrase("there is no slot '{slot}'; there are {known}", slot=slot, known=known))
         if len(set(used)) < len(used):
-            raise TemplateError(phrase("a slot is there twice"))
+            raise TemplateError(phrase("a slot occurs twice"))
         pieces = tuple(words_of(piece) for piece in _SLOT.split(plain)[::2])
         if not any(pieces):
-            raise TemplateError(phrase("it needs a word that is no slot"))
+            raise TemplateError(phrase("it needs a word outside of slots"))
         found.append(Template(" ".join(plain.split()), pieces, used))
     return found
 

@@ -41,7 +41,7 @@ class Keys:
                 hint = did_you_mean(name, names) or phrase("it has {known}", known=", ".join(names))
                 raise self.error(phrase("{what} has no '{key}'", what=what, key=name), key, hint)
             if name in self._values:
-                raise self.error(phrase("'{key}' is there twice", key=name), key)
+                raise self.error(phrase("'{key}' occurs twice", key=name), key)
             self._values[name] = value
 
     @classmethod
@@ -56,7 +56,7 @@ class Keys:
         return list(self._values)
 
     def node(self, key: str) -> yaml.Node | None:
-        """The node under a key; None without one."""
+        """Return the node under a key; None if there is none."""
         node = self._values.get(key)
         return None if node is None or node.tag == _NULL else node
 

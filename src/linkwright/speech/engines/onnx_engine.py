@@ -2,9 +2,9 @@
 
 Its input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1; its output ``[1, classes]``, scores or
 probabilities. The metadata ``names`` has the classes, as JSON (a list, or an object of numbers and names) or with
-commas between them. Classes that are none of the phrases, such as ``background``, stand for all other sound.
+commas between them. Classes that are none of the phrases, such as ``background``, represent all other sound.
 
-What is said between two silences is cut to ``n`` samples around its middle, or filled up with silence on both sides.
+Speech between two silences is cut to ``n`` samples around its middle, or padded with silence on both sides.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from linkwright.speech.sound.spectra import HOP, MelFrames
 LEAST_PROBABILITY = 0.6
 """The least probability of a class that counts."""
 
-_BEFORE = RATE // 5  # samples kept from before somebody speaks
-_LONGEST = 10 * RATE  # of what is kept
+_BEFORE = RATE // 5  # samples kept from before speech starts
+_LONGEST = 10 * RATE  # the most samples kept
 _FULL = 32_768.0
 
 
@@ -146,6 +146,6 @@ def _names(text: str) -> tuple[str, ...]:
 
 
 def _unfit(path: Path, reason: Phrase) -> LinkwrightError:
-    message = phrase("'{path}' is no keyword spotter: {reason}", path=path, reason=reason)
+    message = phrase("'{path}' is not a keyword spotter: {reason}", path=path, reason=reason)
     hint = phrase("it takes 16 kHz sound [1, n] float32, gives [1, classes], and names them in its metadata 'names'")
     return LinkwrightError(Diagnostic("VOICE104", message, hint=hint))

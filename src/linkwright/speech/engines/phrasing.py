@@ -53,7 +53,7 @@ class Phrasing:
                 found.setdefault(tuple(words), each)
         if missing:
             message = phrase("'{model}' does not know {words}", model=model, words=quoted_names(missing))
-            hint = phrase("say it in other words, or use the engine 'enrolled', which needs no vocabulary")
+            hint = phrase("use other words, or the engine 'enrolled', which needs no vocabulary")
             raise LinkwrightError(Diagnostic("VOICE103", message, hint=hint))
         return cls(found)
 

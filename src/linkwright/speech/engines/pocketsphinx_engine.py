@@ -1,8 +1,7 @@
 """The engine ``pocketsphinx``: a grammar of phrases; its wheel carries a model of American English.
 
-The grammar has nothing for other speech: a quarter of what is none of the phrases is taken for one of them in our
-measurements, and more in noise. So it is an engine for push-to-talk, and Vosk or enrolled words are better where they
-can be had.
+The grammar has no model of other speech: in our measurements a quarter of other utterances was recognized as one of the
+phrases, and more in noise. So it is an engine for push-to-talk; Vosk or enrolled words are better where available.
 """
 
 from __future__ import annotations
@@ -25,16 +24,16 @@ _GRAMMAR = "phrases"
 _MODEL_FILES = ("mdef", "means", "variances", "transition_matrices")
 _FILLERS = ("<", "[", "(")  # how pocketsphinx's names of silence and noise begin, and of no word at all
 _USUAL_FIT = -8.0
-"""The score that all of 72 phrases exceeded that were recognised rightly; of other sounds a quarter did."""
+"""The score that all of 72 correctly recognized phrases exceeded, and a quarter of other sounds."""
 
-_LEAST = 1e-300  # of what pocketsphinx gives as a number that may be too small for one
+_LEAST = 1e-300  # pocketsphinx may return a probability that underflows
 
 
 class PocketsphinxEngine(SpeechEngine):
-    """Recognises phrases by pocketsphinx; confidences tell how well sounds fit the words, 0.5 for the usual fit.
+    """Recognises phrases with pocketsphinx; a confidence rates how well sounds fit the words, 0.5 for the usual fit.
 
-    The probability that pocketsphinx itself gives says nothing: it is shared among all ways through the grammar that
-    sound alike, and a fifth of what was said clearly had less than 0.1.
+    The probability of pocketsphinx itself is useless: it is shared among all paths through the grammar that sound
+    alike, and a fifth of clear phrases had less than 0.1.
 
     Raises:
         LinkwrightError: VOICE102 pocketsphinx is not installed; VOICE103 the dictionary lacks a word; VOICE104 the
@@ -149,7 +148,7 @@ def _decoder(pocketsphinx: Any, folder: Path | None) -> Any:
     try:
         return pocketsphinx.Decoder(**settings)
     except (RuntimeError, ValueError) as error:
-        message = phrase("pocketsphinx cannot begin: {reason}", reason=foreign(error))
+        message = phrase("pocketsphinx cannot start: {reason}", reason=foreign(error))
         raise LinkwrightError(Diagnostic("VOICE104", message)) from None
 
 

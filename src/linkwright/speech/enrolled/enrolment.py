@@ -26,16 +26,16 @@ def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> 
     """Add a recording of a word, if it is usable.
 
     Args:
-        words: gets the take, unless a finding is an error.
-        name: the phrase that the word stands for.
-        samples: a recording with the word in it once, and best some tenths of a second of silence around it.
-        has_gaps: some of the sound is known to be lost.
+        words: the words that receive the take, unless a finding is an error.
+        name: the phrase of the word.
+        samples: a recording that contains the word once, preferably with some tenths of a second of silence around it.
+        has_gaps: whether some of the sound was lost.
 
     Returns:
-        What is wrong with it. Errors, for which it is not taken: VOICE204 the name cannot be used; VOICE205 nothing is
-        heard, or too little above the noise; VOICE206 it is too short or too long; VOICE207 it is overdriven;
-        VOICE208 it is unlike what was said for the word before; VOICE211 its beginning or its end is cut off; VOICE212
-        the sound has gaps. A warning: VOICE209 it sounds much like another word.
+        The findings. Errors, which reject the recording: VOICE204 the name cannot be used; VOICE205 nothing is audible,
+        or too little above the noise; VOICE206 it is too short or too long; VOICE207 it is clipped; VOICE208 it differs
+        from the earlier takes of the word; VOICE211 its beginning or its end is cut off; VOICE212 the sound has gaps. A
+        warning: VOICE209 it sounds much like another word.
     """
     reason = name_problem(name)
     if reason is not None:
@@ -46,7 +46,9 @@ def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> 
     if has_gaps:
         message = phrase("the sound that was recorded for '{name}' has gaps", name=name)
         return (
-            _refused("VOICE212", message, phrase("say it again; the machine was too busy to take all of the sound")),
+            _refused(
+                "VOICE212", message, phrase("record it again; the machine was too busy to record all of the sound")
+            ),
         )
     powers = mel_frames(samples)
     first, last, noise = speech_span(powers)
@@ -54,13 +56,13 @@ def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> 
     if finding is None and (first < _EDGE or last > len(powers) - _EDGE):
         finding = _refused(
             "VOICE211",
-            phrase("what was said for '{name}' begins or ends where the recording does", name=name),
+            phrase("the word recorded for '{name}' is cut off at the beginning or end", name=name),
             phrase("leave some tenths of a second of silence before and after the word"),
         )
     if finding is None and np.quantile(_above(powers[first:last], noise), 0.9) < _LEAST_ABOVE_NOISE:
         finding = _refused(
             "VOICE205",
-            phrase("'{name}' is hardly louder than what is heard beside it", name=name),
+            phrase("'{name}' is hardly louder than the background", name=name),
             phrase("speak louder or nearer to the microphone, or where it is quieter"),
         )
     if finding is not None:
@@ -81,8 +83,8 @@ def _compared(words: Words, name: str, take: Take) -> Diagnostic | None:
     if own > _UNLIKE * backwards:
         return _refused(
             "VOICE208",
-            phrase("what was said for '{name}' is unlike what was said for it before", name=name),
-            phrase("say it again as before, or remove the word and enrol it anew"),
+            phrase("the recording for '{name}' differs from its earlier ones", name=name),
+            phrase("speak it as before, or remove the word and enrol it again"),
         )
     other = min(costs, key=lambda one: costs[one], default=name)
     if other != name and own > _MUCH_ALIKE * costs[other]:
@@ -110,29 +112,33 @@ def _unfit(name: str, samples: Samples, first: int, last: int) -> Diagnostic | N
     if loudest < _QUIETEST:
         return _refused(
             "VOICE205",
-            phrase("nothing is heard in what was recorded for '{name}'", name=name),
-            phrase("see that the right microphone is chosen and not muted, and speak louder"),
+            phrase("there is no audible word in the recording for '{name}'", name=name),
+            phrase("check that the right microphone is selected and not muted, and speak louder"),
         )
     if last - first < _SHORTEST:
         return _refused(
             "VOICE206",
             phrase(
-                "what was said for '{name}' is too short: {seconds} s", name=name, seconds=f"{(last - first) / 100:.2f}"
+                "the word recorded for '{name}' is too short: {seconds} s",
+                name=name,
+                seconds=f"{(last - first) / 100:.2f}",
             ),
-            phrase("words of two syllables and more are told apart best"),
+            phrase("words of two or more syllables are recognized best"),
         )
     if last - first > _LONGEST:
         return _refused(
             "VOICE206",
             phrase(
-                "what was said for '{name}' is too long: {seconds} s", name=name, seconds=f"{(last - first) / 100:.1f}"
+                "the word recorded for '{name}' is too long: {seconds} s",
+                name=name,
+                seconds=f"{(last - first) / 100:.1f}",
             ),
             phrase("say the word once, within {seconds} s", seconds=_LONGEST // 100),
         )
     if np.mean(np.abs(said) >= _CLIPPED_AT) > _CLIPPED_SHARE:
         return _refused(
             "VOICE207",
-            phrase("what was said for '{name}' is overdriven: its loudest parts are cut off", name=name),
+            phrase("the recording for '{name}' is clipped: its loudest parts are cut off", name=name),
             phrase("speak more softly or farther from the microphone, or turn its level down"),
         )
     return None

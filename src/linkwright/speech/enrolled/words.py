@@ -70,7 +70,7 @@ class Words:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The words: the phrases that they stand for."""
+        """The words, by their phrases."""
         return tuple(self._takes)
 
     def takes(self, name: str) -> tuple[Take, ...]:
@@ -82,7 +82,7 @@ class Words:
         self._takes[name] = (*self.takes(name), take)[-MOST_TAKES:]
 
     def remove(self, name: str) -> None:
-        """Remove a word and all of its takes; an unknown one is no error."""
+        """Remove a word and all of its takes; an unknown word is ignored."""
         self._takes.pop(name, None)
 
     @classmethod
@@ -90,7 +90,7 @@ class Words:
         """Read the words of a file.
 
         Raises:
-            LinkwrightError: VOICE202 it cannot be read; VOICE203 it is no file of words, or it is damaged.
+            LinkwrightError: VOICE202 it cannot be read; VOICE203 it is not a file of words, or it is damaged.
         """
         shown = display_path(Path(path))
         try:
@@ -99,12 +99,12 @@ class Words:
             message = phrase("cannot read '{path}': {reason}", path=shown, reason=foreign(error.strerror))
             raise LinkwrightError(Diagnostic("VOICE202", message, hint=missing_file_hint(Path(path)))) from None
         except UnicodeDecodeError:
-            raise _damaged(shown, phrase("it is no text")) from None
+            raise _damaged(shown, phrase("it is not a text file")) from None
         try:
             document = json.loads(text)
         except json.JSONDecodeError as error:
             place = Span(shown, error.lineno, error.colno, error.lineno, error.colno)
-            raise _damaged(shown, phrase("it is no JSON: {reason}", reason=foreign(error.msg)), place) from None
+            raise _damaged(shown, phrase("it is not JSON: {reason}", reason=foreign(error.msg)), place) from None
         except RecursionError:
             raise _damaged(shown, phrase("it is nested too deeply")) from None
         return cls(_words(document, shown))
@@ -166,12 +166,12 @@ def _words(document: Any, shown: str) -> dict[str, tuple[Take, ...]]:
         )
     words = document.get("words")
     if not isinstance(words, list) or len(words) > MOST_WORDS:
-        raise _damaged(shown, phrase("it holds no list of words, or more than {most}", most=MOST_WORDS))
+        raise _damaged(shown, phrase("it contains no list of words, or more than {most}", most=MOST_WORDS))
     found: dict[str, tuple[Take, ...]] = {}
     for number, word in enumerate(words, 1):
         name = word.get("name") if isinstance(word, dict) else None
         if not isinstance(name, str) or name_problem(name) is not None or name in found:
-            raise _damaged(shown, phrase("word {number} has no name, or one that was there before", number=number))
+            raise _damaged(shown, phrase("word {number} has no name, or the name of an earlier word", number=number))
         takes = word.get("takes")
         if not isinstance(takes, list) or not 1 <= len(takes) <= MOST_TAKES:
             raise _damaged(
@@ -195,6 +195,6 @@ def _take(take: Any, name: str, shown: str) -> Take:
 
 
 def _damaged(shown: str, why: Phrase, place: Span | None = None) -> LinkwrightError:
-    message = phrase("'{path}' cannot be taken as a file of enrolled words: {why}", path=shown, why=why)
+    message = phrase("'{path}' cannot be read as a file of enrolled words: {why}", path=shown, why=why)
     hint = phrase("put a copy in its place, or remove it and enrol the words again")
     return LinkwrightError(Diagnostic("VOICE203", message, place, hint=hint))

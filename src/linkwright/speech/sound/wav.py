@@ -38,10 +38,10 @@ class _Form:
 def read_wav(path: str | os.PathLike[str]) -> Samples:
     """Read a WAV file: PCM of 8 to 32 bits or floating point, channels averaged, resampled to `RATE`.
 
-    A file that was cut off, as by a recorder that was killed, gives what is there.
+    A truncated file, as of a recorder that was killed, gives its remaining samples.
 
     Raises:
-        LinkwrightError: VOICE401 it cannot be read; VOICE402 it is no WAV file, or one in a form that is not read.
+        LinkwrightError: VOICE401 it cannot be read; VOICE402 it is not a WAV file, or its format is not supported.
     """
     shown = display_path(Path(path))
     try:
@@ -83,7 +83,7 @@ def parse_wav(data: bytes, name: str) -> Samples:
     frame = form.channels * form.bits // 8
     values = _values(sound[: len(sound) // frame * frame], form).reshape(-1, form.channels)
     if not np.isfinite(values).all():
-        raise _no_wav(name, phrase("some of its samples are infinite, or no numbers"))
+        raise _no_wav(name, phrase("some of its samples are infinite or not numbers"))
     return resample(values.mean(axis=1), form.rate)
 
 
@@ -120,7 +120,7 @@ def _chunks(data: bytes, name: str) -> tuple[_Form, bytes]:
             form = _Form(tag, channels, rate, bits)
         elif kind == b"data":
             if form is None:
-                raise _no_wav(name, phrase("its samples come before what says their form"))
+                raise _no_wav(name, phrase("its samples come before the chunk with their format"))
             return form, body
         at += 8 + size + size % 2
     raise _no_wav(name, phrase("it holds no samples"))
@@ -143,7 +143,7 @@ def _no_wav(name: str, why: Phrase) -> LinkwrightError:
     return LinkwrightError(
         Diagnostic(
             "VOICE402",
-            phrase("'{path}' cannot be taken as a WAV file: {why}", path=name, why=why),
+            phrase("'{path}' cannot be read as a WAV file: {why}", path=name, why=why),
             hint=phrase("write it as PCM of 16 bits, as with 'ffmpeg -i FILE -ar 16000 -ac 1 OUT.wav'"),
         )
     )

@@ -1,4 +1,4 @@
-"""Random arrangements of the camera and the things for a picture."""
+"""Random arrangements of the camera and the objects for an image."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from linkwright.vision.datasets.stage import Prop, Stage
 _TRIES = 20
 _STEPS = 40
 _NEAREST, _FARTHEST = 0.3, 12.0
-"""The least and the greatest distance of things from the camera, in m."""
+"""The least and the greatest distance of objects from the camera, in m."""
 _SMALLEST, _LARGEST = 0.045, 0.5
-"""The least and the greatest length of a thing, in widths of the picture: 30 to 320 pixels of 640."""
+"""The least and the greatest length of an object, in widths of the image: 30 to 320 pixels of 640."""
 _SEEN_FROM = 30.0
 """The far clip distance, in m."""
 _BEHIND = 0.15
-"""The share of things that may be put behind what stays."""
+"""The share of objects that may be put behind structures."""
 _ROOM = 0.12
-"""The least distance of the camera from everything, in m."""
+"""The least distance of the camera from any object or structure, in m."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,10 @@ class Shot:
     """The pose of a camera.
 
     Attributes:
-        optics: how it projects.
-        pose: where it is; it looks along x, with z up.
-        shown: the things that were put somewhere.
-        structures: the shapes around them that stay.
+        optics: the projection.
+        pose: the pose; the camera looks along x, with z up.
+        shown: the placed objects.
+        structures: the shapes of the surroundings.
     """
 
     optics: Optics
@@ -72,7 +72,7 @@ class _Ground:
         return bool((np.hypot(beyond[:, 0], beyond[:, 1]) > radius).all())
 
     def is_open(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
-        """Whether no structure stands between two places."""
+        """Return whether no structure is between two places."""
         steps = np.linspace(start, end, _STEPS)[:, None] - self._middle
         beyond = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half
         return not (beyond < 0.0).all(axis=2).any()
@@ -83,12 +83,12 @@ class _Ground:
 
 
 def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> Shot:
-    """Arrange a camera and things in a world.
+    """Arrange a camera and objects in a world.
 
     Args:
-        stage: the world, begun.
-        options: what is wanted.
-        generator: where chance comes from.
+        stage: the world, after `begin`.
+        options: the options.
+        generator: the random generator.
     """
     structures = _choose_structures(stage, generator)
     ground = _Ground(stage, structures)
@@ -140,7 +140,7 @@ def _choose_structures(stage: Stage, generator: np.random.Generator) -> list[int
 
 
 def _camera_place(stage: Stage, ground: _Ground, generator: np.random.Generator) -> tuple[float, float, float]:
-    """The camera's position and the point that it looks at: where there is room ahead, if there is any."""
+    """Return the camera's position and the point that it looks at, with free space ahead if there is any."""
     least, greatest = stage.area
     x = y = heading = 0.0
     for _ in range(_TRIES):
@@ -155,7 +155,7 @@ def _camera_place(stage: Stage, ground: _Ground, generator: np.random.Generator)
 
 
 def _chosen(stage: Stage, options: Options, generator: np.random.Generator) -> list[Prop]:
-    """A random choice of things: each class is equally likely, however many there are of it."""
+    """Return a random choice of objects. Each class is equally likely, however many objects it has."""
     if generator.random() < 0.04:
         return []
     by_class: dict[int, list[Prop]] = {}
@@ -172,7 +172,7 @@ def _chosen(stage: Stage, options: Options, generator: np.random.Generator) -> l
 
 
 def _reach(prop: Prop, focal: float, options: Options) -> tuple[float, float]:
-    """The distances in m at which a thing is neither too large nor too small in a picture."""
+    """Return the distances in m at which an object is neither too large nor too small in an image."""
     spans = np.sort(prop.corners.max(axis=0) - prop.corners.min(axis=0))
     nearest = max(focal * spans[2] / (_LARGEST * options.width), _NEAREST)
     farthest = min(spans[2] / (_SMALLEST * options.width), spans[1] / (1.2 * max(options.least_size, 1))) * focal
@@ -188,7 +188,7 @@ def _free_place(
     generator: np.random.Generator,
     reach: tuple[float, float],
 ) -> tuple[float, float] | None:
-    """A free place, most often in view of the camera; None if there is none."""
+    """Return a free place, most often in view of the camera; None if there is none."""
     x, y, heading = camera
     least, greatest = stage.area
     nearest, hidden = reach[0] + radius, generator.random() < _BEHIND
@@ -209,7 +209,7 @@ def _free_place(
 
 
 def _stand(stage: Stage, prop: Prop, place: tuple[float, float], generator: np.random.Generator) -> None:
-    """Place a thing: upright most often, sometimes lying or above the ground."""
+    """Place an object: upright most often, sometimes lying or above the ground."""
     turn = _yawed(generator.uniform(-pi, pi))
     if prop.is_round or generator.random() < 0.08:
         turn = _any_turn(generator)

@@ -1,4 +1,4 @@
-"""Classes of the things in a world."""
+"""Classes of the objects in a world."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ _COLOURS = frozenset(
 _BACKGROUND = frozenset(
     ("ground", "plane", "floor", "floors", "wall", "walls", "room", "rooms", "house", "building", "road", "roads")
 )
-"""Words in the names of models that stand around things, and are none themselves."""
+"""Words in the names of models that are surroundings, not objects."""
 _LARGEST = 4.0
 """The width in m from which a static model is taken for surroundings, unless a file of classes names it."""
 _TOUCHING = 0.02
-"""The distance in m up to which shapes are one thing."""
+"""The distance in m up to which shapes are one object."""
 
 
 @dataclass(frozen=True, slots=True)
-class Thing:
-    """A thing with a label of its own.
+class SceneObject:
+    """An object with a label of its own.
 
     Attributes:
         name: the model, or ``model::link::visual``.
-        label: the place of its class in the list of classes.
+        label: the index of its class.
         geoms: the names of its shapes in MuJoCo's model.
     """
 
@@ -116,12 +116,12 @@ def usual_rules(simulations: list[Simulation]) -> ClassRules:
     return ClassRules({name: tuple(sorted(found)) for name, found in sorted(patterns.items())})
 
 
-def things_of(simulation: Simulation, rules: ClassRules) -> list[Thing]:
-    """The things of a world.
+def objects_of(simulation: Simulation, rules: ClassRules) -> list[SceneObject]:
+    """The objects of a world.
 
-    A model is one thing. Of a model that is named by its visuals those that touch each other are one.
+    A model is one object. If the rules name visuals of a model, the named visuals that touch each other are one object.
     """
-    things: list[Thing] = []
+    objects: list[SceneObject] = []
     visuals = _visuals(simulation)
     boxes = geom_boxes(simulation.model, simulation.data)
     for name, held in simulation.scene.models.items():
@@ -129,7 +129,7 @@ def things_of(simulation: Simulation, rules: ClassRules) -> list[Thing]:
         whole = rules.class_of(name, own_name(held.model))
         if whole is not None:
             found = tuple(geom for part in geoms.values() for geom in part)
-            things += [Thing(name, whole, found)] if found else []
+            objects += [SceneObject(name, whole, found)] if found else []
             continue
         named: dict[int, list[str]] = {}
         for part in geoms:
@@ -138,8 +138,8 @@ def things_of(simulation: Simulation, rules: ClassRules) -> list[Thing]:
                 named.setdefault(label, []).append(part)
         for label, parts in named.items():
             for group in _touching(parts, geoms, simulation.model, boxes):
-                things.append(Thing(group[0], label, tuple(geom for part in group for geom in geoms[part])))
-    return things
+                objects.append(SceneObject(group[0], label, tuple(geom for part in group for geom in geoms[part])))
+    return objects
 
 
 def own_name(model: Model) -> str:

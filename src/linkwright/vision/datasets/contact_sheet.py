@@ -1,4 +1,4 @@
-"""A contact sheet: small pictures with their boxes, for people to look at."""
+"""A contact sheet: small images with their boxes, for people to look at."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from linkwright.vision.datasets.making import Taken
 
 _COLUMNS, _WIDTH = 5, 320
 MOST = 30
-"""The number of pictures on a sheet."""
+"""The number of images on a sheet."""
 _COLOURS = ("#ffdc00", "#00d5ff", "#ff5ec4", "#7dff5c", "#ff8a3c", "#b09bff", "#ffffff", "#4affc0")
 _IGNORED = "#808080"
 
 
-def contact_sheet(pictures: Sequence[Taken], classes: Sequence[str]) -> bytes:
-    """A JPEG of the first `MOST` of some pictures, with names of classes and the visible part of each thing.
+def contact_sheet(images: Sequence[Taken], classes: Sequence[str]) -> bytes:
+    """Return a JPEG of the first `MOST` images, with the class and the visible box of each object.
 
-    Things without a label, because too little of them is visible, have grey boxes.
+    Objects that are too little visible for a label have grey boxes.
     """
     from PIL import Image, ImageDraw
 
-    shown = sorted(pictures, key=lambda picture: picture.index)[:MOST]
+    shown = sorted(images, key=lambda taken: taken.index)[:MOST]
     small = []
     for taken in shown:
         image = Image.open(BytesIO(taken.data)).convert("RGB")

@@ -23,8 +23,8 @@ class Made:
 
     Attributes:
         folder: the dataset.
-        added: how many pictures were made.
-        interrupted: whether Ctrl-C ended it before all were made.
+        added: the number of images made.
+        interrupted: whether Ctrl-C ended it early.
     """
 
     folder: DatasetFolder
@@ -35,7 +35,7 @@ class Made:
 def make_dataset(
     source: Source,
     path: Path,
-    pictures: int,
+    images: int,
     *,
     formats: tuple[str, ...],
     workers: int,
@@ -47,18 +47,18 @@ def make_dataset(
     """Make a dataset.
 
     Args:
-        source: what it is made of.
-        path: its folder.
-        pictures: how many are made.
+        source: the worlds and options.
+        path: the folder of the dataset.
+        images: the number of images to make.
         formats: ``coco``, ``yolo``.
-        workers: how many processes make pictures.
+        workers: the number of processes.
         force: remove the dataset that is in the folder.
         append: add to the dataset that is in the folder.
-        progress: called with how many are done.
-        begin: called with what is known before the first picture.
+        progress: called with the number of finished images.
+        begin: called before the first image.
 
     Raises:
-        LinkwrightError: VISION201 to VISION208; what is wrong with a world. What was written before is complete.
+        LinkwrightError: VISION201 to VISION208, or an error in a world. The dataset written so far is complete.
     """
     options = source.options
     with closing(Studio(source)) as studio:
@@ -66,8 +66,8 @@ def make_dataset(
         folder = DatasetFolder(path, studio.classes, (options.width, options.height), formats, options.form)
         folder.open(force=force, append=append)
         card = _card(source, studio)
-        numbers = range(folder.first, folder.first + pictures)
-        alone = workers == 1 or pictures <= CHAPTER
+        numbers = range(folder.first, folder.first + images)
+        alone = workers == 1 or images <= CHAPTER
         taking = map(studio.take, numbers) if alone else take_in_processes(source, numbers, workers)
         shown: list[Taken] = []
         added, interrupted, wrong = 0, False, None
@@ -94,7 +94,7 @@ def make_dataset(
 
 
 def _each(taking: Iterator[Taken]) -> Iterator[Taken]:
-    """Iterate pictures, and close their maker at the end."""
+    """Iterate images, and close their source at the end."""
     try:
         yield from taking
     finally:

@@ -1,4 +1,4 @@
-"""The folder of a dataset: pictures, labels for COCO and YOLO, and the card.
+"""The folder of a dataset: images, labels for COCO and YOLO, and the card.
 
 Source of the forms: "Data format" of cocodataset.org, and the chapter "Object detection datasets" of Ultralytics.
 """
@@ -21,26 +21,26 @@ from linkwright.whole_files import write_whole_file
 
 CARD = "dataset.json"
 SHEET = "contact_sheet.jpg"
-_FORM = 1
+_FORM = 2
 """The number of this form of card."""
 _PARTS = ("images", "labels", "annotations")
 _FILES = (CARD, "data.yaml", SHEET)
 
 
 class DatasetFolder:
-    """A dataset on the disk. Complete after `finish`, also if making pictures was interrupted.
+    """A dataset on the disk. It is complete after `finish`, even if it was interrupted.
 
     Args:
         path: the folder.
         classes: the names of the classes.
-        size: width and height of pictures in pixels.
+        size: width and height of images in pixels.
         formats: ``coco``, ``yolo``.
-        form: of pictures, ``jpg`` or ``png``.
+        form: the image format, ``jpg`` or ``png``.
 
     Attributes:
         path: the folder.
-        first: the number of the first picture that is to be made.
-        count: how many pictures there are.
+        first: the number of the first image to make.
+        count: the number of images.
     """
 
     def __init__(
@@ -55,11 +55,11 @@ class DatasetFolder:
 
     @property
     def count(self) -> int:
-        """The number of pictures."""
+        """The number of images."""
         return sum(map(len, self._images.values()))
 
     def statistics(self) -> dict[str, ClassStatistics]:
-        """The statistics of the pictures, by class."""
+        """The statistics of the images, by class."""
         annotations = [each for split in SPLITS for each in self._annotations[split]]
         return statistics_of(self._classes, self._size, annotations)
 
@@ -71,8 +71,8 @@ class DatasetFolder:
             append: add to the dataset that is in it.
 
         Raises:
-            LinkwrightError: VISION205 there is something in it already; VISION206 what is to be added to is no dataset
-                of these classes; VISION207 it cannot be made.
+            LinkwrightError: VISION205 the folder is not empty; VISION206 the folder to append to has no dataset of
+                these classes; VISION207 it cannot be made.
         """
         try:
             there = self.path.exists() and (not self.path.is_dir() or any(self.path.iterdir()))
@@ -89,7 +89,7 @@ class DatasetFolder:
             raise cannot_write(self.path, error) from None
 
     def add(self, taken: Taken) -> None:
-        """Write a picture and its labels, both or neither.
+        """Write an image and its labels, both or neither.
 
         Raises:
             OSError: it cannot be written.
@@ -109,13 +109,13 @@ class DatasetFolder:
         self._annotations[taken.split] += _coco(taken, width, height)
 
     def finish(self, card: Mapping[str, Any]) -> None:
-        """Write the lists of all pictures and the card. Without room for them the last pictures are dropped.
+        """Write the lists of all images and the card. If the disk is full, drop the last images.
 
         Args:
-            card: what the pictures that were made now were made of.
+            card: the source of the images of this run.
 
         Raises:
-            LinkwrightError: VISION207 not even the card can be written.
+            LinkwrightError: VISION207, the card cannot be written.
         """
         error = self._try_to_write(card)
         while error is not None and self.count:
@@ -133,14 +133,14 @@ class DatasetFolder:
         return None
 
     def _write(self, card: Mapping[str, Any]) -> None:
-        made = {**card, "first": self.first, "pictures": self.count - sum(run["pictures"] for run in self._runs)}
+        made = {**card, "first": self.first, "images": self.count - sum(run["images"] for run in self._runs)}
         splits = {split: len(images) for split, images in self._images.items()}
         whole = {
             "form": _FORM,
             "classes": list(self._classes),
             "width": self._size[0],
             "height": self._size[1],
-            "pictures": self.count,
+            "images": self.count,
             "splits": splits,
             "formats": list(self._formats),
             "made": [*self._runs, made],
@@ -189,11 +189,11 @@ class DatasetFolder:
                 for split in SPLITS
             }
         except (OSError, ValueError):
-            message = phrase("'{folder}' has no dataset in COCO form to add to", folder=shown)
+            message = phrase("'{folder}' has no dataset in COCO format to append to", folder=shown)
             raise LinkwrightError(Diagnostic("VISION206", message)) from None
-        ours = (list(self._classes), *self._size, list(self._formats))
-        if (card.get("classes"), card.get("width"), card.get("height"), card.get("formats")) != ours:
-            message = phrase("the dataset in '{folder}' has other classes, sizes or forms", folder=shown)
+        ours = (_FORM, list(self._classes), *self._size, list(self._formats))
+        if (card.get("form"), card.get("classes"), card.get("width"), card.get("height"), card.get("formats")) != ours:
+            message = phrase("the dataset in '{folder}' has other classes, sizes or formats", folder=shown)
             hint = phrase("its classes: {names}", names=", ".join(map(str, card.get("classes") or ())))
             raise LinkwrightError(Diagnostic("VISION206", message, hint=hint))
         for split, written in lists.items():
@@ -206,7 +206,7 @@ class DatasetFolder:
         self.first = max(numbers, default=-1) + 1
 
     def _drop(self, count: int) -> None:
-        """Remove the last pictures."""
+        """Remove the last images."""
         newest = sorted(image["id"] for images in self._images.values() for image in images)[-count:]
         gone = set(newest)
         for split in SPLITS:
@@ -266,10 +266,10 @@ def _occupied(path: Path, *, is_dataset: bool) -> LinkwrightError:
     shown = display_path(path)
     if is_dataset:
         message = phrase("there is a dataset in '{folder}' already", folder=shown)
-        hint = phrase("--append adds to it, --force replaces it")
+        hint = phrase("use --append to add to it, or --force to replace it")
     else:
-        message = phrase("'{folder}' is there already, and is no dataset", folder=shown)
-        hint = phrase("name a folder that is empty or not there yet")
+        message = phrase("'{folder}' already exists and is not a dataset", folder=shown)
+        hint = phrase("name an empty or new folder")
     return LinkwrightError(Diagnostic("VISION205", message, hint=hint))
 
 

@@ -1,4 +1,4 @@
-"""Labels of a picture from its exact segmentation."""
+"""Labels of an image from its exact segmentation."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ Box = tuple[int, int, int, int]
 """Left, top, right, bottom in pixels: what is in it has left <= column < right."""
 
 _BEYOND = 1.0
-"""The margin around a picture in which a thing is searched, in widths of the picture."""
+"""The margin around an image in which an object is searched, in widths of the image."""
 
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """The label of a thing in a picture.
+    """The label of an object in an image.
 
     Attributes:
-        label: the place of its class.
-        box: around what is visible of it, in pixels of the picture.
-        whole: around all of it, as if nothing hid it; may reach beyond the picture.
-        area: the pixels that show it.
-        visibility: their share of all pixels that would show it if nothing hid it and the picture had no end.
-        truncated: whether it reaches beyond the picture.
-        ignored: whether so little of it is visible that nobody can be expected to find it.
+        label: the index of its class.
+        box: the box around its visible part, in pixels of the image.
+        whole: the box around all of it, without occlusion; may reach beyond the image.
+        area: the number of its visible pixels.
+        visibility: the share of its pixels that are visible, of those without occlusion and truncation.
+        truncated: whether it reaches beyond the image.
+        ignored: whether too little of it is visible to be found.
         counts: the runs of its mask, down the columns: pixels outside, inside, outside ...
     """
 
@@ -47,28 +47,28 @@ class Label:
     counts: tuple[int, ...]
 
 
-def label_picture(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_visible: float) -> list[Label]:
-    """Make the labels of a picture.
+def label_image(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_visible: float) -> list[Label]:
+    """Make the labels of an image.
 
     Args:
-        stage: the world, as it is in the picture.
+        stage: the world, as it is in the image.
         shot: the camera.
-        geoms: the shapes that its pixels show, shape (height, width).
-        least_size: the shorter side of a box in pixels, below which a thing is ignored; half of it for what is seen of
-            its largest shape.
-        least_visible: the share of a thing that is visible, and that of its largest shape, below which it is ignored.
+        geoms: the geom of each pixel, shape (height, width).
+        least_size: the shorter side of a box in pixels, below which an object is ignored; half of it for its largest
+            shape.
+        least_visible: the visible share of an object, and of its largest shape, below which it is ignored.
     """
     numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last is for nothing
     for number, prop in enumerate(shot.shown, start=1):
         numbers[prop.geoms] = number
-    things = numbers[geoms]
+    objects = numbers[geoms]
     found = []
     for number, prop in enumerate(shot.shown, start=1):
-        box = box_of(things == number)
+        box = box_of(objects == number)
         if box is None:
             continue
         left, top, right, bottom = box
-        mask = things == number
+        mask = objects == number
         area = int(np.count_nonzero(mask[top:bottom, left:right]))
         whole, count, main_count = _uncovered(stage, shot, prop, box)
         count = max(count, area)
@@ -113,9 +113,9 @@ def mask_of(counts: tuple[int, ...], height: int, width: int) -> Any:
 
 
 def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
-    """The unoccluded, untruncated box of a thing; its pixels; those of its largest shape.
+    """Return the unoccluded, untruncated box of an object, its number of pixels, and that of its largest shape.
 
-    Of what is larger than the picture it is made smaller, and the box is right to some pixels.
+    An object that is larger than the image is rendered smaller, so its box is accurate to a few pixels only.
     """
     left, top, right, bottom = _window(stage, shot, prop, visible)
     optics = shot.optics
@@ -139,7 +139,7 @@ def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box,
 
 
 def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
-    """The part of the image plane that contains a thing, with a margin, and not beyond a limit."""
+    """Return the part of the image plane that contains an object, with a margin, up to a limit."""
     optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     local = model.geom_aabb[prop.geoms, None, :3] + signs * model.geom_aabb[prop.geoms, None, 3:]
@@ -158,7 +158,7 @@ def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
 
 
 def _alone(stage: Stage, prop: Prop, look: Callable[[], Any]) -> Any:
-    """Call `look` while a thing is the only visible one."""
+    """Call `look` while an object is the only visible one."""
     data = stage.simulation.data
     places = data.geom_xpos.copy()
     own = places[prop.geoms].copy()

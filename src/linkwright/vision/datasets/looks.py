@@ -14,13 +14,13 @@ from linkwright.vision.datasets.stage import Stage
 from linkwright.vision.datasets.textures import Pixels, smooth
 
 _POOL = 1 << 21
-"""The number of random numbers that are drawn once; each picture takes them from another place on."""
+"""The number of random numbers drawn once; each image uses them from another offset."""
 
 
 def light(stage: Stage, generator: np.random.Generator) -> None:
     """Light a world by one to three random lights.
 
-    None is near: how OpenGL lights an endless plane by one depends on what was drawn before.
+    All are distant: OpenGL's light of an infinite plane by a near one depends on the previous frame.
     """
     lights = []
     for number in range(int(generator.integers(1, 4))):
@@ -36,7 +36,7 @@ def light(stage: Stage, generator: np.random.Generator) -> None:
 
 
 def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
-    """Recolour everything; things keep their colour, or a similar one, more often than not."""
+    """Recolour everything; objects keep their colour, or a similar one, more often than not."""
     for prop in shot.shown:
         way, groups = generator.random(), {}
         textured = generator.random() < 0.3
@@ -45,8 +45,8 @@ def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
             own = tuple(float(each) for each in stage.colour_of(geom)[:3])
             if own not in groups:
                 groups[own] = _recoloured(own, way, generator)
-            if not stage.has_picture(geom):
-                stage.paint(geom, groups[own], "thing" if textured else "", number)
+            if not stage.has_image(geom):
+                stage.paint(geom, groups[own], "object" if textured else "", number)
     for geom in stage.distractors:
         patterned = generator.random() < 0.5
         stage.paint(geom, generator.random(3), "wall" if patterned else "", int(generator.integers(1 << 16)))
@@ -60,7 +60,7 @@ def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
 
 
 def backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None:
-    """Put a random backdrop, a gradient with clouds, where a picture shows nothing."""
+    """Put a random backdrop, a gradient with clouds, where an image shows nothing."""
     nothing = geoms < 0
     if not nothing.any():
         return
@@ -83,7 +83,7 @@ class Camera:
         self._noise = np.random.default_rng(0).standard_normal(_POOL, dtype=np.float32)
 
     def develop(self, colour: Pixels, generator: np.random.Generator) -> Pixels:
-        """Apply the effects to a picture."""
+        """Apply the effects to an image."""
         gain, gamma = np.exp(generator.normal(0.0, 0.18)), np.exp(generator.normal(0.0, 0.15))
         balance = np.exp(generator.normal(0.0, 0.05, 3))
         levels = np.linspace(0.0, 1.0, 256)[:, None] ** gamma * gain * balance
@@ -114,7 +114,7 @@ def _tinted(generator: np.random.Generator, most: float) -> Array:
 
 
 def _recoloured(own: tuple[float, ...], way: float, generator: np.random.Generator) -> Array:
-    """A colour for a thing: its own, one of the same hue, or any."""
+    """A colour for an object: its own, one of the same hue, or any."""
     hue, saturation, value = colorsys.rgb_to_hsv(*own)
     if way < 0.45:
         return np.array(own)

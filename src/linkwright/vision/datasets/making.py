@@ -1,4 +1,4 @@
-"""Making single pictures with their labels."""
+"""Making single images with their labels."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from linkwright.simulation.rendering.renderer import Wanted
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
 from linkwright.vision.datasets.arranging import arrange
-from linkwright.vision.datasets.classes import ClassRules, own_name, read_classes, things_of, usual_rules
-from linkwright.vision.datasets.labels import Label, label_picture
+from linkwright.vision.datasets.classes import ClassRules, objects_of, own_name, read_classes, usual_rules
+from linkwright.vision.datasets.labels import Label, label_image
 from linkwright.vision.datasets.looks import Camera, backdrop, light, paint
 from linkwright.vision.datasets.options import SPLITS, Options
 from linkwright.vision.datasets.stage import Stage
 
 CHAPTER = 50
-"""The number of consecutive pictures that share their patterns."""
+"""The number of consecutive images that share their patterns."""
 _BLOCK = 20
-"""The number of consecutive pictures in which the splits have their shares."""
-_PATTERNS, _PICTURE, _SPLIT = range(3)
-"""Streams of random numbers; each picture has its own for each."""
+"""The number of consecutive images in which the splits have their shares."""
+_PATTERNS, _IMAGE, _SPLIT = range(3)
+"""Streams of random numbers; each image has its own for each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +36,10 @@ class Source:
     """The worlds and options of a dataset.
 
     Attributes:
-        worlds: files of worlds, or their names.
-        added: files of robots or models that are put into each.
-        classes: the file of classes; None for those that the worlds tell.
-        options: how pictures are made.
+        worlds: the files of worlds, or their names.
+        added: the files of robots or models to put into each world.
+        classes: the file of classes; None for a class for each model.
+        options: the options of making images.
     """
 
     worlds: tuple[str, ...]
@@ -50,13 +50,13 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """A picture with its labels.
+    """An image with its labels.
 
     Attributes:
-        index: its number.
-        split: what it is for.
-        data: the file.
-        labels: what is in it.
+        index: the number of the image.
+        split: ``train``, ``val`` or ``test``.
+        data: the content of the file.
+        labels: the labels of its objects.
     """
 
     index: int
@@ -66,19 +66,19 @@ class Taken:
 
 
 class Studio:
-    """Makes the pictures of a dataset; each depends on its number and the seed alone.
+    """Makes the images of a dataset; each depends on its number and the seed alone.
 
     Args:
-        source: what it is made of.
+        source: the worlds and options.
 
     Attributes:
         classes: the names of the classes.
-        unused: names of classes that nothing in the worlds is of.
+        unused: the names of classes without an object in the worlds.
         worlds: the files of the worlds.
-        way: how pictures are made.
+        way: the rendering method.
 
     Raises:
-        LinkwrightError: VISION202 there is nothing to label; VISION204 Pillow is missing; what is wrong with a world.
+        LinkwrightError: VISION202 there is nothing to label; VISION204 Pillow is missing; an error in a world.
     """
 
     def __init__(self, source: Source) -> None:
@@ -95,41 +95,41 @@ class Studio:
         rules = usual_rules(simulations) if source.classes is None else read_classes(Path(source.classes))
         self.classes = tuple(rules.patterns)
         _share(simulations, rules)
-        things = [things_of(simulation, rules) for simulation in simulations]
-        for path, found in zip(source.worlds, things, strict=True):
+        objects = [objects_of(simulation, rules) for simulation in simulations]
+        for path, found in zip(source.worlds, objects, strict=True):
             if not found:
                 raise _nothing(path, source.classes)
-        used = {thing.label for found in things for thing in found}
+        used = {scene_object.label for found in objects for scene_object in found}
         self.unused = tuple(name for number, name in enumerate(self.classes) if number not in used)
         self._stages = [
             Stage(simulation, found, self._options.copies, self._options.distractors)
-            for simulation, found in zip(simulations, things, strict=True)
+            for simulation, found in zip(simulations, objects, strict=True)
         ]
         self.way = self._stages[0].renderer.way
         self._chapters: dict[int, int] = {}
         self._camera = Camera()
 
     def take(self, index: int) -> Taken:
-        """Make a picture."""
+        """Make an image."""
         options, which = self._options, index % len(self._stages)
         stage, chapter = self._stages[which], index // CHAPTER
         if self._chapters.get(which) != chapter:
             stage.set_patterns(np.random.default_rng((options.seed, _PATTERNS, chapter, which)))
             self._chapters[which] = chapter
-        generator = np.random.default_rng((options.seed, _PICTURE, index))
+        generator = np.random.default_rng((options.seed, _IMAGE, index))
         stage.begin()
         shot = arrange(stage, options, generator)
         if "lights" not in options.kept:
             light(stage, generator)
         if "colours" not in options.kept:
             paint(stage, shot, generator)
-        picture = stage.renderer.render(shot.optics, shot.pose, Wanted.COLOUR | Wanted.GEOMS)
-        assert picture.colour is not None
-        assert picture.geoms is not None
-        labels = label_picture(stage, shot, picture.geoms, options.least_size, options.least_visible)
-        colour = picture.colour
+        image = stage.renderer.render(shot.optics, shot.pose, Wanted.COLOUR | Wanted.GEOMS)
+        assert image.colour is not None
+        assert image.geoms is not None
+        labels = label_image(stage, shot, image.geoms, options.least_size, options.least_visible)
+        colour = image.colour
         if "lights" not in options.kept:
-            backdrop(colour, picture.geoms, generator)
+            backdrop(colour, image.geoms, generator)
         if "lens" not in options.kept:
             colour = self._camera.develop(colour, generator)
         return Taken(index, split_of(index, options), self._encoded(colour, generator), tuple(labels))
@@ -151,7 +151,7 @@ class Studio:
 
 
 def split_of(index: int, options: Options) -> str:
-    """The split of a picture: of each twenty, in order, the splits have their shares."""
+    """Return the split of an image. Each twenty consecutive images have the shares of the splits."""
     block, place = divmod(index, _BLOCK)
     order = np.random.default_rng((options.seed, _SPLIT, block)).permutation(_BLOCK)
     share = (int(order[place]) + 0.5) / _BLOCK
@@ -169,14 +169,14 @@ def _model_of(path: Path) -> Model:
         raise LinkwrightError(*converted.diagnostics)
     model = converted.sdf.models[0] if converted.sdf.models else None
     if model is None or not any(link.visuals for link in model.links):
-        message = phrase("'{path}' has no model that can be seen", path=str(path))
-        hint = phrase("what is added is URDF or xacro whose links have an <inertial>, or SDF with a <model>")
+        message = phrase("'{path}' has no model with visuals", path=str(path))
+        hint = phrase("add URDF or xacro whose links have an <inertial>, or SDF with a <model>")
         raise LinkwrightError(Diagnostic("VISION203", message, hint=hint))
     return model
 
 
 def _share(simulations: Sequence[Simulation], rules: ClassRules) -> None:
-    """Add the things of each world to the others, if they are whole models."""
+    """Add the objects of each world to the others, if they are whole models."""
     everything = [dict(simulation.scene.models) for simulation in simulations]
     for simulation in simulations:
         kinds = {own_name(held.model) for held in simulation.scene.models.values()}
@@ -205,7 +205,7 @@ def _free_name(name: str, simulation: Simulation) -> str:
 
 
 def _nothing(world: str, classes: str | None) -> LinkwrightError:
-    message = phrase("there is nothing to label in the world '{world}'", world=world)
+    message = phrase("there is no object to label in the world '{world}'", world=world)
     hint = (
         phrase("all its models are ground, walls or the like; name models or visuals by --classes, or --add some")
         if classes is None

@@ -6,29 +6,28 @@ from dataclasses import dataclass
 
 SPLITS = ("train", "val", "test")
 FORMATS = ("coco", "yolo")
-PICTURE_FORMATS = ("jpg", "png")
+IMAGE_FORMATS = ("jpg", "png")
 VARIED = ("lights", "colours", "lens")
-"""What differs from picture to picture, unless it is kept: what lights things, colours and patterns,
-and what a lens and a sensor do."""
+"""The properties that vary between images unless they are kept: lights, colours and patterns, lens and sensor."""
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Options of making pictures.
+    """Options of making images.
 
     Attributes:
-        width, height: of pictures, in pixels.
-        seed: what chance follows from; the same seed gives the same bytes.
+        width, height: the size of images, in pixels.
+        seed: the random seed; the same seed gives the same bytes.
         splits: the shares of train, val and test.
-        copies: how many things there are of each class at least.
-        distractors: how many things without a label there are.
-        most: how many things are put into a picture at most.
+        copies: the least number of objects of each class.
+        distractors: the number of objects without a label.
+        most: the largest number of objects placed in an image.
         kept: which of `VARIED` stay as the world has them.
-        least_size: the shorter side of a box in pixels, below which a thing is to be ignored; half of it for what is
-            seen of its largest shape.
-        least_visible: the share of a thing that is visible, and that of its largest shape, below which it is to be
+        least_size: the shorter side of a box in pixels, below which an object is ignored; half of it for its largest
+            shape.
+        least_visible: the share of an object that is visible, and that of its largest shape, below which it is to be
             ignored.
-        form: of pictures, one of `PICTURE_FORMATS`.
+        form: the image format, one of `IMAGE_FORMATS`.
     """
 
     width: int = 640

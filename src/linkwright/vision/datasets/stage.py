@@ -1,4 +1,4 @@
-"""A world whose things are moved, coloured and lit for each picture without compiling MuJoCo's model again."""
+"""A world whose objects are moved, coloured and lit for each image without compiling MuJoCo's model again."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from linkwright.simulation.rendering.choice import make_renderer
 from linkwright.simulation.rendering.renderer import Renderer
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
-from linkwright.vision.datasets.classes import Thing, geom_boxes
+from linkwright.vision.datasets.classes import SceneObject, geom_boxes
 from linkwright.vision.datasets.textures import pattern
 
 _PATTERNS = 12
-"""The number of patterns of each kind: for things, for structures, for the ground."""
-_SIZES = {"thing": 64, "wall": 128, "ground": 256}
-"""The sides of patterns in pixels, by what they are for."""
+"""The number of patterns of each kind: for objects, for structures, for the ground."""
+_SIZES = {"object": 64, "wall": 128, "ground": 256}
+"""The sides of patterns in pixels, by use."""
 _AWAY = np.array([0.0, 0.0, -1e5])
-"""The position in m of hidden things."""
+"""The position in m of hidden objects."""
 _LOW = 0.05
-"""The height in m up to which something is no obstacle."""
+"""The height in m up to which a shape is not an obstacle."""
 _DISTRACTORS = ("box", "capsule", "ellipsoid", "cylinder")
 
 
@@ -34,8 +34,8 @@ class Prop:
     """A movable group of geoms.
 
     Attributes:
-        name: of the thing.
-        label: the place of its class, -1 for none.
+        name: the name of the object.
+        label: the index of its class, -1 for none.
         geoms: its shapes in MuJoCo's model.
         main: the largest of them: the one whose box has the largest side.
         positions: of its shapes, from the middle of its base: shape (n, 3), in m.
@@ -57,40 +57,40 @@ class Prop:
 
 
 class Stage:
-    """A world with copies of its things, and unlabelled distractors.
+    """A world with copies of its objects, and unlabelled distractors.
 
     Args:
-        simulation: the world; the stage makes its own of it.
-        things: what gets labels.
-        copies: how many there are of each class at least.
-        distractors: how many things without a label there are.
+        simulation: the world, which the stage copies.
+        objects: the objects to label.
+        copies: the least number of objects of each class.
+        distractors: the number of objects without a label.
 
     Attributes:
         simulation: the world.
-        renderer: what makes pictures of it.
-        props: the things, and their copies.
-        distractors: things without a label.
-        ground: shapes of what is flat: they always stay.
-        structures: of each model around the things its other shapes.
-        area: where things are put: least and greatest x and y in m, shape (2, 2).
-        floor: the height that things stand on, in m.
+        renderer: renders its images.
+        props: the objects and their copies.
+        distractors: objects without a label.
+        ground: the flat shapes, which are always visible.
+        structures: the other shapes of each model of the surroundings.
+        area: the area for objects: least and greatest x and y in m, shape (2, 2).
+        floor: the height of the ground below the objects, in m.
     """
 
-    def __init__(self, simulation: Simulation, things: Sequence[Thing], copies: int, distractors: int) -> None:
+    def __init__(self, simulation: Simulation, objects: Sequence[SceneObject], copies: int, distractors: int) -> None:
         simulation.refresh()
         self.simulation = simulation
         self._mujoco = load_mujoco()
-        bases = {thing.name: _facts(simulation, thing) for thing in things}
-        shown = [geom for thing in things for geom in thing.geoms]
-        copied = self._copy(things, copies)
+        bases = {scene_object.name: _facts(simulation, scene_object) for scene_object in objects}
+        shown = [geom for scene_object in objects for geom in scene_object.geoms]
+        copied = self._copy(objects, copies)
         self._add_distractors(distractors)
         self._add_materials()
         simulation.set_altered()
         simulation.refresh()
         model, data = simulation.model, simulation.data
-        self.props = [_prop(model, thing, bases[thing.name]) for thing in things]
+        self.props = [_prop(model, scene_object, bases[scene_object.name]) for scene_object in objects]
         self.props += [_prop(model, copy, bases[original]) for copy, original in copied]
-        self.floor = float(np.median([bases[thing.name].bottom for thing in things])) if things else 0.0
+        self.floor = float(np.median([bases[scene_object.name].bottom for scene_object in objects])) if objects else 0.0
         first = [model.geom(f"distractor {number}").id for number in range(distractors)]
         self.distractors = first
         labelled = {model.geom(name).id for name in shown} | {int(geom) for prop in self.props for geom in prop.geoms}
@@ -119,7 +119,7 @@ class Stage:
         self.renderer: Renderer = make_renderer(simulation)
 
     def begin(self) -> None:
-        """Reset: structures at their places with their colours, and all things hidden."""
+        """Reset: structures at their places with their colours, and all objects hidden."""
         model, data = self.simulation.model, self.simulation.data
         data.geom_xpos[:], data.geom_xmat[:] = self._places
         model.geom_rgba[:], model.geom_matid[:] = self._colours, self._materials
@@ -132,10 +132,10 @@ class Stage:
         self.simulation.data.geom_xpos[geoms] = _AWAY
 
     def put(self, prop: Prop, position: Array, turn: Array) -> None:
-        """Place a thing.
+        """Place an object.
 
         Args:
-            prop: the thing.
+            prop: the object.
             position: of the middle of its base, in m.
             turn: its axes, shape (3, 3).
         """
@@ -174,7 +174,7 @@ class Stage:
         """The colour of a geom in the world: red, green, blue and opacity."""
         return self._colours[geom]
 
-    def has_picture(self, geom: int) -> bool:
+    def has_image(self, geom: int) -> bool:
         """Whether a geom has a texture of its own."""
         return bool(self._materials[geom] >= 0)
 
@@ -184,7 +184,7 @@ class Stage:
         Args:
             geom: the shape.
             colour: red, green and blue.
-            kind: ``thing``, ``wall`` or ``ground`` for a pattern; empty for none.
+            kind: ``object``, ``wall`` or ``ground`` for a pattern; empty for none.
             number: which of the patterns.
         """
         model = self.simulation.model
@@ -196,20 +196,20 @@ class Stage:
         """Replace the lights of the world.
 
         Args:
-            lights: all there are.
-            ambient: red, green and blue of what comes from all sides.
-            background: the colour where nothing is.
+            lights: all lights.
+            ambient: red, green and blue of the ambient light.
+            background: the colour of the background.
         """
         scene = replace(self._own.scene, ambient=_colour(ambient), background=_colour(background))
         self.simulation.world = replace(self._own, lights=tuple(lights), models=(), scene=scene)
 
     def set_patterns(self, generator: np.random.Generator) -> None:
-        """Replace all patterns; the next picture takes longer."""
+        """Replace all patterns; the next image takes longer."""
         model = self.simulation.model
         for kind, size in _SIZES.items():
             for number in range(_PATTERNS):
                 texture = model.texture(f"{kind} {number}").id
-                pixels = pattern(generator, size, soft=kind == "thing" or number % 2 == 0)
+                pixels = pattern(generator, size, soft=kind == "object" or number % 2 == 0)
                 first, faces = int(model.tex_adr[texture]), model.tex_height[texture] // size
                 model.tex_data[first : first + faces * pixels.size] = np.tile(pixels.ravel(), faces)
         self._patterns = {
@@ -218,7 +218,7 @@ class Stage:
         self.begin()
         self.simulation.world = self._own
         self.renderer.close()
-        self.renderer = make_renderer(self.simulation)  # pictures depend on nothing that was drawn before
+        self.renderer = make_renderer(self.simulation)  # images depend on nothing that was drawn before
 
     def close(self) -> None:
         """Release the renderer."""
@@ -238,15 +238,15 @@ class Stage:
         half = np.clip((greatest - least) / 2, 3.0, 12.0)
         return np.stack([middle - half, middle + half])
 
-    def _copy(self, things: Sequence[Thing], copies: int) -> list[tuple[Thing, str]]:
-        """Add copies of things as static bodies; each with the name of its original."""
+    def _copy(self, objects: Sequence[SceneObject], copies: int) -> list[tuple[SceneObject, str]]:
+        """Add copies of objects as static bodies; each with the name of its original."""
         model, spec = self.simulation.model, self.simulation.scene.spec
         counts: dict[int, int] = {}
-        for thing in things:
-            counts[thing.label] = counts.get(thing.label, 0) + 1
+        for scene_object in objects:
+            counts[scene_object.label] = counts.get(scene_object.label, 0) + 1
         added = []
         for label, count in counts.items():
-            originals = [thing for thing in things if thing.label == label]
+            originals = [scene_object for scene_object in objects if scene_object.label == label]
             for number in range(max(copies - count, 0)):
                 original = originals[number % len(originals)]
                 name = f"{original.name} copy {number}"
@@ -256,7 +256,7 @@ class Stage:
                 for index, geom in enumerate(original.geoms):
                     self._copy_geom(body, model.geom(geom).id, f"{name} {index}")
                     names.append(f"{name} {index}")
-                added.append((Thing(name, label, tuple(names)), original.name))
+                added.append((SceneObject(name, label, tuple(names)), original.name))
         return added
 
     def _copy_geom(self, body: Any, geom: int, name: str) -> None:
@@ -300,7 +300,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class _Facts:
-    """A thing's initial pose and geometry in its world."""
+    """An object's initial pose and geometry in its world."""
 
     positions: Array
     turns: Array
@@ -309,9 +309,9 @@ class _Facts:
     is_round: bool
 
 
-def _facts(simulation: Simulation, thing: Thing) -> _Facts:
+def _facts(simulation: Simulation, scene_object: SceneObject) -> _Facts:
     model, data = simulation.model, simulation.data
-    geoms = [model.geom(name).id for name in thing.geoms]
+    geoms = [model.geom(name).id for name in scene_object.geoms]
     turns = data.geom_xmat[geoms].reshape(-1, 3, 3)
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     local = model.geom_aabb[geoms, None, :3] + signs * model.geom_aabb[geoms, None, 3:]
@@ -331,13 +331,13 @@ def _facts(simulation: Simulation, thing: Thing) -> _Facts:
     )
 
 
-def _prop(model: Any, thing: Thing, facts: _Facts) -> Prop:
-    geoms = np.array([model.geom(name).id for name in thing.geoms])
+def _prop(model: Any, scene_object: SceneObject, facts: _Facts) -> Prop:
+    geoms = np.array([model.geom(name).id for name in scene_object.geoms])
     radius = float(np.linalg.norm(facts.corners[:, :2], axis=1).max())
     sides = np.sort(model.geom_aabb[geoms, 3:], axis=1)
     main = int(geoms[np.argmax(sides[:, 1] * sides[:, 2])])
     places = facts.positions, facts.turns, facts.corners
-    return Prop(thing.name, thing.label, geoms, main, *places, radius, facts.is_round)
+    return Prop(scene_object.name, scene_object.label, geoms, main, *places, radius, facts.is_round)
 
 
 def _colour(colour: Array) -> tuple[float, float, float, float]:

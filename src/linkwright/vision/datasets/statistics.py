@@ -8,9 +8,9 @@ from math import sqrt
 from typing import Any
 
 _SIZES = (("small", 32), ("medium", 96), ("large", 1 << 30))
-"""COCO's sizes of things: the square roots of the areas in pixels that they are below."""
+"""COCO's sizes of objects: the square roots of the areas in pixels that they are below."""
 _MOSTLY = 0.75
-"""The visible share below which a thing counts as occluded."""
+"""The visible share below which an object counts as occluded."""
 
 
 @dataclass
@@ -18,17 +18,17 @@ class ClassStatistics:
     """The statistics of a class.
 
     Attributes:
-        things: how many have a label.
-        pictures: in how many pictures there is one.
-        ignored: how many are seen too little of for a label.
-        small, medium, large: things by COCO's sizes.
-        hidden: things of which less than three quarters are visible.
-        truncated: things that reach beyond their picture.
-        thirds: how many have their middle in each ninth of the picture, row by row.
+        objects: the number of labelled objects.
+        images: the number of images with one.
+        ignored: the number of objects that are too little visible for a label.
+        small, medium, large: objects by COCO's sizes.
+        hidden: objects that are less than three quarters visible.
+        truncated: objects that reach beyond their image.
+        thirds: the number of objects with their centre in each ninth of the image, row by row.
     """
 
-    things: int = 0
-    pictures: int = 0
+    objects: int = 0
+    images: int = 0
     ignored: int = 0
     small: int = 0
     medium: int = 0
@@ -45,19 +45,19 @@ def statistics_of(
 
     Args:
         classes: their names.
-        size: width and height of pictures in pixels.
-        annotations: of all pictures, in COCO's form.
+        size: width and height of images in pixels.
+        annotations: of all images, in COCO's form.
     """
     found = {name: ClassStatistics() for name in classes}
-    pictures: dict[str, set[int]] = {name: set() for name in classes}
+    images: dict[str, set[int]] = {name: set() for name in classes}
     for annotation in annotations:
         name = classes[annotation["category_id"] - 1]
         facts = found[name]
         if annotation["iscrowd"]:
             facts.ignored += 1
             continue
-        pictures[name].add(annotation["image_id"])
-        facts.things += 1
+        images[name].add(annotation["image_id"])
+        facts.objects += 1
         side = next(side for side, most in _SIZES if sqrt(annotation["area"]) < most)
         setattr(facts, side, getattr(facts, side) + 1)
         facts.hidden += annotation["visibility"] < _MOSTLY
@@ -66,14 +66,14 @@ def statistics_of(
         column = min(int(3 * (left + width / 2) / size[0]), 2)
         row = min(int(3 * (top + height / 2) / size[1]), 2)
         facts.thirds[3 * row + column] += 1
-    for name, numbers in pictures.items():
-        found[name].pictures = len(numbers)
+    for name, numbers in images.items():
+        found[name].images = len(numbers)
     return found
 
 
 def as_table(statistics: Mapping[str, ClassStatistics]) -> str:
     """Format statistics as lines of text."""
-    titles = ("class", "things", "pictures", "small", "medium", "large", "hidden", "truncated", "ignored")
+    titles = ("class", "objects", "images", "small", "medium", "large", "hidden", "truncated", "ignored")
     rows: list[tuple[str, ...]] = [titles]
     for name, each in statistics.items():
         rows.append((name, *(str(getattr(each, title)) for title in titles[1:])))

@@ -1,4 +1,4 @@
-"""Processes that make pictures in parallel."""
+"""Processes that make images in parallel."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.vision.datasets.making import CHAPTER, Source, Studio, Taken
 
 _PATIENCE = 10.0
-"""Seconds for a process that was told to end, before it is killed."""
+"""Seconds that a process has to exit before it is killed."""
 
 
 def take_in_processes(source: Source, numbers: range, workers: int) -> Iterator[Taken]:
-    """Make pictures in several processes.
+    """Make images in several processes.
 
     Args:
-        source: what they are made of.
-        numbers: of the pictures.
-        workers: how many processes there are.
+        source: the worlds and options.
+        numbers: the numbers of the images.
+        workers: the number of processes.
 
     Yields:
-        The pictures, in the order in which they are done.
+        The images, in the order of completion.
 
     Raises:
         LinkwrightError: VISION208 a process has died.
@@ -58,7 +58,7 @@ def take_in_processes(source: Source, numbers: range, workers: int) -> Iterator[
 
 
 def _chapters(numbers: range) -> Iterator[range]:
-    """The numbers of pictures in parts that share their patterns."""
+    """Yield the numbers of images in ranges that share their patterns."""
     start = numbers.start
     while start < numbers.stop:
         end = min((start // CHAPTER + 1) * CHAPTER, numbers.stop)
@@ -72,7 +72,7 @@ class _Worker:
         self.connection, theirs = spawn.Pipe()
         self.left = 0
         self._process = spawn.Process(target=_serve, args=(source, theirs), daemon=True)
-        before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who reads the pictures
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
         try:
             self._process.start()
         finally:
@@ -80,22 +80,22 @@ class _Worker:
         theirs.close()
 
     def take(self, numbers: range) -> None:
-        """Assign numbers of pictures."""
+        """Assign numbers of images."""
         self.left = len(numbers)
-        with suppress(OSError):  # it has died; that is found out by who waits for the result
+        with suppress(OSError):  # it has died, which `result` reports
             self.connection.send(numbers)
 
     def result(self) -> Taken:
-        """The next picture.
+        """Return the next image.
 
         Raises:
-            LinkwrightError: what the process says; VISION208 it has died.
+            LinkwrightError: the error of the process; VISION208 it has died.
         """
         try:
             said = self.connection.recv()
         except (EOFError, OSError):
-            message = phrase("a process that makes pictures has died")
-            hint = phrase("where memory is short, fewer of them may do: --workers 1")
+            message = phrase("a process that renders images has died")
+            hint = phrase("if memory is short, use fewer processes: --workers 1")
             raise LinkwrightError(Diagnostic("VISION208", message, hint=hint)) from None
         if isinstance(said, Taken):
             return said

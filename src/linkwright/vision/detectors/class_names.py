@@ -18,11 +18,10 @@ _FORMS = phrase("write a name in each line, or as YAML a list of names or a mapp
 
 
 def names_in_metadata(text: str) -> tuple[str, ...] | None:
-    """The class names in a model's metadata, in order; None without usable ones.
+    """Return the class names in a model's metadata, in order; None if there are no usable ones.
 
     Args:
-        text: a dictionary or a list as Python writes it, which is how Ultralytics' exporters keep it. Nothing of it is
-            run.
+        text: a Python literal of a dictionary or a list, as Ultralytics' exporters write it. It is not executed.
     """
     if len(text) > _LARGEST:
         return None

@@ -60,16 +60,16 @@ class ColourDetector(Detector):
         """A remark that it needs no GPU, if it was given one."""
         return self._notes
 
-    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+    def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Find patches of the colours."""
         cv2 = load_opencv()
         boxes: list[tuple[int, int, int, int]] = []
         scores: list[float] = []
         classes: list[int] = []
-        hsv = cv2.cvtColor(picture, cv2.COLOR_RGB2HSV) if picture.size else picture
-        for index, bounds in enumerate(self._ranges.values() if picture.size else ()):
+        hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV) if image.size else image
+        for index, bounds in enumerate(self._ranges.values() if image.size else ()):
             mask = mask_of(hsv, bounds)
-            x, y, columns, rows = cv2.boundingRect(mask)  # most colours are nowhere, or in a small part of the picture
+            x, y, columns, rows = cv2.boundingRect(mask)  # most colours are nowhere, or in a small part of the image
             if columns * rows < self._least_area:
                 continue
             part = mask[y : y + rows, x : x + columns]
@@ -83,7 +83,7 @@ class ColourDetector(Detector):
 
 
 def mask_of(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
-    """A mask of a colour: 255 where a picture has it, else 0. Spots smaller than three pixels are left out.
+    """A mask of a colour: 255 where an image has it, else 0. Spots smaller than three pixels are left out.
 
     Args:
         hsv: shape ``(height, width, 3)``.

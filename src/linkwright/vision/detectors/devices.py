@@ -29,10 +29,10 @@ def gpu_of(device: str) -> str | None:
 
 
 def without_network(options: DetectorOptions) -> tuple[Phrase, ...]:
-    """Check that a detector without a network is given no network's options.
+    """Check that a detector without a network gets no options of networks.
 
     Returns:
-        What its user should be told once: that it needs no GPU, where it was given one.
+        Notes to log once: that it needs no GPU, if one was requested.
 
     Raises:
         LinkwrightError: VISION109, it is given labels or the size of an input, or there is no such device.
@@ -40,7 +40,7 @@ def without_network(options: DetectorOptions) -> tuple[Phrase, ...]:
     given = {"labels": options.labels, "imgsz": options.size and "x".join(map(str, options.size[::-1]))}
     for name, value in given.items():
         if value is not None:
-            raise bad_setting(name, value, phrase("only networks have it, and this detector has none: leave it out"))
+            raise bad_setting(name, value, phrase("only networks have this option: leave it out"))
     if gpu_of(options.device) is None:
         return ()
     return (phrase("this detector has no network that '{device}' would run; it uses the CPU", device=options.device),)

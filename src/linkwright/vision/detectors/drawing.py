@@ -1,4 +1,4 @@
-"""Drawing detections into pictures."""
+"""Drawing detections into images."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.vision.detectors.library import load_opencv
 
 _HUES = 24
 _TEXT_SHARE = 1 / 26
-"""The height of capitals as a part of the picture's: a panel of the page shows pictures a few hundred pixels high."""
+"""The height of capitals as a part of the image's: a panel of the page shows images a few hundred pixels high."""
 _LEAST_TEXT = 9
 """Pixels."""
 
@@ -31,17 +31,17 @@ def colour_of(name: str) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def drawn(picture: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
-    """The picture with a box, a name and a score for each detection.
+def drawn(image: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
+    """The image with a box, a name and a score for each detection.
 
     Args:
-        picture: shape ``(height, width, 3)``, red, green, blue; it is left as it is.
+        image: shape ``(height, width, 3)``, red, green, blue; it is left as it is.
         found: what is in it.
     """
     cv2 = load_opencv()
-    canvas = np.array(picture, order="C")
-    thick = max(1, round(picture.shape[0] / 300))
-    tall = max(_LEAST_TEXT, round(_TEXT_SHARE * picture.shape[0]))
+    canvas = np.array(image, order="C")
+    thick = max(1, round(image.shape[0] / 300))
+    tall = max(_LEAST_TEXT, round(_TEXT_SHARE * image.shape[0]))
     scale, stroke = cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, tall), max(1, round(tall / 10))
     for index in reversed(range(len(found))):  # the most certain last, so that nothing is drawn over it
         name = found.name(index)
@@ -54,7 +54,7 @@ def drawn(picture: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
         text = f"{name} {found.scores[index]:.2f}"
         (width, height), below = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, stroke)
         line = max(height + below, top - thick)
-        left = max(0, min(left, picture.shape[1] - width))
+        left = max(0, min(left, image.shape[1] - width))
         cv2.rectangle(canvas, (left, line - height - below), (left + width, line), colour, cv2.FILLED)
         dark = (0, 0, 0) if sum(colour) > 380 else (255, 255, 255)
         cv2.putText(canvas, text, (left, line - below // 2), cv2.FONT_HERSHEY_SIMPLEX, scale, dark, stroke, cv2.LINE_AA)

@@ -33,7 +33,7 @@ class EfficientDetDetector(Detector):
 
     Raises:
         LinkwrightError: VISION101 LiteRT or OpenCV is missing, VISION103 the file cannot be loaded, VISION105 its input
-            is no picture of 8 bits, VISION106 it has no final boxes, VISION108 it has no names and none are given.
+            is not an image of 8 bits, VISION106 it has no final boxes, VISION108 it has no names and none are given.
     """
 
     def __init__(self, file: Path, options: DetectorOptions) -> None:
@@ -51,7 +51,7 @@ class EfficientDetDetector(Detector):
         if len(shape) != 4 or shape[0] != 1 or shape[3] != 3 or inputs[0]["dtype"] is not np.uint8:
             shown = ", ".join(f"{np.dtype(each['dtype'])} {list(map(int, each['shape']))}" for each in inputs)
             message = phrase(
-                "the network in '{file}' does not take a picture: its inputs are {inputs}", file=file.name, inputs=shown
+                "the network in '{file}' does not take an image: its inputs are {inputs}", file=file.name, inputs=shown
             )
             raise LinkwrightError(Diagnostic("VISION105", message))
         self._input, self._size = inputs[0]["index"], (shape[2], shape[1])
@@ -63,16 +63,16 @@ class EfficientDetDetector(Detector):
         """The names of its classes."""
         return self._names
 
-    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Detect objects in a picture, which is stretched to the size of the input, as TFLite's own library does it."""
-        if not picture.size:
+    def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
+        """Detect objects in an image, which is stretched to the size of the input, as TFLite's own library does it."""
+        if not image.size:
             return Detections.none(self._names)
         cv2 = load_opencv()
-        self._interpreter.set_tensor(self._input, cv2.resize(picture, self._size)[np.newaxis])
+        self._interpreter.set_tensor(self._input, cv2.resize(image, self._size)[np.newaxis])
         self._interpreter.invoke()
         boxes, classes, scores, count = (self._interpreter.get_tensor(index) for index in self._outputs)
         found = int(np.ravel(count)[0])
-        height, width = picture.shape[:2]
+        height, width = image.shape[:2]
         sides = np.clip(boxes[0, :found][:, [1, 0, 3, 2]], 0.0, 1.0) * [width, height, width, height]
         numbers = classes[0, :found].astype(int)
         known = [index for index in range(found) if 0 <= numbers[index] < len(self._names)]

@@ -1,13 +1,13 @@
 """Layouts of the outputs of YOLO networks, by their shapes and metadata.
 
 Three forms exist. Networks since v8, and YOLOv5 as exported by Ultralytics' newer program (``yolov5u``), have a column
-for each place of the picture: centre, size and a score for each class. The classic YOLOv5 has a row for each place with
-one number more, how likely there is a thing at all. Networks that were exported with ``nms=True``, and YOLO26 with
+for each place of the image: centre, size and a score for each class. The classic YOLOv5 has a row for each place with
+one number more, how likely there is an object at all. Networks that were exported with ``nms=True``, and YOLO26 with
 ``end2end``, give up to 300 rows that are final: corners, score, class. Segmentation adds coefficients of masks behind
 the scores, and pose estimation key points.
 
 Others have shapes like these and mean something else: YOLOX has one row for each place, not decoded, and RT-DETR 300
-rows of shares of the picture. Rows that are not three for each place are no boxes that are known here.
+rows of shares of the image. Rows that are not three for each place are no boxes that are known here.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _HEADS = ((8, 16, 32), (8, 16, 32, 64), (8, 16, 32, 64, 128), (4, 8, 16, 32), (8
 _SHAPES = 3
 """Boxes that the classic YOLOv5 has for each place of a grid."""
 _BOXES = {"": "", "detect": "", "segment": "masks", "pose": "key points"}
-"""Tasks whose networks find upright boxes -> what else they find, which is left out."""
+"""Tasks whose networks find upright boxes -> their further outputs, which are ignored."""
 _CORNERS_OF_CENTRES = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0], [0, 1, 0, 0.5]], np.float32)
 
 
@@ -60,9 +60,9 @@ class Layout:
     """The layout of a network's first output.
 
     Attributes:
-        form: where the numbers stand.
-        classes: how many it knows; 0 where its outputs do not say, which final boxes do not.
-        left_out: what else it found for each box: ``masks``, ``key points`` or nothing.
+        form: the order of the numbers.
+        classes: the number of classes; 0 if the outputs do not determine it, as with final boxes.
+        left_out: the further outputs for each box: ``masks``, ``key points`` or nothing.
     """
 
     form: Form
@@ -108,8 +108,8 @@ def find_layout(
     """Find the layout of a network's outputs.
 
     Args:
-        shapes: of its outputs, for one picture.
-        size: height and width of that picture.
+        shapes: of its outputs, for one image.
+        size: height and width of that image.
         metadata: of its file.
         file: for messages.
         labels: how many names a file of labels has, if there is one; it counts more than the metadata.
@@ -134,8 +134,8 @@ def find_layout(
             "the outputs of '{file}' are not boxes as YOLO has them: {shapes}", file=file.name, shapes=shown
         )
         hint = phrase(
-            "known are [1, 4 + classes, N], [1, N, 5 + classes] with three rows for each place, and [1, N, 6]; "
-            "YOLOX, YOLOv6 and RT-DETR have other boxes"
+            "supported are [1, 4 + classes, N], [1, N, 5 + classes] with three rows for each place, and [1, N, "
+            "6]; YOLOX, YOLOv6 and RT-DETR have other boxes"
         )
         raise LinkwrightError(Diagnostic("VISION106", message, hint=hint))
     form, classes = next((form for form in forms if form[1] in (0, named)), forms[0])

@@ -1,6 +1,6 @@
-"""Letterbox: a picture scaled into the input of a network, with grey borders.
+"""Letterbox: an image scaled into the input of a network, with grey borders.
 
-As Ultralytics does it (`LetterBox`, `scale_boxes`): one scale for both directions, linear interpolation, the picture in
+As Ultralytics does it (`LetterBox`, `scale_boxes`): one scale for both directions, linear interpolation, the image in
 the middle, 114 around it. An input of any size is made no larger than it has to be for its stride.
 """
 
@@ -18,14 +18,14 @@ _GREY = 114
 
 @dataclass(frozen=True, slots=True)
 class Letterbox:
-    """The position of a picture in the input of a network.
+    """The position of an image in the input of a network.
 
     Attributes:
-        width: of the picture, in pixels.
-        height: of the picture.
-        scale: pixels of the input for one of the picture, across and down; they differ by what rounding takes.
-        left: where the picture begins in the input, in its pixels.
-        top: the same, from above.
+        width: the width of the image, in pixels.
+        height: the height of the image.
+        scale: the pixels of the input for one of the image, across and down; they differ by rounding.
+        left: the left edge of the image in the input, in its pixels.
+        top: the top edge of the image.
     """
 
     width: int
@@ -34,8 +34,8 @@ class Letterbox:
     left: int
     top: int
 
-    def boxes_in_picture(self, boxes: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Convert boxes of the input, shape ``(n, 4)``, to pixels of the picture, clipped to it."""
+    def boxes_in_image(self, boxes: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Convert boxes of the input, shape ``(n, 4)``, to pixels of the image, clipped to it."""
         offset = np.array([self.left, self.top, self.left, self.top], np.float32)
         placed = (boxes - offset) / np.array(self.scale * 2, np.float32)
         limits = np.array([self.width, self.height, self.width, self.height], np.float32)
@@ -44,30 +44,30 @@ class Letterbox:
 
 
 def letterboxed(
-    picture: NDArray[np.uint8], size: tuple[int, int], multiple: int | None
+    image: NDArray[np.uint8], size: tuple[int, int], multiple: int | None
 ) -> tuple[NDArray[np.uint8], Letterbox]:
-    """Scale a picture into the input of a network.
+    """Scale an image into the input of a network.
 
     Args:
-        picture: shape ``(height, width, 3)``.
+        image: shape ``(height, width, 3)``.
         size: height and width of the input.
-        multiple: None for an input of exactly this size; else the input is as small as the picture lets it be, and its
+        multiple: None for an input of exactly this size; else the input is as small as the image lets it be, and its
             sides are less than `size` by a multiple of this.
 
     Returns:
-        The input, shape ``(rows, columns, 3)``, and where the picture is in it.
+        The input, shape ``(rows, columns, 3)``, and where the image is in it.
     """
     cv2 = load_opencv()
-    height, width = picture.shape[:2]
+    height, width = image.shape[:2]
     scale = min(size[0] / height, size[1] / width)
     rows, columns = max(1, round(height * scale)), max(1, round(width * scale))
     vertical, horizontal = size[0] - rows, size[1] - columns
     if multiple is not None:
         vertical, horizontal = vertical % multiple, horizontal % multiple
     top, left = round(vertical / 2 - 0.1), round(horizontal / 2 - 0.1)
-    scaled = picture
+    scaled = image
     if (rows, columns) != (height, width):
-        scaled = cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_LINEAR)
+        scaled = cv2.resize(image, (columns, rows), interpolation=cv2.INTER_LINEAR)
     whole = np.full((rows + vertical, columns + horizontal, 3), _GREY, np.uint8)
     whole[top : top + rows, left : left + columns] = scaled
     return whole, Letterbox(width, height, (columns / width, rows / height), left, top)

@@ -20,7 +20,7 @@ _NAMES = ("line",)
 
 
 class LineDetector(Detector):
-    """Detects the largest patch of a colour in the lower part of the picture.
+    """Detects the largest patch of a colour in the lower part of the image.
 
     The middle of its box is where the line is: ``(x - width / 2) / (width / 2)`` is how far a robot is off, from -1 to
     1 and positive where the line is to the right. The score is the share of rows of that part that have the line.
@@ -29,7 +29,7 @@ class LineDetector(Detector):
         ``colour``
             of the line, six numbers, see `hsv_range`; dark unless it is given.
         ``part``
-            how much of the picture is looked at, from below; 0.25 unless it is given.
+            how much of the image is looked at, from below; 0.25 unless it is given.
         ``least_area``
             of the line, in pixels; 150 unless it is given.
 
@@ -54,14 +54,14 @@ class LineDetector(Detector):
         """A remark that it needs no GPU, if it was given one."""
         return self._notes
 
-    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+    def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Find the line."""
         cv2 = load_opencv()
-        height = picture.shape[0]
+        height = image.shape[0]
         rows = round(height * self._part)
-        if not picture.size or rows < 1:
+        if not image.size or rows < 1:
             return Detections.none(_NAMES)
-        part = np.ascontiguousarray(picture[height - rows :])
+        part = np.ascontiguousarray(image[height - rows :])
         mask = mask_of(cv2.cvtColor(part, cv2.COLOR_RGB2HSV), self._colour)
         count, labels, statistics, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
         if count < 2:

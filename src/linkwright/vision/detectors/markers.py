@@ -57,11 +57,11 @@ class MarkerDetector(Detector):
         """A remark that it needs no GPU, if it was given one."""
         return self._notes
 
-    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+    def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Find markers."""
-        if min(picture.shape[:2]) < _SMALLEST_SIDE:
+        if min(image.shape[:2]) < _SMALLEST_SIDE:
             return Detections.none(self._names)
-        corners, numbers, _ = self._detector.detectMarkers(_grey(picture))
+        corners, numbers, _ = self._detector.detectMarkers(_grey(image))
         classes = [] if numbers is None else [int(each) for each in np.ravel(numbers)]
         places = [np.asarray(corner, np.float32).reshape(4, 2) + 0.5 for corner in corners]
         boxes = [_box(place) for place in places]
@@ -90,7 +90,7 @@ class QrDetector(Detector):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Empty: the texts are those in the picture."""
+        """Empty: the texts are those in the image."""
         return ()
 
     @property
@@ -98,11 +98,11 @@ class QrDetector(Detector):
         """A remark that it needs no GPU, if it was given one."""
         return self._notes
 
-    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+    def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Find and read codes."""
-        if min(picture.shape[:2]) < _SMALLEST_SIDE:
+        if min(image.shape[:2]) < _SMALLEST_SIDE:
             return Detections.none(())
-        grey = _grey(picture)
+        grey = _grey(image)
         found, texts, corners, _ = self._detector.detectAndDecodeMulti(grey)
         codes = [np.asarray(corner, np.float32).reshape(4, 2) for corner in corners] if found else []
         told = [text or self._read(grey, code) for text, code in zip(texts, codes, strict=False)]
@@ -125,12 +125,12 @@ class QrDetector(Detector):
 _ENLARGED, _QUIET_ZONE = 340, 40
 """Pixels along a side of a code that is read once more, and around it."""
 _SMALLEST_SIDE = 8
-"""The least side of a picture: in smaller ones OpenCV fails instead of finding nothing."""
+"""The least side of an image: in smaller ones OpenCV fails instead of finding nothing."""
 
 
-def _grey(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _grey(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     cv2 = load_opencv()
-    grey: NDArray[np.uint8] = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
+    grey: NDArray[np.uint8] = cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
     return grey
 
 

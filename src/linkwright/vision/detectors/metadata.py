@@ -25,7 +25,7 @@ class Metadata:
         task: ``detect``, ``segment``, ``pose``, ``obb``, ``classify``; empty when the file does not say.
         stride: the sides of its input are multiples of it.
         size: height and width of its input in training.
-        suppressed: whether its boxes are final: no two of them are of the same thing.
+        suppressed: whether its boxes are final: no two of them are of the same object.
         key_numbers: for each box, those of its key points.
     """
 

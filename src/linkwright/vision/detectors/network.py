@@ -35,7 +35,7 @@ class NetworkDetector(Detector):
 
     Raises:
         LinkwrightError: VISION101 onnxruntime or OpenCV is missing, VISION103 the file cannot be loaded, VISION105 its
-            input is no picture, VISION106 and VISION107 see `find_layout`, VISION108 the labels cannot be read,
+            input is no image, VISION106 and VISION107 see `find_layout`, VISION108 the labels cannot be read,
             VISION109 there is no such device, or no input of that size.
     """
 
@@ -48,7 +48,7 @@ class NetworkDetector(Detector):
             )
         self._session, self._notes = session_on(file, options.device)
         metadata = Metadata.of(self._session.get_modelmeta().custom_metadata_map)
-        self._input, self._kind, fixed = _picture_input(file, self._session.get_inputs())
+        self._input, self._kind, fixed = _image_input(file, self._session.get_inputs())
         self._stride = None if fixed else metadata.stride
         self._size = fixed or _multiple(options.size or metadata.size or _USUAL_SIZE, metadata.stride)
         if fixed and options.size not in (None, fixed):
@@ -75,15 +75,15 @@ class NetworkDetector(Detector):
         """Remarks: ignored outputs, and the device if it is not the wanted one."""
         return tuple(self._notes)
 
-    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
-        """Detect objects in a picture.
+    def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
+        """Detect objects in an image.
 
         Raises:
             LinkwrightError: VISION105 the network fails, VISION106 what it gives are not numbers.
         """
-        if not picture.size:
+        if not image.size:
             return Detections.none(self._names)
-        pixels, place = letterboxed(picture, self._size, self._stride)
+        pixels, place = letterboxed(image, self._size, self._stride)
         found = self._candidates(np.asarray(self._run(tensor_of(pixels, self._kind))[0], np.float32), limits.threshold)
         boxes, scores, classes = found.boxes, found.scores, found.classes
         if limits.classes is not None:
@@ -95,7 +95,7 @@ class NetworkDetector(Detector):
             kept = np.flatnonzero(known)[np.argsort(-scores[known], kind="stable")][: limits.most]
         else:
             kept = suppressed(boxes, scores, classes, limits.iou, limits.most)
-        return Detections(place.boxes_in_picture(boxes[kept]), scores[kept], classes[kept], self._names)
+        return Detections(place.boxes_in_image(boxes[kept]), scores[kept], classes[kept], self._names)
 
     def _candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
         with np.errstate(invalid="ignore"):
@@ -143,19 +143,19 @@ class NetworkDetector(Detector):
         return tuple(map(str, range(classes or 1000)))
 
 
-def _picture_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floating], tuple[int, int] | None]:
+def _image_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floating], tuple[int, int] | None]:
     """Name and element type of the input, and its height and width if they are fixed."""
     shape = list(inputs[0].shape) if len(inputs) == 1 else []
     kind = _NUMBERS.get(inputs[0].type) if len(inputs) == 1 else None
     if len(shape) == 4 and isinstance(shape[0], int) and shape[0] > 1:
-        message = phrase("the network in '{file}' takes {count} pictures at once", file=file.name, count=shape[0])
+        message = phrase("the network in '{file}' takes {count} images at once", file=file.name, count=shape[0])
         raise LinkwrightError(Diagnostic("VISION105", message, hint=phrase("export it with batch 1")))
     if kind is None or len(shape) != 4 or shape[1] != 3:
         shown = ", ".join(f"{each.type[7:-1]} {list(each.shape)}" for each in inputs) or "none"
         message = phrase(
-            "the network in '{file}' does not take a picture: its inputs are {inputs}", file=file.name, inputs=shown
+            "the network in '{file}' does not take an image: its inputs are {inputs}", file=file.name, inputs=shown
         )
-        hint = phrase("a picture is float or float16 [1, 3, height, width]")
+        hint = phrase("an image is float or float16 [1, 3, height, width]")
         raise LinkwrightError(Diagnostic("VISION105", message, hint=hint))
     rows, columns = shape[2:]
     size = (rows, columns) if isinstance(rows, int) and isinstance(columns, int) else None

@@ -1,7 +1,7 @@
-"""Finding detectors: networks by path or the name that they were fetched under, and those of packages by entry points.
+"""Finding detectors: networks by path or by the name of a fetched model, and detectors of packages by entry points.
 
-The latter are entry points of the group ``linkwright.detectors``: each names what is called with `DetectorOptions`,
-makes a `Detector`, and raises LinkwrightError where its library is not there.
+The latter are entry points of the group ``linkwright.detectors``: each names a callable that takes `DetectorOptions`,
+returns a `Detector`, and raises LinkwrightError if its library is missing.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ def detector_names() -> tuple[str, ...]:
 def make_detector(model: str, options: DetectorOptions) -> Detector:
     """Make a detector by its name, or from a network in an ONNX or TFLite file.
 
-    Models that `linkwright models get` has fetched go by their names.
+    Models that `linkwright models get` has fetched are found by their names.
 
     Raises:
         LinkwrightError: VISION102 there is neither such a detector nor such a file, VISION104 the file holds a network
-            in another form; else whatever the detector raises itself.
+            in another format; else an error of the detector itself.
     """
     found = extensions(_GROUP).get(model)
     if found is not None:
@@ -45,7 +45,7 @@ def make_detector(model: str, options: DetectorOptions) -> Detector:
     entry = model_table().get(model)
     file = find_model(entry) if entry is not None and entry.kind == _KIND else Path(model).expanduser()
     if file.suffix.lower() in _OTHER_FORMS:
-        message = phrase("'{file}' is no ONNX file", file=file)
+        message = phrase("'{file}' is not an ONNX file", file=file)
         export = phrase(
             "networks are run from ONNX files; with Ultralytics: `yolo export model={file} format=onnx`", file=file.name
         )

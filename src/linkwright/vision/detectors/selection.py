@@ -26,7 +26,7 @@ def most_certain(
         classes: of each, places in `names`.
         names: of the classes.
         limits: which count.
-        corners: of each, four points, for things that have them.
+        corners: of each, four points, for objects that have them.
     """
     wanted = [
         index

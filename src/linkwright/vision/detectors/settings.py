@@ -42,7 +42,7 @@ def hsv_range(name: str, value: object) -> tuple[int, ...]:
     """Parse a range of colours: least hue, saturation, value, then the greatest, in OpenCV's units (hue to 179).
 
     Raises:
-        LinkwrightError: VISION109, it is no list of six such numbers.
+        LinkwrightError: VISION109, it is not a list of six such numbers.
     """
     numbers = list(value) if isinstance(value, Sequence) and not isinstance(value, str) else []
     limits = (179, 255, 255) * 2

@@ -18,7 +18,7 @@ def suppressed(
         boxes: shape ``(n, 4)``: left, top, right, bottom.
         scores: shape ``(n,)``.
         classes: shape ``(n,)``; boxes of different classes leave each other alone.
-        iou: two boxes of a class with more than this share of their union in common are the same thing.
+        iou: two boxes of a class with a larger intersection over union are the same object.
         most: how many may stay.
 
     Returns:

@@ -1,7 +1,7 @@
 """Camera models: a pinhole, and a lens with distortion.
 
 Source: sensor_msgs/msg/CameraInfo; OpenCV's camera model, whose coefficients these are; axes of REP 103: x to the
-right, y down, z into the picture. Pixel coordinates are those of boxes: pixel 0 is from 0 to 1.
+right, y down, z into the image. Pixel coordinates are those of boxes: pixel 0 is from 0 to 1.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ class CameraModel:
     """The intrinsics of a camera.
 
     Attributes:
-        width, height: of its pictures, pixels.
+        width, height: of its images, pixels.
         fx, fy: focal lengths, pixels.
-        cx, cy: where the optical axis goes through the picture, pixels.
+        cx, cy: where the optical axis goes through the image, pixels.
         distortion: k1, k2, p1, p2, k3, k4, k5, k6 of the lens; fewer, or none, for a simpler one.
     """
 
@@ -42,7 +42,7 @@ class CameraModel:
     distortion: tuple[float, ...] = ()
 
     def scaled(self, width: int, height: int) -> CameraModel:
-        """The same camera for pictures of another size."""
+        """The same camera for images of another size."""
         if (width, height) == (self.width, self.height):
             return self
         across, down = width / self.width, height / self.height
@@ -72,7 +72,7 @@ class CameraModel:
         return np.stack([x, y, np.ones_like(x)], axis=-1)
 
     def pixels(self, points: Floats) -> Floats:
-        """Project points of the optical frame to the picture: shapes ``(n, 3)`` and ``(n, 2)``; z must not be 0."""
+        """Project points of the optical frame to the image: shapes ``(n, 3)`` and ``(n, 2)``; z must not be 0."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if any(self.distortion):
             radial, across, down = self._bent(x, y)
@@ -99,21 +99,21 @@ class CameraModel:
 def camera_model(
     width: int, height: int, k: Sequence[float], d: Sequence[float] = (), p: Sequence[float] = (), lens: str = ""
 ) -> CameraModel:
-    """The camera of a CameraInfo, for raw pictures (``image_raw``).
+    """Return the camera of a CameraInfo, for raw images (``image_raw``).
 
     Args:
-        width: of its pictures.
-        height: of its pictures.
-        k: nine numbers, row by row, of the picture that is distorted; zeros where the camera is not calibrated.
-        d: the lens's coefficients.
-        p: twelve numbers, of the rectified picture; they count where k says nothing.
+        width: the width of its images.
+        height: the height of its images.
+        k: nine numbers, row by row, for the distorted image; zeros if the camera is not calibrated.
+        d: the distortion coefficients.
+        p: twelve numbers, for the rectified image; used if k is empty or zero.
         lens: the distortion model, ``plumb_bob`` or ``rational_polynomial``.
 
     Raises:
         ValueError: there is no focal length, no size, or a distortion model that is not known.
     """
     if width <= 0 or height <= 0:
-        raise ValueError(f"the camera's pictures are {width} x {height} pixels")
+        raise ValueError(f"the camera's images are {width} x {height} pixels")
     if len(k) and k[0] > 0 and k[4] > 0:
         if any(d) and lens not in _LENSES:
             raise ValueError(f"the distortion model '{lens}' is not known; it is one of plumb_bob, rational_polynomial")

@@ -1,4 +1,4 @@
-"""What colour a thing in a picture is, in words."""
+"""The colour of an object in an image, as a word."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ _MOST_PIXELS = 24
 """Along a side: of larger boxes only so many pixels are looked at."""
 
 
-def colour_of(picture: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:
-    """The colour of what is in a box, one of `COLOURS`.
+def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:
+    """Return the colour of the object in a box, one of `COLOURS`.
 
-    The ellipse in the middle of the box counts, where the thing is; the most frequent colour of its pixels is the
-    thing's. Bright colours win over white, grey and black, of which there is some in each picture: glints, shadows.
+    The ellipse in the middle of the box counts; the most frequent colour of its pixels is the object's. Bright colours
+    win over white, grey and black, which glints and shadows add to every image.
 
     Args:
-        picture: shape ``(height, width, 3)``, red, green, blue.
+        image: shape ``(height, width, 3)``, red, green, blue.
         box: left, top, right, bottom, pixels.
 
     Returns:
-        None where the box is outside of the picture, or has many colours.
+        None if the box is outside of the image or has many colours.
     """
-    height, width = picture.shape[:2]
+    height, width = image.shape[:2]
     middle = np.array([box[0] + box[2], box[1] + box[3]], np.float64) / 2
     half = np.array([box[2] - box[0], box[3] - box[1]], np.float64) / 2 * _MIDDLE
     steps = np.linspace(-1, 1, _MOST_PIXELS)
@@ -47,7 +47,7 @@ def colour_of(picture: NDArray[np.uint8], box: NDArray[np.floating]) -> str | No
     inside &= ((rows >= 0) & (rows < height))[:, None] & ((columns >= 0) & (columns < width))[None, :]
     if not inside.any():
         return None
-    sampled = picture[rows.clip(0, height - 1)[:, None], columns.clip(0, width - 1)[None, :]][inside]
+    sampled = image[rows.clip(0, height - 1)[:, None], columns.clip(0, width - 1)[None, :]][inside]
     names = named_colours(sampled)
     counts = np.bincount(names, minlength=len(COLOURS)) / len(names)
     bright = counts.copy()
@@ -68,7 +68,7 @@ def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
     grey = (saturation < _GREY_SATURATION) | (chroma < _GREY_CHROMA)
     found = np.full(len(pixels), COLOURS.index("grey"), np.intp)
     found[grey & (most >= _WHITE)] = COLOURS.index("white")
-    coloured = np.flatnonzero(~grey & (most >= _BLACK))  # few pixels of most pictures have a hue that counts
+    coloured = np.flatnonzero(~grey & (most >= _BLACK))  # few pixels of most images have a hue that counts
     found[coloured] = _named_hues(values[:, coloured], most[coloured], chroma[coloured], saturation[coloured])
     found[(grey & (most < 0.3)) | (most < _BLACK)] = COLOURS.index("black")
     return found

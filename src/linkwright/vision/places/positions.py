@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from linkwright.vision.places.camera import CameraModel, Floats
 
 _INNER = 0.6
-"""The share of a box's width and height, in its middle, that most likely shows the thing and not what is behind it."""
+"""The share of a box's width and height, in its middle, that most likely shows the object and not what is behind it."""
 _LEAST_SHARE = 0.25
 """The least part of the depths in the middle of a box that the object's surface has."""
 _LEAST_DEPTHS = 4
@@ -20,10 +20,10 @@ _GAP_METRES, _GAP_SHARE = 0.1, 0.05
 _FLAT = 0.1
 """A surface whose depths differ by less than this share of its width is flat."""
 _SQUARE = (0.8, 1.25)
-"""Width by height of boxes of things that are as round as balls, which touch the ground below their middle."""
+"""Width by height of boxes of objects that are as round as balls, which touch the ground below their middle."""
 _EDGE_PIXELS = 1.5
 _LEAST_FALL = 0.01
-"""A ray that falls by less than this, metres a metre, says nothing of where it meets the ground."""
+"""A ray that falls by less than this, metres a metre, does not determine where it meets the ground."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Place:
 
     Attributes:
         centre: x, y, z in metres, in the camera's optical frame.
-        width, height, depth: along the picture's x and y, and along the view, metres.
+        width, height, depth: along the image's x and y, and along the view, metres.
     """
 
     centre: tuple[float, float, float]
@@ -44,22 +44,21 @@ class Place:
 def place_by_depth(
     box: NDArray[np.floating], depths: Floats, camera: CameraModel, *, spread: float = np.inf, farthest: float = np.inf
 ) -> Place | None:
-    """The position of an object by a depth image.
+    """Return the position of an object from a depth image.
 
-    What counts is the nearest surface in the middle of the box that is more than an edge of something: behind a thing
-    there is always something else, and often more of it. A thing is taken to be as deep as it is wide, unless its
-    surface is flat.
+    The nearest surface in the middle of the box counts, if it is more than an edge: behind an object there is always
+    another surface, often a larger one. An object is assumed to be as deep as it is wide, unless its surface is flat.
 
     Args:
-        box: left, top, right, bottom, pixels of a picture that looks as the depth image does (registered); it may have
-            another size, which is that of `camera`.
-        depths: shape ``(rows, columns)``, metres along the view; NaN, infinite, 0 or less where there is none.
-        camera: that of the picture that the box is in.
-        spread: what differs from the middle of the surface by more, along the view, is not the thing's, metres.
-        farthest: depths beyond are none, metres.
+        box: left, top, right, bottom, in pixels of an image that is registered to the depth image; its size is that of
+            `camera`.
+        depths: shape ``(rows, columns)``, metres along the view; NaN, infinite, 0 or less without a depth.
+        camera: the camera of the image with the box.
+        spread: depths that differ from the middle of the surface by more do not belong to the object, metres.
+        farthest: greater depths are ignored, metres.
 
     Returns:
-        None where there is too little to say.
+        None if there are too few depths.
     """
     rows, columns = depths.shape
     scale = np.array([columns / camera.width, rows / camera.height] * 2)
@@ -87,20 +86,20 @@ def place_by_depth(
 def place_on_ground(
     box: NDArray[np.floating], camera: CameraModel, normal: Floats, height: float, *, farthest: float = np.inf
 ) -> Place | None:
-    """The position of an object on the ground, by the lower edge of its box.
+    """Return the position of an object on the ground, from the lower edge of its box.
 
-    A thing is taken to be as deep as it is wide. One whose box is about square touches the ground below its middle, as
-    a ball does; another one's box ends where its front stands.
+    An object is assumed to be as deep as it is wide. If its box is about square it touches the ground below its centre,
+    as a ball does; otherwise the box ends at the foot of its front.
 
     Args:
         box: left, top, right, bottom, pixels.
-        camera: that of the picture.
+        camera: that of the image.
         normal: of the ground, upwards, in the optical frame: shape ``(3,)``, length 1.
         height: of the camera above the ground, metres.
-        farthest: a thing beyond has no place, metres along the view.
+        farthest: a farther object has no position, metres along the view.
 
     Returns:
-        None where the ground there cannot be seen: at the horizon and above, or below the picture's edge.
+        None where the ground there cannot be seen: at the horizon and above, or below the image's edge.
     """
     left, _, right, bottom = (float(each) for each in box)
     if bottom >= camera.height - _EDGE_PIXELS:

@@ -9,15 +9,15 @@ from math import inf, pi
 from linkwright.vision.places.words import Answer
 
 _FRESH_SECONDS = 0.5
-"""A thing that was seen within these is seen now."""
+"""An object that was seen within these is seen now."""
 _ROUND = 2 * pi + 0.3
 _TURN_FIRST = 0.6
-"""A thing that is further to the side, rad, is turned to before the robot drives."""
+"""An object that is further to the side, rad, is turned to before the robot drives."""
 _TURN_GAIN, _SPEED_GAIN = 1.8, 0.8
 _SLOWEST = 0.06
 _NEAR_ENOUGH, _FACING = 0.03, 0.15
 _BEHIND_OBSTACLE = 0.2
-"""An obstacle that is nearer than the thing by less than this is the thing."""
+"""An obstacle that is nearer than the object by less than this is the object."""
 
 
 class Phase(Enum):
@@ -33,12 +33,12 @@ class SeekSettings:
     """Settings of seeking.
 
     Attributes:
-        distance: how far from the robot's middle the thing's nearest side is in the end, metres.
-        speed: the most, m/s.
-        turn_speed: the most, rad/s; to look round it turns at half of it.
-        lost_time: after how long without seeing the thing it stops, seconds.
-        obstacle_distance: it comes no closer to what stands in its way, metres from its middle.
-        blocked_time: how long it waits for the way to be free, seconds.
+        distance: the final distance from the robot's centre to the object's nearest side, metres.
+        speed: the largest speed, m/s.
+        turn_speed: the largest angular speed, rad/s; half of it to look round.
+        lost_time: the time without seeing the object after which the robot stops, seconds.
+        obstacle_distance: the least distance from the robot's centre to obstacles ahead, metres.
+        blocked_time: how long the robot waits for a clear path, seconds.
     """
 
     distance: float = 0.5
@@ -56,9 +56,10 @@ class View:
     Attributes:
         time: seconds.
         heading: where it looks, rad, in a frame that does not turn with it.
-        bearing: of the thing, rad to the left; counts if the thing was ever seen.
-        surface: metres from the robot's middle to the thing's nearest side; infinite if it was never seen.
-        seen_ago: seconds since the thing was seen; infinite for never.
+        bearing: the bearing of the object, rad to the left; valid if the object was ever seen.
+        surface: the distance from the robot's centre to the object's nearest side, metres; infinite if it was never
+            seen.
+        seen_ago: seconds since the object was seen; infinite for never.
         silence: seconds since a detector said anything.
         free: metres from the robot's middle to the nearest obstacle in its way.
     """
@@ -82,14 +83,14 @@ class Move:
 
 
 class Seeker:
-    """Seeks an object; stops when it is lost, when detections fail to come, when the way is blocked.
+    """Seeks an object. It stops when the object is lost, when detections fail to arrive, or when the path is blocked.
 
     Args:
-        settings: how.
+        settings: the settings.
 
     Attributes:
-        phase: what it is about.
-        follow: whether it stays with the thing when it is there.
+        phase: the current phase.
+        follow: whether to keep following the object after reaching it.
     """
 
     def __init__(self, settings: SeekSettings | None = None) -> None:

@@ -1,4 +1,4 @@
-"""Tracking objects from picture to picture, after ByteTrack.
+"""Tracking objects from image to image, after ByteTrack.
 
 Source: SORT (Bewley et al., 2016): boxes that move on as they did, and the assignment by how much they overlap;
 ByteTrack (Zhang et al., 2022): detections of low score keep tracks alive, and begin none.
@@ -33,8 +33,8 @@ class TrackerSettings:
         low: those below are not looked at (``track_low_thresh``).
         new: the least score that begins a track (``new_track_thresh``).
         match: how little boxes may overlap and belong together: 1 - IoU is at most this (``match_thresh``).
-        patience: how long a thing that is not seen is waited for, seconds (``track_buffer``, 30 pictures of 30 Hz).
-        births: how often a thing must be seen, one picture after the other, to get an id.
+        patience: how long a track without a detection is kept, seconds (``track_buffer``, 30 images at 30 Hz).
+        births: the number of consecutive images that must show an object before it gets an id.
     """
 
     high: float = 0.25
@@ -90,7 +90,7 @@ class _Track:
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """The detections of a picture: boxes as centre and size, names, and stamp."""
+    """The detections of an image: boxes as centre and size, names, and stamp."""
 
     boxes: Floats
     names: list[str]
@@ -111,14 +111,14 @@ class Tracker:
         self._last_id = 0
 
     def update(self, detections: Detections, time: float) -> list[int]:
-        """Update the tracks by the detections of a picture.
+        """Update the tracks with the detections of an image.
 
         Args:
-            detections: all that a detector found, those of low score too.
-            time: of the picture, seconds. Time that jumps back begins anew; ids go on.
+            detections: all detections, including those of low score.
+            time: the time of the image, seconds. A jump back drops all tracks; ids continue.
 
         Returns:
-            The id of each detection; 0 for one that has none, or none yet.
+            The id of each detection; 0 for one without an id yet.
         """
         settings = self._settings
         seconds = 0.0 if self._time is None else time - self._time

@@ -36,7 +36,7 @@ _ALIKE = (
     ("cat", "猫"),
     ("car", "汽车", "车"),
 )  # fmt: skip
-"""Names of the same thing, English ones first; the first Chinese one is said."""
+"""Names of the same object, English ones first; the first Chinese one is said."""
 _FIRST = {name: group[0] for group in _ALIKE for name in group}
 _CHINESE = {group[0]: next(name for name in group if not name.isascii()) for group in _ALIKE}
 _PLURALS = {"people": "person", "children": "child", "boxes": "box", "persons": "person"}
@@ -57,7 +57,7 @@ _ROUND, _ABOUT_ONE = "ball", (0.75, 1.33)
 _FILLED_BY_A_CIRCLE = (0.7, 0.86)
 """The part of its box that a round patch fills: about pi / 4; a square one fills it."""
 _AHEAD, _BESIDE = 20.0, 110.0
-"""Up to how many degrees off a thing is ahead, and to the left or right; beyond it is behind."""
+"""Up to how many degrees off an object is ahead, and to the left or right; beyond it is behind."""
 
 
 class Answer(Enum):
@@ -79,8 +79,8 @@ _ANSWERS = {
     Answer.ARRIVED: {"en": "I am at the {it}.", "zh": "我到{it}这里了。"},
     Answer.NOT_FOUND: {"en": "I cannot find the {it}.", "zh": "我没有找到{it}。"},
     Answer.LOST: {"en": "I have lost the {it}.", "zh": "我看不到{it}了。"},
-    Answer.BLOCKED: {"en": "Something stands between me and the {it}.", "zh": "我和{it}之间有东西挡着。"},
-    Answer.BLIND: {"en": "I stop: no detections come.", "zh": "我停下了：没有收到检测结果。"},
+    Answer.BLOCKED: {"en": "Something is between me and the {it}.", "zh": "我和{it}之间有东西挡着。"},
+    Answer.BLIND: {"en": "I stop: no detections arrive.", "zh": "我停下了：没有收到检测结果。"},
     Answer.STOPPED: {"en": "I stop.", "zh": "我停下了。"},
 }
 
@@ -90,12 +90,12 @@ class Wanted:
     """A requested object.
 
     Attributes:
-        thing: its name, as `thing_of` has it; empty for anything of that colour.
+        noun: its name, as `object_name` returns it; empty for any object of that colour.
         colour: one of `COLOURS`; None for any.
-        text: as it was said, without words that say nothing.
+        text: the spoken words, without filler words.
     """
 
-    thing: str
+    noun: str
     colour: str | None
     text: str
 
@@ -105,31 +105,30 @@ class Wanted:
         return "en" if self.text.isascii() else "zh"
 
     def is_it(self, name: str, colour: str | None, shape: float = 1.0, score: float = 1.0) -> bool:
-        """Whether an object of that class is meant.
+        """Return whether an object of a class is meant.
 
-        A class may have its colour in its name, as ``red_ball`` does; one that is nothing but a colour may be any
-        thing of that colour, and a ball if it is about as wide as high. A ball of no colour in particular is a patch
-        that is round, too.
+        A class may have its colour in its name, as ``red_ball`` does. One that is only a colour may be any object of
+        that colour, and a ball if it is about as wide as high. A ball of any colour may also be a round patch.
 
         Args:
-            name: its class.
-            colour: in which it was seen, if any.
-            shape: its width by its height.
-            score: of the detection; of a patch of a colour, how much of its box it fills.
+            name: the class.
+            colour: the colour of the object, if known.
+            shape: the width divided by the height.
+            score: the score of the detection; for a patch of a colour, the share of its box that it fills.
         """
         words = words_of(name)
         told = told_colour(name)
         rest = " ".join(word for word in words if word not in SPELLINGS)
         if self.colour is not None and self.colour != (told or colour):
             return False
-        if not self.thing:
+        if not self.noun:
             return True
         if not rest:
-            if self.thing != _ROUND:
+            if self.noun != _ROUND:
                 return self.colour is not None
             is_round = self.colour is not None or _FILLED_BY_A_CIRCLE[0] < score < _FILLED_BY_A_CIRCLE[1]
             return is_round and _ABOUT_ONE[0] < shape < _ABOUT_ONE[1]
-        return self.thing in (thing_of(rest), thing_of(rest.split()[-1]))
+        return self.noun in (object_name(rest), object_name(rest.split()[-1]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +141,7 @@ class Sighting:
     left: float
 
 
-def thing_of(name: str) -> str:
+def object_name(name: str) -> str:
     """A common name for all names of an object: lower case, singular; ``ball`` for ``football`` and ``球``."""
     plain = name.strip().lower()
     if plain in _FIRST:
@@ -159,12 +158,12 @@ def wanted(text: str) -> Wanted | None:
         words = [word for word in words_of(plain) if word not in _FILLERS]
         colour = next((SPELLINGS[word] for word in words if word in SPELLINGS), None)
         rest = " ".join(word for word in words if word not in SPELLINGS and word not in ("thing", "one"))
-        return Wanted(thing_of(rest), colour, " ".join(words)) if colour or rest else None
+        return Wanted(object_name(rest), colour, " ".join(words)) if colour or rest else None
     plain = _CHINESE_VERBS.sub("", plain)
     colour = next((_CHINESE_COLOURS[sign] for sign in plain if sign in _CHINESE_COLOURS), None)
     rest = _CHINESE_FILLERS.sub("", plain)
     rest = "".join(sign for sign in rest if sign not in _CHINESE_COLOURS).replace("东西", "").strip()
-    return Wanted(thing_of(rest), colour, re.sub(r"那个|这个|一个|请", "", plain)) if colour or rest else None
+    return Wanted(object_name(rest), colour, re.sub(r"那个|这个|一个|请", "", plain)) if colour or rest else None
 
 
 def described(sightings: Iterable[Sighting], language: str) -> str:
@@ -183,17 +182,17 @@ def named(name: str, colour: str | None, language: str) -> str:
     """An object with its colour: *red ball*, 红色的球."""
     words = [word for word in words_of(name) if word not in SPELLINGS]
     told = told_colour(name) or colour
-    thing = " ".join(words)
+    noun = " ".join(words)
     if language != "zh":
-        return " ".join(filter(None, (told, thing or "thing")))
-    chinese = _CHINESE.get(thing_of(thing), thing) if thing else "东西"
+        return " ".join(filter(None, (told, noun or "thing")))
+    chinese = _CHINESE.get(object_name(noun), noun) if noun else "东西"
     signs = {english: sign for sign, english in reversed(_CHINESE_COLOURS.items())}
     return f"{signs[told]}色的{chinese}" if told else chinese
 
 
 def answer(event: Answer, request: Wanted, language: str) -> str:
     """The answer to a request; it names the object as it was asked for, or as it is called there."""
-    said = request.text if request.language == language else named(request.thing, request.colour, language)
+    said = request.text if request.language == language else named(request.noun, request.colour, language)
     return _ANSWERS[event][language].format(it=said)
 
 

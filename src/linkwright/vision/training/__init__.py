@@ -1,1 +1,1 @@
-"""Training networks: on labelled pictures, evaluated, exported with a card. Only training itself needs PyTorch."""
+"""Training networks: on labelled images, evaluated, exported with a card. Only training itself needs PyTorch."""

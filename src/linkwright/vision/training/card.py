@@ -9,16 +9,16 @@ from pathlib import Path
 
 from linkwright.vision.evaluation import ClassFigures, Evaluation
 
-_WEAK = 0.8  # of recall: what is below is named among what fails
-_OFTEN = 0.05  # the share of a class that is taken for another one from which on it is named
+_WEAK = 0.8  # the recall below which a class is listed as a failure
+_OFTEN = 0.05  # the share of a class confused with another one, above which it is listed
 
 
 @dataclass(frozen=True, slots=True)
 class Examination:
-    """The figures of a network on some pictures.
+    """The figures of a network on some images.
 
     Attributes:
-        title: what the pictures are.
+        title: the description of the images.
         figures: how well it does on them.
         origin: what they were made of; empty where that is not known.
     """
@@ -32,9 +32,9 @@ def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination
     """Write the card as Markdown.
 
     Args:
-        name: of the network.
-        facts: what there is to know of its making, in the order in which it is told.
-        examinations: how well it does, first on the pictures that were kept from the same dataset.
+        name: the name of the network.
+        facts: the facts about the training, in the order of the card.
+        examinations: the evaluations, first on the held-back images of the same dataset.
     """
     lines = [f"# {name}", "", "| | |", "| --- | --- |"]
     lines += [f"| {key} | {_cell(value)} |" for key, value in facts.items()]
@@ -43,7 +43,7 @@ def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination
         lines += ["", f"## {each.title}", "", *origin, *_figures(each.figures)]
     lines += ["", "## Where it fails", ""]
     failures = [line for each in examinations for line in _failures(each)]
-    lines += failures or ["Nothing stands out in these pictures."]
+    lines += failures or ["Nothing stands out in these images."]
     return "\n".join(lines) + "\n"
 
 
@@ -58,7 +58,7 @@ def made_of(folder: Path) -> dict[str, str]:
 
 
 def origin(folder: Path, lesson: Path) -> str:
-    """The worlds of a dataset's pictures, and whether the network was trained on them, too.
+    """The worlds of a dataset's images, and whether the network was trained on them, too.
 
     Args:
         folder: of the dataset that judges.
@@ -72,7 +72,7 @@ def origin(folder: Path, lesson: Path) -> str:
         return told
     digests = {digest for _, digest in taught.worlds}
     known = ", ".join(sorted(name for name, digest in making.worlds if digest in digests))
-    return f"{told} {f'It was taught with other pictures of {known}.' if known else 'None of them taught it.'}"
+    return f"{told} {f'It was trained on other images of {known}.' if known else 'It was trained on none of them.'}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ class _Making:
 
 
 def _making(folder: Path) -> _Making | None:
-    """The making as `linkwright dataset` recorded it; None without a record."""
+    """Return the record that `linkwright dataset` wrote; None if there is none."""
     try:
         runs = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))["made"]
         worlds = {(Path(each["file"]).stem, str(each["sha256"])) for run in runs for each in run["worlds"]}
@@ -98,17 +98,17 @@ def _making(folder: Path) -> _Making | None:
 
 def table(figures: Evaluation) -> list[str]:
     """The figures of all classes, as lines of a Markdown table."""
-    lines = ["| class | things | mAP50 | mAP50-95 | precision | recall |", "| --- | ---: | ---: | ---: | ---: | ---: |"]
+    lines = ["| class | objects | mAP50 | mAP50-95 | precision | recall |", f"| --- |{' ---: |' * 5}"]
     lines += [_row(each) for each in figures.classes]
-    things = sum(each.things for each in figures.classes)
-    lines.append(f"| all | {things} | {figures.map50:.3f} | {figures.map:.3f} | | |")
+    objects = sum(each.objects for each in figures.classes)
+    lines.append(f"| all | {objects} | {figures.map50:.3f} | {figures.map:.3f} | | |")
     return lines
 
 
 def confusion(figures: Evaluation) -> list[str]:
-    """The confusion matrix as lines of a Markdown table: a row for what is there, a column for what was detected."""
+    """Return the confusion matrix as lines of a Markdown table: rows are labels, columns detections."""
     names = [each.name for each in figures.classes]
-    lines = [f"| is \\ said | {' | '.join(names)} | nothing |", "| --- |" + " ---: |" * (len(names) + 1)]
+    lines = [f"| label \\ detection | {' | '.join(names)} | nothing |", "| --- |" + " ---: |" * (len(names) + 1)]
     for name, row in zip([*names, "nothing"], figures.confusion.tolist(), strict=True):
         lines.append(f"| {name} | {' | '.join(str(count) if count else '' for count in row)} |")
     return lines
@@ -116,14 +116,14 @@ def confusion(figures: Evaluation) -> list[str]:
 
 def _figures(figures: Evaluation) -> list[str]:
     sizes = [
-        f"| {name} | {things} | {recall:.2f} |" for name, things, recall in figures.recall_by_size if things
+        f"| {name} | {objects} | {recall:.2f} |" for name, objects, recall in figures.recall_by_size if objects
     ]  # fmt: skip
     return [
-        f"{figures.pictures} pictures. Precision and recall at a score of 0.5.",
+        f"{figures.images} images. Precision and recall at a score of 0.5.",
         "",
         *table(figures),
         "",
-        "| longer side | things | recall |",
+        "| longer side | objects | recall |",
         "| --- | ---: | ---: |",
         *sizes,
     ]
@@ -131,7 +131,7 @@ def _figures(figures: Evaluation) -> list[str]:
 
 def _row(each: ClassFigures) -> str:
     values = (each.ap50, each.ap, each.precision, each.recall)
-    return f"| {each.name} | {each.things} | {' | '.join(map(_number, values))} |"
+    return f"| {each.name} | {each.objects} | {' | '.join(map(_number, values))} |"
 
 
 def _number(value: float | None) -> str:
@@ -141,17 +141,17 @@ def _number(value: float | None) -> str:
 def _failures(each: Examination) -> list[str]:
     """The classes that are often missed or confused."""
     lines = []
-    for name, things, recall in each.figures.recall_by_size:
-        if things and recall < _WEAK:
-            lines.append(f"- {each.title}: of things {name} it misses {1 - recall:.0%}.")
+    for name, objects, recall in each.figures.recall_by_size:
+        if objects and recall < _WEAK:
+            lines.append(f"- {each.title}: of objects {name} it misses {1 - recall:.0%}.")
     names = [kind.name for kind in each.figures.classes]
     for place, kind in enumerate(each.figures.classes):
         if kind.recall is not None and kind.recall < _WEAK:
             lines.append(f"- {each.title}: it misses {1 - kind.recall:.0%} of {kind.name}.")
         row = each.figures.confusion[place]
         for other, count in enumerate(row[:-1].tolist()):
-            if other != place and kind.things and count / kind.things >= _OFTEN:
-                lines.append(f"- {each.title}: it takes {count / kind.things:.0%} of {kind.name} for {names[other]}.")
+            if other != place and kind.objects and count / kind.objects >= _OFTEN:
+                lines.append(f"- {each.title}: it takes {count / kind.objects:.0%} of {kind.name} for {names[other]}.")
     return lines
 
 

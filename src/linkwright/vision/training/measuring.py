@@ -1,4 +1,4 @@
-"""Running a detector on labelled pictures and evaluating it."""
+"""Running a detector on labelled images and evaluating it."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import make_detector
-from linkwright.vision.evaluation import MOST, Evaluation, Things, evaluate
-from linkwright.vision.training.pictures import read_picture
+from linkwright.vision.evaluation import MOST, Evaluation, GroundTruth, evaluate
+from linkwright.vision.training.pictures import read_image
 from linkwright.vision.training.reading import Labelled
 
 LIMITS = Limits(threshold=0.01, iou=0.6, most=MOST)
@@ -19,21 +19,21 @@ LIMITS = Limits(threshold=0.01, iou=0.6, most=MOST)
 
 
 def measure(model: str | Path, names: Sequence[str], labelled: Sequence[Labelled]) -> Evaluation:
-    """Evaluate a detector on pictures.
+    """Evaluate a detector on images.
 
     Args:
         model: an ONNX file, or the name of a detector.
-        names: of the classes of the pictures.
-        labelled: the pictures.
+        names: of the classes of the images.
+        labelled: the images.
 
     Raises:
-        LinkwrightError: the detector cannot be made; VISION305, a picture is broken.
+        LinkwrightError: the detector cannot be made; VISION305, an image is broken.
     """
     detector = make_detector(str(model), DetectorOptions())
     found, truth = [], []
     for each in labelled:
-        picture = read_picture(each)
-        scale = np.array(picture.shape[1::-1] * 2, np.float32)
-        truth.append(Things(each.boxes * scale, each.classes, each.ignored))
-        found.append(detector.detect(picture, LIMITS))
+        image = read_image(each)
+        scale = np.array(image.shape[1::-1] * 2, np.float32)
+        truth.append(GroundTruth(each.boxes * scale, each.classes, each.ignored))
+        found.append(detector.detect(image, LIMITS))
     return evaluate(names, truth, found)

@@ -11,11 +11,11 @@ _WHOLE = 0.8, 1.25
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """The part of a picture that is shown.
+    """The part of an image that is shown.
 
     Attributes:
         size: width and height, in pixels.
-        scales: the smallest and the largest that a picture is scaled by.
+        scales: the smallest and the largest that an image is scaled by.
     """
 
     size: tuple[int, int]
@@ -27,25 +27,25 @@ class Options:
     """Options of a training.
 
     Attributes:
-        dataset: folder of the dataset that teaches.
-        output: folder for what comes of it: ``NAME.onnx``, ``NAME.md`` (the card), ``last.pt`` (to resume from).
-        name: of the network.
-        epochs: how often each picture is seen; those with rare classes more often.
-        whole_epochs: so many of them, the last ones, are of whole pictures of the size at which they are judged.
-        batch: pictures in a step.
+        dataset: the folder of the training dataset.
+        output: the output folder: ``NAME.onnx``, ``NAME.md`` (the card), ``last.pt`` (to resume from).
+        name: the name of the network.
+        epochs: the number of epochs; each uses images with rare classes more than once.
+        whole_epochs: the number of last epochs that use full images of the size used in evaluation.
+        batch: the number of images in a step.
         rate: the highest learning rate.
-        width: of the network's pictures, in pixels, a multiple of 32.
+        width: the width of the network's input, in pixels, a multiple of 32.
         height: likewise.
-        channels: of the first convolution; the others have multiples of it.
-        seed: of all that is drawn by lot.
-        threads: of the processor.
-        precision: what it computes with while it learns: ``float32``, or ``bfloat16``, where 16 bits are enough;
-            weights have 32.
-        device: where it learns: ``auto``, the first GPU that PyTorch sees by CUDA, else the processor; ``cpu``.
-        weights: ONNX file of a training, whose network it begins with; None for random weights.
-        resume: go on from ``last.pt`` of the folder.
-        held_out: folders of datasets that only judge the result, with their split ``test``, or else ``val``.
-        command: what the user typed, for the card; without ``--resume``, with which the result is the same.
+        channels: the channels of the first convolution; the others have multiples of it.
+        seed: the random seed.
+        threads: the number of CPU threads.
+        precision: the number format of training: ``float32``, or ``bfloat16`` where 16 bits are enough; weights have
+            32.
+        device: the device of training: ``auto``, the first CUDA GPU that PyTorch sees, else the CPU; ``cpu``.
+        weights: the ONNX file of an earlier training to start from; None for random weights.
+        resume: whether to resume from ``last.pt`` in the folder.
+        held_out: the folders of datasets that are only used for evaluation, with their split ``test``, or else ``val``.
+        command: the user's command line for the card, without ``--resume``, which does not change the result.
     """
 
     dataset: Path
@@ -68,10 +68,10 @@ class Options:
     command: str = ""
 
     def view(self, epoch: int) -> View:
-        """The view in an epoch, from 0: parts of the pictures at first, whole ones in the end.
+        """Return the view in an epoch, from 0: parts of the images at first, full images in the end.
 
-        Features know little of how large a picture is, so small parts teach nearly as much as whole pictures in a
-        quarter of the time. What is left for whole ones to teach is things that fill much of a picture.
+        Features depend little on the size of an image, so small parts teach nearly as much as full images in a quarter
+        of the time. Full images are only needed for objects that fill much of an image.
         """
         if epoch >= self.epochs - self.whole_epochs:
             return View((self.width, self.height), _WHOLE)

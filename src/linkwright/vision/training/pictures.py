@@ -1,4 +1,4 @@
-"""Pictures as training samples: of one size, with random augmentation."""
+"""Images as training samples: of one size, with random augmentation."""
 
 from __future__ import annotations
 
@@ -17,86 +17,86 @@ from linkwright.vision.training.options import View
 from linkwright.vision.training.reading import Labelled
 
 GREY = 114
-"""Around pictures of another shape, as trainers of the YOLO family do it."""
-_FEWEST_PIXELS = 3.0  # a thing that is narrower after a change is no longer asked for
-_LEAST_SHARE = 0.3  # nor one of which less is left
+"""Around images of another shape, as trainers of the YOLO family do it."""
+_FEWEST_PIXELS = 3.0  # an object that is narrower after augmentation is ignored
+_LEAST_SHARE = 0.3  # as is one with a smaller remaining share
 
 
 @dataclass(frozen=True, slots=True)
 class Lesson:
-    """Pictures of one size with their labels.
+    """Images of one size with their labels.
 
     Attributes:
-        pictures: shape ``(n, height, width, 3)``, red, green, blue.
-        things: for each picture shape ``(m, 5)``: class, left, top, right, bottom in its pixels. The class of what
-            is to be ignored is -2 for class 0, -3 for class 1, ...
+        images: shape ``(n, height, width, 3)``, red, green, blue.
+        objects: for each image shape ``(m, 5)``: class, left, top, right, bottom in its pixels. The class of an ignored
+            object is -2 for class 0, -3 for class 1, ...
     """
 
-    pictures: NDArray[np.uint8]
-    things: tuple[NDArray[np.float32], ...]
+    images: NDArray[np.uint8]
+    objects: tuple[NDArray[np.float32], ...]
 
 
-def read_picture(labelled: Labelled) -> NDArray[np.uint8]:
-    """Read a picture: pixels, shape ``(height, width, 3)``, red, green, blue.
+def read_image(labelled: Labelled) -> NDArray[np.uint8]:
+    """Read an image: pixels, shape ``(height, width, 3)``, red, green, blue.
 
     Raises:
-        LinkwrightError: VISION305, it is no picture.
+        LinkwrightError: VISION305, it is not an image.
     """
     cv2 = load_opencv()
     data: NDArray[np.uint8] = np.fromfile(labelled.path, np.uint8)
     pixels: Any = cv2.imdecode(data, cv2.IMREAD_COLOR) if data.size else None
     if pixels is None:
-        message = phrase("'{path}' is no picture, or is broken", path=display_path(labelled.path))
+        message = phrase("'{path}' is not an image, or is broken", path=display_path(labelled.path))
         raise LinkwrightError(Diagnostic("VISION305", message))
     read: NDArray[np.uint8] = np.ascontiguousarray(pixels[..., ::-1])
     return read
 
 
 def read_lesson(labelled: Sequence[Labelled], width: int, height: int) -> Lesson:
-    """Read pictures into memory, scaled to one size with grey borders, as detectors do it.
+    """Read images into memory, scaled to one size with grey borders, as detectors do it.
 
     Raises:
-        LinkwrightError: VISION305, one is no picture.
+        LinkwrightError: VISION305, one is not an image.
     """
-    pictures: NDArray[np.uint8] = np.zeros((len(labelled), height, width, 3), np.uint8)
-    things: list[NDArray[np.float32]] = [np.zeros((0, 5), np.float32)] * len(labelled)
+    images: NDArray[np.uint8] = np.zeros((len(labelled), height, width, 3), np.uint8)
+    objects: list[NDArray[np.float32]] = [np.zeros((0, 5), np.float32)] * len(labelled)
 
     def read(number: int) -> None:
-        pixels = read_picture(labelled[number])
-        pictures[number], place = letterboxed(pixels, (height, width), None)
+        pixels = read_image(labelled[number])
+        images[number], place = letterboxed(pixels, (height, width), None)
         sides = np.array((place.width, place.height) * 2, np.float32) * np.array(place.scale * 2, np.float32)
         boxes: NDArray[np.float32] = labelled[number].boxes * sides
         boxes += np.array((place.left, place.top) * 2, np.float32)
         kinds = np.where(labelled[number].ignored, -2 - labelled[number].classes, labelled[number].classes)
-        things[number] = np.concatenate((kinds[:, None].astype(np.float32), boxes), 1)
+        objects[number] = np.concatenate((kinds[:, None].astype(np.float32), boxes), 1)
 
     with ThreadPoolExecutor(2) as pool:
         for done in [pool.submit(read, number) for number in range(len(labelled))]:
             done.result()
-    return Lesson(pictures, tuple(things))
+    return Lesson(images, tuple(objects))
 
 
 def repeats(lesson: Lesson, classes: int) -> NDArray[np.float64]:
-    """How often each picture is used in an epoch: once, or more often where it shows a rare class.
+    """How often each image is used in an epoch: once, or more often where it shows a rare class.
 
-    A class that is in a share f of the pictures counts as rare below the median m of these shares; its pictures are
+    A class that is in a share f of the images counts as rare below the median m of these shares; its images are
     seen sqrt(m / f) times, as with the repeat factors of LVIS (Gupta and others 2019).
 
     Returns:
         Shape ``(n,)``, 1 or more.
     """
-    there: NDArray[np.bool_] = np.zeros((len(lesson.things), classes), np.bool_)
-    for row, things in zip(there, lesson.things, strict=True):
-        row[things[things[:, 0] >= 0, 0].astype(np.int64)] = True
-    pictures = there.sum(0)
-    usual = float(np.median(pictures[pictures > 0])) if pictures.any() else 1.0
-    factors = np.maximum(1.0, np.sqrt(usual / np.maximum(pictures, 1)))
+    there: NDArray[np.bool_] = np.zeros((len(lesson.objects), classes), np.bool_)
+    for row, objects in zip(there, lesson.objects, strict=True):
+        row[objects[objects[:, 0] >= 0, 0].astype(np.int64)] = True
+    images = there.sum(0)
+    usual = float(np.median(images[images > 0])) if images.any() else 1.0
+    factors = np.maximum(1.0, np.sqrt(usual / np.maximum(images, 1)))
     found: NDArray[np.float64] = np.where(there, factors, 1.0).max(1, initial=1.0)
     return found
 
 
 def repeated(times: NDArray[np.float64], chance: np.random.Generator) -> NDArray[np.int64]:
-    """The indices of pictures, each repeated; fractions are drawn at random."""
+    """The indices of images, each repeated; fractions are drawn at random."""
     whole: NDArray[np.int64] = np.floor(times + chance.random(len(times))).astype(np.int64)
     return np.repeat(np.arange(len(times)), whole)
 
@@ -104,22 +104,22 @@ def repeated(times: NDArray[np.float64], chance: np.random.Generator) -> NDArray
 def changed(
     lesson: Lesson, place: int, view: View, chance: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """Augment a picture: a random part, moved, with other light and colours.
+    """Augment an image: a random part, moved, with other light and colours.
 
     It is mirrored and scaled; brightness, contrast, colours and sharpness change, and noise is added.
 
     Args:
-        lesson: the pictures.
-        place: of the picture in it.
-        view: how large the part is, and by what pictures are scaled.
-        chance: where the dice come from.
+        lesson: the images.
+        place: the index of the image in it.
+        view: the size of the part, and the scale of images.
+        chance: the random generator.
 
     Returns:
-        The part, shape ``(height, width, 3)``, and the things in it, see `Lesson`.
+        The part, shape ``(height, width, 3)``, and the objects in it, see `Lesson`.
     """
     cv2 = load_opencv()
-    picture, things = lesson.pictures[place], lesson.things[place]
-    height, width = picture.shape[:2]
+    image, objects = lesson.images[place], lesson.objects[place]
+    height, width = image.shape[:2]
     size = view.size
     smallest, largest = np.log(view.scales)
     scale = float(np.exp(chance.uniform(smallest, largest)))
@@ -127,21 +127,21 @@ def changed(
     aspect = float(np.exp(chance.uniform(-0.1, 0.1)))
     across, down = scale * aspect, scale / aspect
     middle = chance.uniform(0, 1, 2) * (width, height)
-    asked = things[things[:, 0] >= 0]
+    asked = objects[objects[:, 0] >= 0]
     if len(asked) and chance.random() < 0.7:  # something is to be seen
         some = asked[int(chance.integers(len(asked)))]
         middle = (some[1:3] + some[3:5]) / 2 + chance.uniform(-0.4, 0.4, 2) * size / np.array((across, down))
-    # The part lies within the picture; where that is too small, grey is around.
+    # The part is within the image; a smaller image is padded with grey.
     room = np.array((width, height)) - np.array(size) / (across, down)
     corner = np.clip(middle - np.array(size) / (across, down) / 2, np.minimum(room, 0), np.maximum(room, 0))
     left, top = corner
     shift = -left * across if mirror > 0 else size[0] + left * across
     turn: NDArray[np.float32] = np.array([[across * mirror, 0, shift], [0, down, -top * down]], np.float32)
-    moved = cv2.warpAffine(picture, turn, size, flags=cv2.INTER_LINEAR, borderValue=(GREY, GREY, GREY))
-    return _in_other_light(moved, chance), _moved(things, turn, *size)
+    moved = cv2.warpAffine(image, turn, size, flags=cv2.INTER_LINEAR, borderValue=(GREY, GREY, GREY))
+    return _in_other_light(moved, chance), _moved(objects, turn, *size)
 
 
-def _in_other_light(picture: NDArray[np.uint8], chance: np.random.Generator) -> NDArray[np.uint8]:
+def _in_other_light(image: NDArray[np.uint8], chance: np.random.Generator) -> NDArray[np.uint8]:
     cv2 = load_opencv()
     gain = float(np.exp(chance.uniform(-0.5, 0.35)))
     tint: NDArray[np.float32] = np.exp(chance.normal(0, 0.08, 3)).astype(np.float32) * np.float32(gain)
@@ -149,7 +149,7 @@ def _in_other_light(picture: NDArray[np.uint8], chance: np.random.Generator) -> 
     steps: NDArray[np.float32] = np.arange(256, dtype=np.float32)[:, None]
     bent = (steps / 255) ** float(np.exp(chance.uniform(-0.25, 0.25)))
     light: NDArray[np.uint8] = np.clip(bent * 255 * tint + lift, 0, 255).astype(np.uint8)
-    pixels: Any = cv2.LUT(picture, light[None])
+    pixels: Any = cv2.LUT(image, light[None])
     if chance.random() < 0.3:
         hue: Any = cv2.cvtColor(pixels, cv2.COLOR_RGB2HSV)
         hue[..., 0] = (hue[..., 0].astype(np.int16) + int(chance.integers(-12, 13))) % 180
@@ -163,11 +163,11 @@ def _in_other_light(picture: NDArray[np.uint8], chance: np.random.Generator) -> 
     return result
 
 
-def _moved(things: NDArray[np.float32], turn: NDArray[np.float32], width: int, height: int) -> NDArray[np.float32]:
-    """The boxes in the moved picture; those that are mostly outside are to be ignored."""
-    x = things[:, 1::2] * turn[0, 0] + turn[0, 2]
-    y = things[:, 2::2] * turn[1, 1] + turn[1, 2]
-    whole = np.stack((x.min(1), y.min(1), x.max(1), y.max(1)), 1) if len(things) else np.zeros((0, 4), np.float32)
+def _moved(objects: NDArray[np.float32], turn: NDArray[np.float32], width: int, height: int) -> NDArray[np.float32]:
+    """The boxes in the moved image; those that are mostly outside are to be ignored."""
+    x = objects[:, 1::2] * turn[0, 0] + turn[0, 2]
+    y = objects[:, 2::2] * turn[1, 1] + turn[1, 2]
+    whole = np.stack((x.min(1), y.min(1), x.max(1), y.max(1)), 1) if len(objects) else np.zeros((0, 4), np.float32)
     seen = whole.copy()
     seen[:, 0::2] = np.clip(seen[:, 0::2], 0, width)
     seen[:, 1::2] = np.clip(seen[:, 1::2], 0, height)
@@ -175,6 +175,6 @@ def _moved(things: NDArray[np.float32], turn: NDArray[np.float32], width: int, h
     asked = (sides.min(1, initial=np.inf) >= _FEWEST_PIXELS) & (
         sides.prod(1) >= _LEAST_SHARE * np.maximum(all_sides.prod(1), 1e-6)
     )
-    kinds = np.where(asked | (things[:, 0] < 0), things[:, 0], -2 - things[:, 0])
+    kinds = np.where(asked | (objects[:, 0] < 0), objects[:, 0], -2 - objects[:, 0])
     result: NDArray[np.float32] = np.concatenate((kinds[:, None], seen), 1)[sides.min(1, initial=np.inf) > 0]
     return result.astype(np.float32)

@@ -1,8 +1,8 @@
 """Reading datasets in the folders of YOLO trainers, which `linkwright dataset` writes.
 
-A YAML file in the folder names the classes and the folders of the pictures, and beside ``images`` lies ``labels``:
-for each picture a text with a line for each thing, its class, the middle, the width and the height of its box as
-shares of the picture. A picture without such a text has nothing in it.
+A YAML file in the folder names the classes and the folders of the images. Beside ``images`` is ``labels``, with a text
+file for each image and a line in it for each object: its class, and the centre, width and height of its box as shares
+of the image. An image without such a file has no objects.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 
-PICTURES = frozenset({".bmp", ".jpeg", ".jpg", ".png", ".ppm", ".webp"})
+IMAGES = frozenset({".bmp", ".jpeg", ".jpg", ".png", ".ppm", ".webp"})
 
 
 @dataclass(frozen=True, slots=True)
 class Labelled:
-    """A labelled picture.
+    """A labelled image.
 
     Attributes:
-        path: of the picture.
-        classes: shape ``(n,)``, places in the dataset's names.
-        boxes: shape ``(n, 4)``: left, top, right, bottom, as shares of the picture's width and height.
-        ignored: shape ``(n,)``, those of which so little is seen that nobody is asked for them.
+        path: the path of the image.
+        classes: shape ``(n,)``, indices in the dataset's names.
+        boxes: shape ``(n, 4)``: left, top, right, bottom, as shares of the image's width and height.
+        ignored: shape ``(n,)``, whether too little of the object is visible for it to count.
     """
 
     path: Path
@@ -54,9 +54,9 @@ class Dataset:
     """A dataset in splits: one to train on, another to evaluate on.
 
     Attributes:
-        folder: where it lies.
-        names: of the classes.
-        splits: folders of pictures by the name of the split: ``train``, ``val``, perhaps ``test``.
+        folder: the folder.
+        names: the names of the classes.
+        splits: the folders of images by the name of the split: ``train``, ``val``, perhaps ``test``.
     """
 
     folder: Path
@@ -64,10 +64,10 @@ class Dataset:
     splits: Mapping[str, tuple[Path, ...]]
 
     def read(self, split: str) -> list[Labelled]:
-        """The pictures of a split, sorted by their paths, with their labels.
+        """The images of a split, sorted by their paths, with their labels.
 
         Raises:
-            LinkwrightError: VISION303, there is no such split, or no picture in it; VISION304, a label that cannot be.
+            LinkwrightError: VISION303, there is no such split, or no image in it; VISION304, a label that cannot be.
         """
         if split not in self.splits:
             known = quoted_names(sorted(self.splits), " and ")
@@ -80,11 +80,11 @@ class Dataset:
             for folder in self.splits[split]
             if folder.is_dir()
             for path in sorted(folder.rglob("*"))
-            if path.suffix.lower() in PICTURES
+            if path.suffix.lower() in IMAGES
         ]
         if not paths:
             where = display_path(self.splits[split][0])
-            message = phrase("there are no pictures of the split '{split}' in '{folder}'", split=split, folder=where)
+            message = phrase("there are no images of the split '{split}' in '{folder}'", split=split, folder=where)
             raise LinkwrightError(Diagnostic("VISION303", message))
         hidden = _hidden(self.folder / "annotations" / f"instances_{split}.json", self.names)
         return [_labelled(path, len(self.names), hidden.get(path.name, ())) for path in paths]
@@ -119,7 +119,7 @@ def open_dataset(folder: Path) -> Dataset:
         or (isinstance(content.get(split), list) and all(isinstance(each, str) for each in content[split]))
     }
     if not splits:
-        raise _no_dataset(file, phrase("neither 'train' nor 'val' names a folder of pictures"))
+        raise _no_dataset(file, phrase("neither 'train' nor 'val' names a folder of images"))
     return Dataset(file.parent, names, splits)
 
 
@@ -144,7 +144,7 @@ def _names(file: Path, names: Any) -> tuple[str, ...]:
 
 
 def _no_dataset(path: Path, reason: Phrase | Any, hint: Phrase | None = None) -> LinkwrightError:
-    message = phrase("'{path}' is no dataset: {reason}", path=display_path(path), reason=reason)
+    message = phrase("'{path}' is not a dataset: {reason}", path=display_path(path), reason=reason)
     return LinkwrightError(Diagnostic("VISION302", message, hint=hint))
 
 
@@ -152,20 +152,20 @@ def _hidden(file: Path, names: tuple[str, ...]) -> dict[str, list[list[float]]]:
     """The ignored regions of COCO's list of a split (``iscrowd``), for which the texts have no word.
 
     Returns:
-        Name of the picture -> class, left, top, right, bottom as shares; nothing where there is no such list.
+        Name of the image -> class, left, top, right, bottom as shares; nothing where there is no such list.
     """
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
-        pictures = {each["id"]: each for each in content["images"]}
+        images = {each["id"]: each for each in content["images"]}
         numbers = {each["id"]: names.index(each["name"]) for each in content["categories"]}
         found: dict[str, list[list[float]]] = {}
         for each in content["annotations"]:
             if each["iscrowd"]:
-                picture = pictures[each["image_id"]]
+                image = images[each["image_id"]]
                 left, top, width, height = each["bbox"]
-                across, down = picture["width"], picture["height"]
+                across, down = image["width"], image["height"]
                 box = [left / across, top / down, (left + width) / across, (top + height) / down]
-                found.setdefault(picture["file_name"], []).append([numbers[each["category_id"]], *box])
+                found.setdefault(image["file_name"], []).append([numbers[each["category_id"]], *box])
     except FileNotFoundError:
         return {}
     except (OSError, ValueError, KeyError, TypeError, ZeroDivisionError) as error:
@@ -175,7 +175,7 @@ def _hidden(file: Path, names: tuple[str, ...]) -> dict[str, list[list[float]]]:
 
 
 def _labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> Labelled:
-    """Read the labels of a picture, with its ignored regions.
+    """Read the labels of an image, with its ignored regions.
 
     Raises:
         LinkwrightError: VISION304, the text is none of labels.
@@ -198,9 +198,9 @@ def _labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> Labell
     return Labelled(path, kinds, np.concatenate((boxes, unseen[:, 1:])), ignored)
 
 
-def labels_of(picture: Path) -> Path:
-    """The file with a picture's labels: the last folder named ``images`` of its path is ``labels`` there."""
-    parts = list(picture.parts)
+def labels_of(image: Path) -> Path:
+    """The file with an image's labels: the last folder named ``images`` of its path is ``labels`` there."""
+    parts = list(image.parts)
     for place in range(len(parts) - 2, -1, -1):
         if parts[place] == "images":
             parts[place] = "labels"
@@ -218,11 +218,11 @@ def _row(text: Path, number: int, line: str, classes: int) -> list[float]:
     if len(row) != 5:
         problem = phrase("a label has five numbers, class, x, y, width, height")
     elif row[0] not in range(classes):
-        problem = phrase("the class {number} is none of the {count} that 'names' tells", number=words[0], count=classes)
+        problem = phrase("the class {number} is not one of the {count} in 'names'", number=words[0], count=classes)
     elif not all(0 <= value <= 1 for value in row[1:]):
-        problem = phrase("x, y, width and height are shares of the picture, between 0 and 1")
+        problem = phrase("x, y, width and height are shares of the image, between 0 and 1")
     if problem is None:
         return row
     span = Span(display_path(text), number, 1, number, len(line) + 1)
-    message = phrase("'{line}' is no label: {reason}", line=line.strip()[:60], reason=problem)
+    message = phrase("'{line}' is not a label: {reason}", line=line.strip()[:60], reason=problem)
     raise LinkwrightError(Diagnostic("VISION304", message, span))

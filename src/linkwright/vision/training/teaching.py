@@ -43,14 +43,14 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
     """Train a network, export it, evaluate the file, and write its card beside it.
 
     Args:
-        options: what is wanted.
-        tell: hears of each epoch.
+        options: the options.
+        tell: called after each epoch.
 
     Raises:
         LinkwrightError: VISION301 PyTorch is not installed, VISION302 to VISION305 see `open_dataset` and
-            `Dataset.read`, VISION306 there is nothing to go on from, VISION307 the folder cannot be written,
-            VISION308 the weights to begin with cannot be used.
-        KeyboardInterrupt: it was interrupted before anything was learnt that could be kept.
+            `Dataset.read`, VISION306 there is no checkpoint to resume from, VISION307 the folder cannot be written,
+            VISION308 the initial weights cannot be used.
+        KeyboardInterrupt: it was interrupted before the first checkpoint.
     """
     need_pytorch()
     from linkwright.vision.training.learning.course import Course
@@ -84,7 +84,7 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
     facts["time"] = f"{course.seconds / 60:.0f} minutes with {options.threads} threads, {course.place}"
     network = options.output / f"{options.name}.onnx"
     described = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
-    described["dataset"] = facts["pictures' sha256"]
+    described["dataset"] = facts["images' sha256"]
     best = course.best_network()
     balance = course.balance(best)
     facts["scores"] = f"{balance:.2f} of the network is 0.5 in the file, where F1 on the split val is greatest"
@@ -92,10 +92,11 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
     facts["file"] = f"{network.name}, {len(content) / 1e6:.2f} MB, sha256 {hashlib.sha256(content).hexdigest()}"
     try:
         write_whole_file(network, content)
-        examinations = [Examination(f"Pictures kept from {dataset.folder.name}", measure(network, dataset.names, exam))]
-        for other, split, pictures in held_out:
+        held_back = f"Held-back images of {dataset.folder.name}"
+        examinations = [Examination(held_back, measure(network, dataset.names, exam))]
+        for other, split, images in held_out:
             title = f"Held out: {other.folder.name} ({split})"
-            judged = measure(network, other.names, pictures)
+            judged = measure(network, other.names, images)
             examinations.append(Examination(title, judged, origin(other.folder, dataset.folder)))
         text = options.output / f"{options.name}.md"
         write_whole_file(text, card(options.name, facts, examinations))
@@ -132,9 +133,9 @@ def _facts(
     return {
         "command": f"`{options.command}`",
         "classes": ", ".join(dataset.names),
-        "taught with": f"{len(lesson)} pictures with {asked} things of the dataset {dataset.folder.name}",
+        "trained on": f"{len(lesson)} images with {asked} objects of the dataset {dataset.folder.name}",
         **made_of(dataset.folder),
-        "pictures' sha256": sum_of(lesson),
+        "images' sha256": sum_of(lesson),
         **_beginning(options.weights),
         "input": f"{options.width} x {options.height}, red, green, blue, 0 to 1",
         "output": "YOLOv8's: [1, 4 + classes, cells], middle, width, height in pixels, scores",
@@ -148,13 +149,13 @@ def _beginning(weights: Path | None) -> dict[str, str]:
     if weights is None:
         return {}
     try:
-        return {"began with": f"{weights.name}, sha256 {hashlib.sha256(weights.read_bytes()).hexdigest()}"}
+        return {"started from": f"{weights.name}, sha256 {hashlib.sha256(weights.read_bytes()).hexdigest()}"}
     except OSError:  # gone before the training was resumed
-        return {"began with": weights.name}
+        return {"started from": weights.name}
 
 
 def sum_of(lesson: Sequence[Labelled]) -> str:
-    """SHA-256 over pictures and labels, in order, to identify a dataset."""
+    """SHA-256 over images and labels, in order, to identify a dataset."""
     whole = hashlib.sha256()
     for labelled in lesson:
         whole.update(hashlib.sha256(labelled.path.read_bytes()).digest())

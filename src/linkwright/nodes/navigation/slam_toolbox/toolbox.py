@@ -50,17 +50,17 @@ class Toolbox:
     """The work of a node while it is configured.
 
     Args:
-        node: on the graph.
-        settings: what it is told.
-        keeps_all: whether scans wait for their turn instead of being dropped.
-        localizes: whether the map stays as it is, and the robot is only found in it.
+        node: the node.
+        settings: the parameters.
+        keeps_all: whether scans are queued instead of dropped.
+        localizes: whether the map stays as it is, and the robot is only localized in it.
 
     Attributes:
-        node: on the graph.
-        settings: what it is told.
+        node: the node.
+        settings: the parameters.
         mapper: the map and the robot in it.
         localizes: see above.
-        queue: scans that wait, with the poses of odometry.
+        queue: the queued scans, with the poses of odometry.
 
     Raises:
         LinkwrightError: NAV101, SciPy is not installed; NAV501, the map to begin with cannot be read.
@@ -334,7 +334,7 @@ class Toolbox:
 
     def _time_jumped(self) -> None:
         if self._stamp_ns is not None:
-            self.node.get_logger().warning("Time has jumped back: the map begins anew.")
+            self.node.get_logger().warning("Time has jumped back: the map starts from scratch.")
         self._buffer.clear()
         self._stamp_ns, self._taken = None, None
         self.reset()

@@ -20,7 +20,7 @@ from torch import Tensor, nn
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.suppression import suppressed
-from linkwright.vision.evaluation import Evaluation, Things, balanced_score, evaluate
+from linkwright.vision.evaluation import Evaluation, GroundTruth, balanced_score, evaluate
 from linkwright.vision.training.learning.losses import loss
 from linkwright.vision.training.learning.network import Network, Shape, cells
 from linkwright.vision.training.learning.optimizer import Optimizer
@@ -32,7 +32,7 @@ from linkwright.vision.training.pictures import Lesson, changed, repeated, repea
 _WARM_UP = 100  # steps in which the rate grows to its highest
 _LEAST_RATE = 0.02  # of the highest, at the end
 _STEEPEST = 10.0  # the norm that gradients are cut to
-_MEASURED = 128  # pictures that the statistics of weights from a file are measured with
+_MEASURED = 128  # images that the statistics of weights from a file are measured with
 _SMOOTHING = 0.998  # of the copy that is judged, a step, once it has seen enough
 
 
@@ -41,10 +41,10 @@ class Epoch:
     """The figures of an epoch.
 
     Attributes:
-        number: from 1.
-        losses: means of those of the boxes and of the scores.
-        judged: how well the smoothed network does on the other part; None where it was not asked.
-        best: it did so better than ever before.
+        number: the number of the epoch, from 1.
+        losses: the mean losses of boxes and of scores.
+        judged: the evaluation of the smoothed network on the validation split; None if it was skipped.
+        best: whether it is the best so far.
     """
 
     number: int
@@ -57,22 +57,22 @@ class Course:
     """The training of a network.
 
     Args:
-        names: of the classes.
-        options: see there.
-        lesson: what it learns from.
-        exam: what it is judged by.
+        names: the names of the classes.
+        options: the options.
+        lesson: the training images.
+        exam: the validation images.
 
     Attributes:
-        names: of the classes.
-        options: see there.
-        shape: of the network.
-        network: what learns.
-        smooth: a copy that follows it slowly, and is judged.
-        best: the weights of the copy when it did best.
-        best_map: how well that was, mAP50-95; -1 before it was judged.
-        best_epoch: when.
-        epoch: how many are done.
-        seconds: how long they took.
+        names: the names of the classes.
+        options: the options.
+        shape: the shape of the network.
+        network: the network that is trained.
+        smooth: its moving average, which is evaluated.
+        best: the best weights of the moving average.
+        best_map: their mAP50-95; -1 before the first evaluation.
+        best_epoch: their epoch.
+        epoch: the number of finished epochs.
+        seconds: the time they took.
     """
 
     def __init__(self, names: Sequence[str], options: Options, lesson: Lesson, exam: Lesson) -> None:
@@ -98,10 +98,10 @@ class Course:
         """Train until the last epoch, with a checkpoint after each.
 
         Args:
-            tell: hears of each epoch.
+            tell: called after each epoch.
 
         Raises:
-            KeyboardInterrupt: it was interrupted; `best` is what was best so far.
+            KeyboardInterrupt: it was interrupted; `best` has the best weights so far.
         """
         while self.epoch < self.options.epochs:
             began = time.monotonic()
@@ -136,11 +136,11 @@ class Course:
         sums = torch.zeros(2)
         batches = list(self._batches(epoch))
         for chosen, seed in batches:
-            pictures, things = self._batch(chosen, seed)
+            images, objects = self._batch(chosen, seed)
             with torch.autocast(self._device.type, torch.bfloat16, enabled=self.options.precision == "bfloat16"):
-                boxes, logits = self.network(pictures)
-            middles, _ = cells(pictures.shape[3], pictures.shape[2], pictures.device)
-            total, parts = loss(boxes, logits, middles, things)
+                boxes, logits = self.network(images)
+            middles, _ = cells(images.shape[3], images.shape[2], images.device)
+            total, parts = loss(boxes, logits, middles, objects)
             self._optimizer.forget_gradients()
             total.backward()
             nn.utils.clip_grad_norm_(self.network.parameters(), _STEEPEST)
@@ -163,12 +163,12 @@ class Course:
         chance = np.random.default_rng((self.options.seed, self.epoch, start))
         view = self.options.view(self.epoch)
         both = [changed(self._lesson, int(place), view, chance) for place in chosen]
-        most = max([1, *(len(things) for _, things in both)])
+        most = max([1, *(len(objects) for _, objects in both)])
         table: NDArray[np.float32] = np.full((len(both), most, 5), -1, np.float32)
-        for row, (_, things) in zip(table, both, strict=True):
-            row[: len(things)] = things
-        pictures = np.stack([picture for picture, _ in both])
-        return _tensor(pictures, self._device), torch.from_numpy(table).to(self._device)
+        for row, (_, objects) in zip(table, both, strict=True):
+            row[: len(objects)] = objects
+        images = np.stack([image for image, _ in both])
+        return _tensor(images, self._device), torch.from_numpy(table).to(self._device)
 
     def _rate(self, steps: int) -> float:
         """The learning rate: a short warm-up, then half a cosine down to nearly zero."""
@@ -197,20 +197,20 @@ class Course:
         return balanced_score(self.names, *self._examine(network))
 
     @torch.no_grad()
-    def _examine(self, network: Network) -> tuple[list[Things], list[Detections]]:
+    def _examine(self, network: Network) -> tuple[list[GroundTruth], list[Detections]]:
         """The labels of the validation split, and a network's detections."""
         found: list[Detections] = []
         device = next(network.parameters()).device
-        for start in range(0, len(self._exam.things), self.options.batch):
-            pictures = _tensor(self._exam.pictures[start : start + self.options.batch], device)
-            boxes, logits = network(pictures)
+        for start in range(0, len(self._exam.objects), self.options.batch):
+            images = _tensor(self._exam.images[start : start + self.options.batch], device)
+            boxes, logits = network(images)
             scores = logits.sigmoid()
             pairs = zip(boxes.cpu().numpy(), scores.cpu().numpy(), strict=True)
             found += [self._found(each, score) for each, score in pairs]
-        return [_truth(things) for things in self._exam.things], found
+        return [_truth(objects) for objects in self._exam.objects], found
 
     def _found(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
-        """The detections in one picture, of boxes (cells, 4) and scores (cells, classes)."""
+        """The detections in one image, of boxes (cells, 4) and scores (cells, classes)."""
         cells, kinds = np.nonzero(scores >= LIMITS.threshold)
         told: NDArray[np.float32] = scores[cells, kinds]
         classes: NDArray[np.int32] = kinds.astype(np.int32)
@@ -239,7 +239,7 @@ class Course:
 
     def begin_with(self, path: Path) -> None:
         """Begin with the weights of an ONNX file, see `load_weights`."""
-        chosen, size = self._lesson.pictures[:_MEASURED], self.options.batch
+        chosen, size = self._lesson.images[:_MEASURED], self.options.batch
         batches = (_tensor(chosen[start : start + size], self._device) for start in range(0, len(chosen), size))
         load_weights(self.network, self.names, path, batches)
         self.smooth.load_state_dict(self.network.state_dict())
@@ -248,19 +248,21 @@ class Course:
         """Continue from a checkpoint.
 
         Raises:
-            LinkwrightError: VISION306, it is none, or that of another network.
+            LinkwrightError: VISION306, the file is not a checkpoint, or is one of another network.
         """
         try:
             state: dict[str, Any] = torch.load(path, map_location=self._device, weights_only=True)
             told = state["shape"], state["names"]
             state["optimizer"]["momenta"]  # which those of earlier versions lack
         except (OSError, RuntimeError, pickle.UnpicklingError, KeyError, EOFError, TypeError):
-            message = phrase("'{path}' is no checkpoint of a training", path=display_path(path))
-            hint = phrase("without --resume the training begins anew")
+            message = phrase("'{path}' is not a checkpoint of a training", path=display_path(path))
+            hint = phrase("leave out --resume to start from scratch")
             raise LinkwrightError(Diagnostic("VISION306", message, hint=hint)) from None
         if told != (asdict(self.shape), list(self.names)):
-            message = phrase("'{path}' is of a training with other classes or sizes", path=display_path(path))
-            hint = phrase("without --resume the training begins anew")
+            message = phrase(
+                "'{path}' is a checkpoint of a training with other classes or sizes", path=display_path(path)
+            )
+            hint = phrase("leave out --resume to start from scratch")
             raise LinkwrightError(Diagnostic("VISION306", message, hint=hint))
         self.network.load_state_dict(state["network"])
         self.smooth.load_state_dict(state["smooth"])
@@ -269,11 +271,11 @@ class Course:
         self.epoch, self._step, self.seconds = state["epoch"], state["step"], state["seconds"]
 
 
-def _tensor(pictures: NDArray[np.uint8], device: torch.device) -> Tensor:
-    """Pictures, shape (batch, height, width, 3), as a tensor for the network."""
-    return torch.from_numpy(pictures).to(device).permute(0, 3, 1, 2).float().div_(255)
+def _tensor(images: NDArray[np.uint8], device: torch.device) -> Tensor:
+    """Images, shape (batch, height, width, 3), as a tensor for the network."""
+    return torch.from_numpy(images).to(device).permute(0, 3, 1, 2).float().div_(255)
 
 
-def _truth(things: NDArray[np.float32]) -> Things:
-    kinds: NDArray[np.int32] = things[:, 0].astype(np.int32)
-    return Things(things[:, 1:], np.where(kinds < 0, -2 - kinds, kinds).astype(np.int32), kinds < 0)
+def _truth(objects: NDArray[np.float32]) -> GroundTruth:
+    kinds: NDArray[np.int32] = objects[:, 0].astype(np.int32)
+    return GroundTruth(objects[:, 1:], np.where(kinds < 0, -2 - kinds, kinds).astype(np.int32), kinds < 0)

@@ -28,9 +28,9 @@ class _Decoded(nn.Module):
         self.network = network
         self.shift = math.log((1 - balance) / balance)
 
-    def forward(self, pictures: Tensor) -> Tensor:
+    def forward(self, images: Tensor) -> Tensor:
         """Shape (batch, 4 + classes, cells): middle, width and height in pixels, then the classes' scores."""
-        boxes, logits = self.network(pictures)
+        boxes, logits = self.network(images)
         first, last = boxes[..., :2], boxes[..., 2:]
         return torch.cat(((first + last) / 2, last - first, (logits + self.shift).sigmoid()), 2).transpose(1, 2)
 
@@ -45,25 +45,25 @@ def to_onnx(
 ) -> bytes:
     """Export a network to an ONNX file.
 
-    Its input is one picture of this size, its output ``[1, 4 + classes, cells]``. Weights are stored with 16 bits and
-    computed with in 32, which halves the file and changes scores by less than a thousandth.
+    Its input is one image of this size, its output ``[1, 4 + classes, cells]``. Weights are stored with 16 bits and
+    used with 32, which halves the file and changes scores by less than a thousandth.
 
     Args:
         network: the one to export.
-        names: of its classes.
-        width: of its pictures, a multiple of 32.
+        names: the names of its classes.
+        width: the width of its images, a multiple of 32.
         height: likewise.
-        facts: what else the file shall say of itself.
-        balance: the network's score that becomes 0.5; all others move with it, and their order stays.
+        facts: further metadata of the file.
+        balance: the network's score that becomes 0.5; the others shift with it and keep their order.
     """
     file = BytesIO()
-    picture = torch.zeros(1, 3, height, width)
+    image = torch.zeros(1, 3, height, width)
     with warnings.catch_warnings():
         # The newer exporter needs one more library, and gives the same graph.
         warnings.simplefilter("ignore")
         torch.onnx.export(
             _Decoded(network, balance).eval(),
-            (picture,),
+            (image,),
             file,
             dynamo=False,
             opset_version=_OPSET,

@@ -1,7 +1,7 @@
-"""Assigning cells to things, and the loss.
+"""Assigning cells to objects, and the loss.
 
-The cells of a thing are those that already tell it best, by score and overlap together, and the more certain a cell
-shall be the better its box is (task-aligned assignment, Feng and others 2021).
+The cells of an object are those that already predict it best, by score and overlap together, and the more certain a
+cell shall be the better its box is (task-aligned assignment, Feng and others 2021).
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from torch import Tensor
 from torch.nn import functional
 
 _SCORE_POWER, _OVERLAP_POWER = 1.0, 4.0
-_CELLS_A_THING = 10
-_NEAR = 8.0  # pixels around its middle in which cells may answer for a thing that is smaller than a cell
+_CELLS_PER_OBJECT = 10
+_NEAR = 8.0  # pixels around the centre of an object smaller than a cell in which cells may be assigned to it
 _BOX_WEIGHT, _SCORE_WEIGHT = 4.0, 1.0
 _SMALL = 1e-7
 
@@ -24,10 +24,10 @@ class Assignment:
     """The targets of each cell.
 
     Attributes:
-        boxes: shape (batch, cells, 4), pixels; of no meaning where no thing is.
+        boxes: shape (batch, cells, 4), pixels; meaningless for cells without an object.
         scores: shape (batch, cells, classes), between 0 and 1.
-        taken: shape (batch, cells), whether the cell answers for a thing.
-        unasked: the same, whether it is free to say what it likes, because what is there is to be ignored.
+        taken: shape (batch, cells), whether an object is assigned to the cell.
+        unasked: the same shape, whether the cell has no target, because its object is ignored.
     """
 
     boxes: Tensor
@@ -57,19 +57,19 @@ def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
 
 
 @torch.no_grad()
-def assign(boxes: Tensor, logits: Tensor, middles: Tensor, things: Tensor) -> Assignment:
-    """Assign cells to each thing.
+def assign(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> Assignment:
+    """Assign cells to each object.
 
     Args:
         boxes: what the network says, shape (batch, cells, 4).
         logits: the same, shape (batch, cells, classes).
         middles: of the cells, shape (cells, 2).
-        things: shape (batch, most, 5): class, left, top, right, bottom; class -1 where a picture has fewer, and
-            less where a thing is to be ignored.
+        objects: shape (batch, most, 5): class, left, top, right, bottom; class -1 where an image has fewer, and
+            less where an object is to be ignored.
     """
-    real = things[..., 0] >= 0
-    kinds = things[..., 0].clamp(0).long()
-    places = things[..., 1:]
+    real = objects[..., 0] >= 0
+    kinds = objects[..., 0].clamp(0).long()
+    places = objects[..., 1:]
     _, cells, classes = logits.shape
     iou, _ = overlaps(places[:, :, None], boxes[:, None])
     scores = logits.sigmoid().transpose(1, 2).gather(1, kinds[..., None].expand(-1, -1, cells))
@@ -78,32 +78,32 @@ def assign(boxes: Tensor, logits: Tensor, middles: Tensor, things: Tensor) -> As
     middle = (places[..., :2] + places[..., 2:]) / 2
     near = ((middles - middle[:, :, None]).abs() <= half[:, :, None]).all(3) & real[..., None]
     fit = (fit + _SMALL * iou) * near
-    best = fit.topk(min(_CELLS_A_THING, cells), 2).indices
+    best = fit.topk(min(_CELLS_PER_OBJECT, cells), 2).indices
     chosen = torch.zeros_like(near).scatter_(2, best, value=True) & near & (fit > 0)
-    # A cell that several things want answers for that which its box overlaps most.
+    # A cell that several objects want answers for that which its box overlaps most.
     wanted = torch.where(chosen, iou, torch.full_like(iou, -1.0))
     most, owner = wanted.max(1)
     taken = most >= 0
-    chosen = chosen & functional.one_hot(owner, things.shape[1]).transpose(1, 2).bool()
+    chosen = chosen & functional.one_hot(owner, objects.shape[1]).transpose(1, 2).bool()
     fit = fit * chosen
     level = fit / (fit.amax(2, keepdim=True) + 1e-12) * (iou * chosen).amax(2, keepdim=True)
     certainty = level.amax(1) * taken
     target = functional.one_hot(kinds.gather(1, owner), classes) * certainty[..., None]
     within = (middles >= places[:, :, None, :2]).all(3) & (middles <= places[:, :, None, 2:]).all(3)
-    unasked = (within & (things[..., 0] < -1)[..., None]).any(1) & ~taken
+    unasked = (within & (objects[..., 0] < -1)[..., None]).any(1) & ~taken
     return Assignment(places.gather(1, owner[..., None].expand(-1, -1, 4)), target.to(boxes.dtype), taken, unasked)
 
 
-def loss(boxes: Tensor, logits: Tensor, middles: Tensor, things: Tensor) -> tuple[Tensor, Tensor]:
+def loss(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> tuple[Tensor, Tensor]:
     """The loss of a batch; the arguments are those of `assign`.
 
     Returns:
         What is to be made small, and its parts: those of the boxes and of the scores, shape (2,), without gradients.
     """
-    wanted = assign(boxes, logits, middles, things)
+    wanted = assign(boxes, logits, middles, objects)
     whole = wanted.scores.sum().clamp(1.0)
     of_scores = functional.binary_cross_entropy_with_logits(logits, wanted.scores, reduction="none")
-    # Empty cells that are sure of a thing weigh most, those that are right already next to nothing.
+    # Empty cells that are sure of an object weigh most, those that are right already next to nothing.
     weights = torch.where(wanted.scores > 0, wanted.scores, 0.75 * logits.sigmoid().detach() ** 2)
     of_scores = (of_scores * weights * ~wanted.unasked[..., None]).sum() / whole
     weight = wanted.scores.sum(2)[wanted.taken]

@@ -1,9 +1,10 @@
 """The network: a small anchor-free detector of plain convolutions, which two cores train in an hour.
 
-A backbone of half-stages (as in CSPNet, Wang and others 2019) gives features at 8, 16 and 32 pixels a cell, a pyramid
-carries what is coarse to the fine ones and back (PANet, Liu and others 2018), and one head for each says for each
-cell how far the four sides of a box lie from its middle (FCOS, Tian and others 2019) and what is in it. Depthwise
-convolutions would have fewer weights, but a processor computes dense ones of few channels in the same time.
+A backbone of half-stages (as in CSPNet, Wang and others 2019) computes features at 8, 16 and 32 pixels a cell, a
+pyramid passes coarse features to the fine ones and back (PANet, Liu and others 2018), and one head for each scale
+predicts for each cell the distances of the four sides of a box from its centre (FCOS, Tian and others 2019) and the
+class. Depthwise convolutions would have fewer weights, but a processor computes dense ones of few channels in the same
+time.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 STRIDES = (8, 16, 32)
-"""Pixels of the picture a cell, one for each level of the pyramid."""
+"""Pixels of the image a cell, one for each level of the pyramid."""
 
 _CPU = torch.device("cpu")
-_PRIOR = 0.01  # the score that all cells say at first, so that the many that are empty do not drown the others
-_FARTHEST = 4.0  # e ** this many strides is the farthest side that a cell can tell of
+_PRIOR = 0.01  # the initial score of all cells, so that the many empty ones do not dominate the loss
+_FARTHEST = 4.0  # e ** this many strides is the farthest side that a cell can predict
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +110,7 @@ class Head(nn.Module):
 
 
 class Network(nn.Module):
-    """The whole network: from pictures to predictions of each cell."""
+    """The whole network: from images to predictions of each cell."""
 
     def __init__(self, shape: Shape) -> None:
         super().__init__()
@@ -130,17 +131,17 @@ class Network(nn.Module):
         self.up_coarse = HalfStage(16 * c, 8 * c, 1, residual=False)
         self.heads = nn.ModuleList(Head(width * c, shape.classes) for width in (4, 8, 8))
 
-    def forward(self, pictures: Tensor) -> tuple[Tensor, Tensor]:
+    def forward(self, images: Tensor) -> tuple[Tensor, Tensor]:
         """Predict.
 
         Args:
-            pictures: shape (batch, 3, height, width), red, green, blue between 0 and 1; both sides are multiples of 32.
+            images: shape (batch, 3, height, width), red, green, blue between 0 and 1; both sides are multiples of 32.
 
         Returns:
             Boxes, shape (batch, cells, 4), left, top, right, bottom in pixels; and logits of the classes, shape
             (batch, cells, classes).
         """
-        fine = self.fine(self.stem(pictures))
+        fine = self.fine(self.stem(images))
         middle = self.middle(fine)
         coarse = self.coarse(middle)
         middle = self.down_middle(torch.cat((_doubled(coarse), middle), 1))
@@ -150,7 +151,7 @@ class Network(nn.Module):
         coarse = self.up_coarse(torch.cat((self.halve_middle(middle), coarse), 1))
         levels = [head(level) for head, level in zip(self.heads, (fine, middle, coarse), strict=True)]
         said = torch.cat(levels, 2).transpose(1, 2)
-        middles, strides = cells(pictures.shape[3], pictures.shape[2], pictures.device)
+        middles, strides = cells(images.shape[3], images.shape[2], images.device)
         sides = said[..., :4].clamp(max=_FARTHEST).exp() * strides
         boxes = torch.cat((middles - sides[..., :2], middles + sides[..., 2:]), 2)
         return boxes, said[..., 4:]
@@ -162,7 +163,7 @@ def _doubled(features: Tensor) -> Tensor:
 
 @cache
 def cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
-    """The positions of the cells of all levels in a picture of this size.
+    """The positions of the cells of all levels in an image of this size.
 
     Returns:
         Their middles in pixels, shape (cells, 2), and the strides of their levels, shape (cells, 1).

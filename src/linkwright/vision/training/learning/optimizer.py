@@ -20,11 +20,11 @@ _ROUNDS = 5
 class Optimizer:
     """Muon (Jordan and others 2024) for the kernels of convolutions, AdamW for the rest.
 
-    Muon makes each step of a kernel nearly orthogonal: all directions of its inputs and outputs move alike, also those
-    of which gradients are small. With few steps networks learn much more by it than by AdamW alone.
+    Muon makes each step of a kernel nearly orthogonal: all directions of its inputs and outputs move alike, including
+    those with small gradients. In few steps networks learn much more with it than with AdamW alone.
 
     Args:
-        network: what learns.
+        network: the network to train.
         rate: the highest learning rate.
     """
 

@@ -1,7 +1,7 @@
 """Starting weights: those of a network that `linkwright vision train` exported.
 
 An exported convolution holds its normalisation, too. Here they become two layers again that compute the same: the
-statistics, which the file lacks, are measured with pictures.
+statistics, which the file lacks, are measured with images.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from linkwright.vision.training.learning.network import Convolution, Network
 _SHORTEST = 1e-12  # of a kernel, so that one of zeros can be divided by its length
 
 
-def load_weights(network: Network, names: Sequence[str], path: Path, pictures: Iterable[Tensor]) -> None:
-    """Give a network the weights of an ONNX file.
+def load_weights(network: Network, names: Sequence[str], path: Path, images: Iterable[Tensor]) -> None:
+    """Load the weights of an ONNX file into a network.
 
-    Classes are matched by their names. What the network knows of a class that the file lacks stays as it is.
+    Classes are matched by their names. The network's weights of a class that the file lacks stay as they are.
 
     Args:
-        network: the one to change. With the classes of the file it computes the same boxes and the same logits, up to
-            a shift that the export has added. It is in evaluation mode afterwards.
-        names: of its classes.
-        path: of the file.
-        pictures: what the statistics of its layers are measured with, shape (batch, 3, height, width).
+        network: the network to change. With the classes of the file it computes the same boxes and logits, up to a
+            shift that the export has added. It is in evaluation mode afterwards.
+        names: the names of its classes.
+        path: the path of the file.
+        images: the images to measure the statistics of its layers with, shape (batch, 3, height, width).
 
     Raises:
         LinkwrightError: VISION308, the file cannot be read, or holds another network.
@@ -56,7 +56,7 @@ def load_weights(network: Network, names: Sequence[str], path: Path, pictures: I
             else:
                 layer.weight.copy_(kernel)
                 _offset(blocks[layer].norm if layer in blocks else layer, bias)
-        _normalize(network, list(blocks.values()), pictures)
+        _normalize(network, list(blocks.values()), images)
 
 
 def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
@@ -102,10 +102,10 @@ def _offset(layer: nn.Conv2d | nn.BatchNorm2d, bias: Tensor) -> None:
         layer.running_var.fill_(1.0 - layer.eps)
 
 
-def _normalize(network: Network, blocks: Sequence[Convolution], pictures: Iterable[Tensor]) -> None:
-    """Move statistics and lengths of the kernels into the normalisations; what is computed stays the same.
+def _normalize(network: Network, blocks: Sequence[Convolution], images: Iterable[Tensor]) -> None:
+    """Move statistics and lengths of the kernels into the normalisations, without changing the results.
 
-    Each output's kernel has the length 1 afterwards, because steps of the optimizer are of one length.
+    Each output's kernel has the length 1 afterwards, because the optimizer's steps have one length.
     """
     sums = {block.norm: torch.zeros(3, block.norm.num_features, dtype=torch.float64) for block in blocks}
 
@@ -114,8 +114,8 @@ def _normalize(network: Network, blocks: Sequence[Convolution], pictures: Iterab
         sums[layer] += torch.stack((torch.full((len(values),), values.shape[1]), values.sum(1), (values**2).sum(1)))
 
     hooks = [block.norm.register_forward_pre_hook(measure) for block in blocks]
-    for picture in pictures:
-        network(picture)
+    for image in images:
+        network(image)
     for hook in hooks:
         hook.remove()
     for block in blocks:
