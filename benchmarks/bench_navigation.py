@@ -82,7 +82,7 @@ def _in_rooms(size: int, promised: str) -> list[Row]:
     static = StaticLayer(Interpretation())
     layers = [static, ObstacleLayer([buffer], Heights()), InflationLayer(_INFLATION)]
     layered = LayeredCostmap(_blank(size), layers, circle(_RADIUS))
-    static.take(Grid(cells=rooms(size), resolution=_RESOLUTION))
+    static.set_map(Grid(cells=rooms(size), resolution=_RESOLUTION))
     found = [Row(f"costmap of {what}, all of it", milliseconds(_anew, layered), "ms")]
     costmap = layered.costmap.copy()
     found.append(Row(f"costmap of {what}, a scan", milliseconds(_seen, layered, buffer), "ms"))
@@ -118,7 +118,7 @@ def _anew(layered: LayeredCostmap) -> None:
 
 
 def _seen(layered: LayeredCostmap, buffer: ObservationBuffer) -> None:
-    buffer.take(np.array([_HERE[0], _HERE[1], 0.2]), scan(_HERE[0], _HERE[1]), 0)
+    buffer.add(np.array([_HERE[0], _HERE[1], 0.2]), scan(_HERE[0], _HERE[1]), 0)
     layered.update(_HERE, 0)
 
 

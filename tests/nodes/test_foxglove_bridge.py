@@ -71,7 +71,7 @@ class World:
     async def offers(self, topic: str) -> None:
         """Wait until the bridge has seen a topic."""
         channels = self.bridge._offer.channels
-        await eventually(lambda: topic in [each.told()["topic"] for each in channels.all()])
+        await eventually(lambda: topic in [each.advertisement()["topic"] for each in channels.all()])
 
     @asynccontextmanager
     async def client(self, protocols=V1, **options):

@@ -19,7 +19,7 @@ async def answered(node: Node, future: Any, seconds: float | None) -> bool:
     """
     over: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
 
-    def tell(came: bool) -> None:
+    def resolve(came: bool) -> None:
         if not over.done():
             over.set_result(came)
 
@@ -27,8 +27,8 @@ async def answered(node: Node, future: Any, seconds: float | None) -> bool:
     group = ReentrantCallbackGroup()  # who waits may hold the group of the node
     timer = None
     if seconds is not None:
-        timer = node.create_timer(seconds, lambda: tell(False), callback_group=group, clock=clock)
-    future.add_done_callback(lambda _: tell(True))
+        timer = node.create_timer(seconds, lambda: resolve(False), callback_group=group, clock=clock)
+    future.add_done_callback(lambda _: resolve(True))
     try:
         return await over
     finally:

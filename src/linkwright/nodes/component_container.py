@@ -74,8 +74,8 @@ class ComponentContainer(SingleNode):
             running = factory(self._graph, options)
         self._last_id += 1
         self._loaded[self._last_id] = running
-        for told in self.on_loaded:
-            told(running, options)
+        for callback in self.on_loaded:
+            callback(running, options)
         return self._last_id, running
 
     def _load(self, request: Any, response: Any) -> Any:
@@ -97,7 +97,7 @@ class ComponentContainer(SingleNode):
             problem = error.diagnostics[0].message
             logger.error(f"Component constructor threw an exception: {problem}")  # noqa: TRY400 - a user's mistake
             response.success = False
-            response.error_message = "; ".join(_told(diagnostic) for diagnostic in error.diagnostics)
+            response.error_message = "; ".join(_text(diagnostic) for diagnostic in error.diagnostics)
             return response
         logger.info(f"Instantiate class: rclcpp_components::NodeFactoryTemplate<{request.plugin_name}>")
         response.success = True
@@ -146,7 +146,7 @@ def _unknown(package: str, plugin: str) -> LinkwrightError:
     return LinkwrightError(Diagnostic("NODE601", message, hint=hint))
 
 
-def _told(diagnostic: Diagnostic) -> str:
+def _text(diagnostic: Diagnostic) -> str:
     return diagnostic.message if diagnostic.hint is None else f"{diagnostic.message} ({diagnostic.hint})"
 
 

@@ -76,14 +76,14 @@ def _stripes(width: int, height: int) -> NDArray[np.uint8]:
     """Bars of eight colours above a ramp from black to white: array, shape (height, width, 3), blue green red."""
     columns = np.arange(width)
     bars = 7 - columns * 8 // width
-    picture = np.empty((height, width, 3), dtype=np.uint8)
-    picture[:] = np.stack([bars & 1, bars >> 2 & 1, bars >> 1 & 1], axis=-1) * 255
-    picture[round(height * (1 - _BAND_HEIGHT)) :] = (columns * 255 // max(1, width - 1))[:, np.newaxis]
-    return picture
+    image = np.empty((height, width, 3), dtype=np.uint8)
+    image[:] = np.stack([bars & 1, bars >> 2 & 1, bars >> 1 & 1], axis=-1) * 255
+    image[round(height * (1 - _BAND_HEIGHT)) :] = (columns * 255 // max(1, width - 1))[:, np.newaxis]
+    return image
 
 
 def _policy(kind: type[HistoryPolicy | ReliabilityPolicy], name: str, value: str) -> str:
-    known = [each.name.lower() for each in kind if each.name not in ("UNKNOWN", "BEST_AVAILABLE")]
+    known = [policy.name.lower() for policy in kind if policy.name not in ("UNKNOWN", "BEST_AVAILABLE")]
     if value not in known:
         raise LinkwrightError(
             Diagnostic(

@@ -17,7 +17,7 @@ class Listener(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            self._node.create_subscription(String, "chatter", self._hear, QoSProfile.of(_DEPTH))
+            self._node.create_subscription(String, "chatter", self._receive, QoSProfile.of(_DEPTH))
 
-    def _hear(self, message: String) -> None:
+    def _receive(self, message: String) -> None:
         self._node.get_logger().info(f"I heard: [{message.data}]")

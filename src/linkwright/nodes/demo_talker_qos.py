@@ -65,9 +65,9 @@ class ListenerQos(_Counted):
     _what = "listener"
 
     def _begin(self, qos: QoSProfile) -> None:
-        self._node.create_subscription(String, "chatter", self._hear, qos)
+        self._node.create_subscription(String, "chatter", self._receive, qos)
 
-    def _hear(self, message: String) -> None:
+    def _receive(self, message: String) -> None:
         self._node.get_logger().info(f"I heard: [{message.data}]")
         self._counted()
 

@@ -15,7 +15,7 @@ from linkwright.graph import SENSOR_DATA_QOS, Graph
 from linkwright.messages import get_message
 from linkwright.nodes.lazy import LazySubscriptions
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import positive, tell_unknown
+from linkwright.nodes.settings import log_unknown, positive
 
 _METRES_OF_16UC1 = 0.001
 _SECONDS_BETWEEN_COMPLAINTS = 5.0
@@ -40,7 +40,7 @@ class DepthImageToLaserScan(SingleNode):
             self._range_max: float = node.declare_parameter("range_max", 10.0).value
             self._height = int(positive(node, "scan_height", node.declare_parameter("scan_height", 1).value))
             self._frame: str = node.declare_parameter("output_frame", "camera_depth_frame").value
-            tell_unknown(node)
+            log_unknown(node)
         self._publisher = node.create_publisher(get_message("sensor_msgs/msg/LaserScan"), "scan", 10)
         self._lazy = LazySubscriptions(
             graph,
@@ -50,7 +50,7 @@ class DepthImageToLaserScan(SingleNode):
                 node.create_subscription(
                     get_message("sensor_msgs/msg/CameraInfo"), "depth_camera_info", self._see_camera, SENSOR_DATA_QOS
                 ),
-                node.create_subscription(get_message("sensor_msgs/msg/Image"), "depth", self._see, SENSOR_DATA_QOS),
+                node.create_subscription(get_message("sensor_msgs/msg/Image"), "depth", self._receive, SENSOR_DATA_QOS),
             ],
         )
 
@@ -66,7 +66,7 @@ class DepthImageToLaserScan(SingleNode):
         if focal_length:
             self._camera = Pinhole(float(focal_length), float(centre_column), float(centre_row))
 
-    def _see(self, image: Any) -> None:
+    def _receive(self, image: Any) -> None:
         if self._camera is None:
             self._complain("no camera_info with a focal length has come")
             return

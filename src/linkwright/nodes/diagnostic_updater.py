@@ -49,9 +49,9 @@ class DiagnosticUpdater:
         self._status = get_message("diagnostic_msgs/msg/DiagnosticStatus")
         self._pair = get_message("diagnostic_msgs/msg/KeyValue")
         self._publisher = node.create_publisher(self._array, "/diagnostics", _DEPTH)
-        node.create_timer(_PERIOD, self._tell)
+        node.create_timer(_PERIOD, self._publish)
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         health = self._ask()
         status = self._status(
             name=f"{self._node.get_name()}: {self._task}", message=health.message, hardware_id=self._hardware_id

@@ -23,7 +23,7 @@ from linkwright.nodes.image_transports import (
 )
 from linkwright.nodes.lazy import LazySubscriptions
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import bad_value, options_from_words, tell_unknown, words_of
+from linkwright.nodes.settings import bad_value, log_unknown, options_from_words, words_of
 
 _IMAGE, _COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 _TRANSPORTS = ("raw", "compressed", "compressedDepth")
@@ -63,7 +63,7 @@ class ImageRepublisher(SingleNode):
         with starting(self._node):
             self._source = self._transport("in_transport", "raw")
             result = self._transport("out_transport", "")
-            tell_unknown(self._node)
+            log_unknown(self._node)
         self._publishers: dict[str, Publisher[Any]] = {}
         for transport in [result] if result else _TRANSPORTS:
             topic = topic_of(self._node, "out", transport)
@@ -83,9 +83,9 @@ class ImageRepublisher(SingleNode):
 
     def _subscribe(self) -> list[Subscription[Any]]:
         topic = topic_of(self._node, "in", self._source)
-        return [self._node.create_subscription(_type_of(self._source), topic, self._hear, DEFAULT_QOS)]
+        return [self._node.create_subscription(_type_of(self._source), topic, self._receive, DEFAULT_QOS)]
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         wanted = [name for name, publisher in self._publishers.items() if publisher.get_subscription_count()]
         if wanted == [self._source]:
             self._publishers[self._source].publish(message)

@@ -25,7 +25,7 @@ from linkwright.geometry.vectors import Vector3
 from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch, get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import bad_value, tell_unknown
+from linkwright.nodes.settings import bad_value, log_unknown
 
 _DEPTH = 5
 
@@ -60,15 +60,15 @@ class _ImuFilter(SingleNode, ABC):
             if not self._constant_s >= 0.0:
                 raise bad_value("constant_dt", self._constant_s, node.get_name())
             self._filter = self._make()
-            tell_unknown(node)
+            log_unknown(node)
         kind, vector = get_message("sensor_msgs/msg/Imu"), get_message("geometry_msgs/msg/Vector3Stamped")
         self._publisher = node.create_publisher(kind, "imu/data", _DEPTH)
         self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS) if self._publish_tf else None
         self._rpy_publisher = node.create_publisher(vector, "imu/rpy/filtered", _DEPTH) if self._debug else None
-        node.create_subscription(kind, "imu/data_raw", self._hear, SENSOR_DATA_QOS)
+        node.create_subscription(kind, "imu/data_raw", self._receive, SENSOR_DATA_QOS)
         if self._use_mag:
             node.create_subscription(
-                get_message("sensor_msgs/msg/MagneticField"), "imu/mag", self._hear_magnetic, SENSOR_DATA_QOS
+                get_message("sensor_msgs/msg/MagneticField"), "imu/mag", self._receive_magnetic, SENSOR_DATA_QOS
             )
 
     @abstractmethod
@@ -86,20 +86,20 @@ class _ImuFilter(SingleNode, ABC):
         """The acceleration to be published."""
         return acceleration
 
-    def _hear_magnetic(self, message: Any) -> None:
+    def _receive_magnetic(self, message: Any) -> None:
         field = message.magnetic_field
-        if all(isfinite(each) for each in (field.x, field.y, field.z)):
+        if all(isfinite(component) for component in (field.x, field.y, field.z)):
             self._magnetic = self._compensated((field.x, field.y, field.z))
 
     def _compensated(self, magnetic: Vector3) -> Vector3:
         return magnetic
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         if self._use_mag and self._magnetic is None:
             return
         rates, felt = message.angular_velocity, message.linear_acceleration
         turn, acceleration = (rates.x, rates.y, rates.z), (felt.x, felt.y, felt.z)
-        if not all(isfinite(each) for each in (*turn, *acceleration)):
+        if not all(isfinite(component) for component in (*turn, *acceleration)):
             return
         stamp_ns: int = message.header.stamp.nanoseconds
         if self._last_ns is None and not self._begin(acceleration, self._magnetic):
@@ -171,10 +171,10 @@ class MadgwickNode(_ImuFilter):
         self._filter.orientation = first
         return True
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         if self._stateless:
             self._last_ns = None  # each measurement is a first one
-        super()._hear(message)
+        super()._receive(message)
 
     def _compensated(self, magnetic: Vector3) -> Vector3:
         x, y, z = (seen - bias for seen, bias in zip(magnetic, self._bias, strict=True))

@@ -61,8 +61,8 @@ class JointPanel:
         self._sliders: list[JointSlider] = []
         self._subscribers: list[PanelCallback] = []
         self._logger = node.get_logger()
-        self._sliders_changed = node.create_guard_condition(lambda: self._tell("sliders"))
-        self._positions_changed = node.create_guard_condition(lambda: self._tell("positions"))
+        self._sliders_changed = node.create_guard_condition(lambda: self._notify("sliders"))
+        self._positions_changed = node.create_guard_condition(lambda: self._notify("positions"))
 
     def sliders(self) -> list[JointSlider]:
         """The rows, in the order of the description's file.
@@ -169,7 +169,7 @@ class JointPanel:
         self._publish_soon()
         self.notice_positions()
 
-    def _tell(self, change: PanelChange) -> None:
+    def _notify(self, change: PanelChange) -> None:
         for callback in tuple(self._subscribers):
             try:
                 callback(change)

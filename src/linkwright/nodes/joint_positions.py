@@ -74,7 +74,7 @@ class JointPositions:
         for joint in layout.free:
             row = rows_before.get(joint.name)
             if row is not None:
-                self._keep(joint, before[:, row], zeros_before[joint.name])
+                self._store(joint, before[:, row], zeros_before[joint.name])
 
     def hear(self, message: JointState) -> None:
         """Take over the values of a message for free joints; positions outside of limits too."""
@@ -128,7 +128,7 @@ class JointPositions:
     def _free_states(self) -> Array:
         return np.array([self._position.values, self._velocity.values, self._effort.values])
 
-    def _keep(self, joint: JointRange, state: Array, zero_before: float) -> None:
+    def _store(self, joint: JointRange, state: Array, zero_before: float) -> None:
         row = self._rows[joint.name]
         position, velocity, effort = state.tolist()
         starts_without = np.isnan(self._position.values[row])

@@ -22,7 +22,7 @@ from linkwright.messages import Time, get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.lazy import LazySubscriptions
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import tell_unknown
+from linkwright.nodes.settings import log_unknown
 
 GROUP = "linkwright.laser_filters"
 """The entry points of filters; a name is that of the type in a parameter file."""
@@ -50,13 +50,13 @@ class ScanToScanFilterChain(SingleNode):
             self._target: str = node.declare_parameter("tf_message_filter_target_frame", "").value
             node.declare_parameter("tf_message_filter_tolerance", 0.03)  # of waiting, which is not done
             is_lazy = node.declare_parameter("lazy_subscription", False).value
-            tell_unknown(node)
+            log_unknown(node)
         self._poses = FramePoses(node, "Dropping Scan: Transform unavailable")
         kind = get_message("sensor_msgs/msg/LaserScan")
         self._publisher = node.create_publisher(kind, "scan_filtered", _DEPTH)
 
         def subscribe() -> Sequence[Subscription[Any]]:
-            return (node.create_subscription(kind, "scan", self._hear, SENSOR_DATA_QOS),)
+            return (node.create_subscription(kind, "scan", self._receive, SENSOR_DATA_QOS),)
 
         self._lazy = LazySubscriptions(graph, node, (self._publisher,), subscribe) if is_lazy else None
         if not is_lazy:
@@ -68,7 +68,7 @@ class ScanToScanFilterChain(SingleNode):
             self._lazy.close()
         super().close()
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         scan: Scan | None = scan_of(message)
         header = message.header
         if self._target and self._poses.pose(self._target, header.frame_id, header.stamp.nanoseconds) is None:
@@ -125,7 +125,9 @@ def read_chain(node: Node) -> list[ScanFilter]:
         for name in node.undeclared_overrides():
             if name.startswith(prefix):
                 node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True))
-        tree = _nested({name: each.value for name, each in node.get_parameters_by_prefix(prefix[:-1]).items()})
+        tree = _nested(
+            {name: parameter.value for name, parameter in node.get_parameters_by_prefix(prefix[:-1]).items()}
+        )
         chain.append(_filter(node, prefix, tree))
     return chain
 
@@ -151,10 +153,10 @@ def _filter(node: Node, prefix: str, tree: dict[str, Any]) -> ScanFilter:
     for name in given:
         if name not in parameters:
             meant = did_you_mean(name, parameters)
-            told = f"'{prefix}params.{name}' is not a parameter of {kind}" + (f"; {meant}" if meant else "")
-            node.get_logger().warning(told)
-    for name, each in parameters.items():
-        if name not in values and each.default is MISSING and each.default_factory is MISSING:
+            message = f"'{prefix}params.{name}' is not a parameter of {kind}" + (f"; {meant}" if meant else "")
+            node.get_logger().warning(message)
+    for name, parameter_field in parameters.items():
+        if name not in values and parameter_field.default is MISSING and parameter_field.default_factory is MISSING:
             raise _wrong("NODE452", phrase("'{name}' is not given", name=f"{prefix}params.{name}"), None)
     made: ScanFilter = table(**values)
     return made

@@ -21,7 +21,7 @@ from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.laser_filters import scan_of
 from linkwright.nodes.lazy import LazySubscriptions
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import positive, tell_unknown
+from linkwright.nodes.settings import log_unknown, positive
 
 _QUEUE = 10
 _FORMATS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
@@ -44,7 +44,7 @@ class _Converter(SingleNode, ABC):
             node.declare_parameter("transform_tolerance", 0.01)  # lookups never wait
             depth = int(positive(node, "queue_size", node.declare_parameter("queue_size", _QUEUE).value))
             source, result = self._declare()
-            tell_unknown(node)
+            log_unknown(node)
         self._poses = FramePoses(node, "Transform failure:")
         self._publisher = node.create_publisher(get_message(self.OUTPUT_TYPE), result, SENSOR_DATA_QOS)
         qos = QoSProfile(depth, ReliabilityPolicy.BEST_EFFORT)
@@ -52,7 +52,7 @@ class _Converter(SingleNode, ABC):
             graph,
             node,
             [self._publisher],
-            lambda: [node.create_subscription(get_message(self.INPUT_TYPE), source, self._hear, qos)],
+            lambda: [node.create_subscription(get_message(self.INPUT_TYPE), source, self._receive, qos)],
         )
 
     def close(self) -> None:
@@ -65,7 +65,7 @@ class _Converter(SingleNode, ABC):
         """Declare the rest of the parameters; returns the topics of input and output."""
 
     @abstractmethod
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         """Convert a message of the input to one of the output."""
 
     def _placed(self, points: NDArray[np.float64], header: Any) -> NDArray[np.float64] | None:
@@ -109,7 +109,7 @@ class PointCloudToLaserScan(_Converter):
         result: str = node.declare_parameter("scan_topic", "scan").value
         return source, result
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         points = points_of(message)
         if points is None:
             self._node.get_logger().error("a cloud has no fields x, y and z, or less data than it says", once=True)
@@ -142,7 +142,7 @@ class LaserScanToPointCloud(_Converter):
         source: str = self._node.declare_parameter("scan_topic", "scan_in").value
         return source, result
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         scan = scan_of(message)
         points, places = points_of_scan(scan)
         placed = self._placed(points.astype(np.float64), message.header)

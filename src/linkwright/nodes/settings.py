@@ -90,7 +90,7 @@ def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) ->
     return LinkwrightError(Diagnostic("NODE433", message, hint=hint))
 
 
-def tell_unknown(node: Node) -> None:
+def log_unknown(node: Node) -> None:
     """Log the given parameters that the node does not have; called when all are declared.
 
     Those that look misspelt are a warning. Parameters for all nodes of a launch (``/**``) reach nodes that do not know

@@ -97,9 +97,9 @@ class Simulator(SingleNode):
         loop = asyncio.get_running_loop()
         self.finished: asyncio.Future[int] = loop.create_future()
         with starting(self._node):
-            said = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
-            text = said["world_sdf_string"] or None
-            file = "world_sdf_string" if text else said["world_sdf_file"] or said["world"]
+            parameters = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
+            text = parameters["world_sdf_string"] or None
+            file = "world_sdf_string" if text else parameters["world_sdf_file"] or parameters["world"]
             loaded = (
                 load_world(words[0], environment=options.environment)
                 if words
@@ -111,30 +111,34 @@ class Simulator(SingleNode):
                 if diagnostic.severity is Severity.ERROR or diagnostic.code in _LEFT_OUT
             )
             self._log(remarkable)
-            simulation = Simulation(loaded.world, loaded.finder, step=said["step"] or None)
-            how = ServerOptions(said["seed"], said["usual_names"], said["gazebo_mistakes"], self._systems())
+            simulation = Simulation(loaded.world, loaded.finder, step=parameters["step"] or None)
+            how = ServerOptions(
+                parameters["seed"], parameters["usual_names"], parameters["gazebo_mistakes"], self._systems()
+            )
             self.server = SimulationServer(simulation, self._node, how)
             own = PluginNode(self._node, self.server.exchange, owned=False, qos={}, usual=None)
-            self._reports = Reports(self.server, own, said["publish_rate"])
+            self._reports = Reports(self.server, own, parameters["publish_rate"])
             self.runner = Runner(
                 self.server,
-                factor=said["real_time_factor"] if said["real_time_factor"] >= 0 else inf,
-                paused=said["pause"],
-                seconds=said["seconds"] or None,
+                factor=parameters["real_time_factor"] if parameters["real_time_factor"] >= 0 else inf,
+                paused=parameters["pause"],
+                seconds=parameters["seconds"] or None,
                 watch=lambda: self._reports.watch(lambda: self.runner.real_time_factor),
-                on_state=self._tell_state,
+                on_state=self._publish_state,
                 on_end=partial(_call_on, loop, self._finish),
             )
             self.services = Services(self.server, self.runner, own, loaded, options.library)
             self.server.start()
-            if said[_DESCRIPTION]:
-                pose = _pose(said["robot_pose"])
-                robot = self.services.spawn(said[_DESCRIPTION], said["robot_name"], pose, said["robot_namespace"])
+            if parameters[_DESCRIPTION]:
+                pose = _pose(parameters["robot_pose"])
+                robot = self.services.spawn(
+                    parameters[_DESCRIPTION], parameters["robot_name"], pose, parameters["robot_namespace"]
+                )
                 self._node.add_on_set_parameters_callback(partial(self._renew, robot))
             self._reports.begin()
-            self._tell_state()
+            self._publish_state()
             self.server.exchange.deliver()
-            if said["pause"]:
+            if parameters["pause"]:
                 self._node.get_logger().info(_PAUSED)
             self.runner.start()
 
@@ -164,7 +168,7 @@ class Simulator(SingleNode):
         if not self.finished.done():
             self.finished.set_result(status)
 
-    def _tell_state(self) -> None:
+    def _publish_state(self) -> None:
         self._reports.publish_state(paused=self.runner.paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:

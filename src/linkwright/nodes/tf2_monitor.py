@@ -46,15 +46,15 @@ class Tf2Monitor(SingleNode):
         self._message_delays: deque[float] = deque(maxlen=_KEPT)
         self._message_times: deque[float] = deque(maxlen=_KEPT)
         self._buffer = BufferCore(logger=self._node.get_logger().get_child("tf2"))
-        self._node.create_subscription(TFMessage, "/tf", lambda message: self._hear(message, static=False), TF_QOS)
+        self._node.create_subscription(TFMessage, "/tf", lambda message: self._receive(message, static=False), TF_QOS)
         self._node.create_subscription(
-            TFMessage, "/tf_static", lambda message: self._hear(message, static=True), STATIC_TF_SUBSCRIPTION_QOS
+            TFMessage, "/tf_static", lambda message: self._receive(message, static=True), STATIC_TF_SUBSCRIPTION_QOS
         )
         if self._ends is not None:
             self._output(f"Waiting for transform chain to become available between {' and '.join(self._ends)} ")
         self._node.create_timer(_LOOK_EVERY_SECONDS, self._look)
 
-    def _hear(self, message: TFMessage, *, static: bool) -> None:
+    def _receive(self, message: TFMessage, *, static: bool) -> None:
         now_ns = self._clock.now().nanoseconds
         self._buffer.update(message, static=static)
         total = 0.0

@@ -63,8 +63,8 @@ class ViewFrames(SingleNode):
         text = self._buffer.all_frames_as_yaml()
         self._logger.info(f"Result:tf2_msgs.srv.FrameGraph_Response(frame_yaml={text!r})")
         base = self._settings.output or f"frames_{time.strftime('%Y-%m-%d_%H.%M.%S')}"
-        drawing, picture = Path(f"{base}.gv"), Path(f"{base}.pdf")
-        self._logger.info(f"Exporting graph in {picture} file...")
+        drawing, image = Path(f"{base}.gv"), Path(f"{base}.pdf")
+        self._logger.info(f"Exporting graph in {image} file...")
         seconds = self._node.get_clock().now().nanoseconds / 1e9
         dot = frames_as_dot(yaml.safe_load(text) or {}, seconds)
         try:
@@ -80,7 +80,7 @@ class ViewFrames(SingleNode):
                     ),
                 )
             ) from error
-        render(dot, picture)
+        render(dot, image)
 
 
 def frames_as_dot(frames: Mapping[str, Mapping[str, Any]], recorded_s: float) -> str:

@@ -44,11 +44,11 @@ class ZenohRouter(SingleNode):
             raise
         logger = self._node.get_logger()
         logger.info(f"Zenoh router at {', '.join(listening_at(config))}")
-        self._telling = Telling(config, self._tell, lambda: bool(self._session.info.routers_zid()))
+        self._telling = Telling(config, self._warn, lambda: bool(self._session.info.routers_zid()))
         if asked_for(config):
             self._telling.start()
 
-    def _tell(self, reasons: str) -> None:
+    def _warn(self, reasons: str) -> None:
         self._node.get_logger().warning(f"Not connected yet, which is tried again and again: {reasons}")
 
     def close(self) -> None:

@@ -29,12 +29,12 @@ def words_of(name: str) -> list[str]:
     return [word for word in re.split(r"[\s_\-]+", name.lower()) if word]
 
 
-def told_colour(name: str) -> str | None:
+def named_colour(name: str) -> str | None:
     """The colour that a class has in its name, one of `PAINTS`."""
     return next((SPELLINGS[word] for word in words_of(name) if word in SPELLINGS), None)
 
 
 def paint_of(name: str) -> tuple[int, int, int] | None:
     """Red, green and blue of the colour that a class has in its name, 0 to 255."""
-    told = told_colour(name)
-    return None if told is None else PAINTS[told]
+    colour = named_colour(name)
+    return None if colour is None else PAINTS[colour]

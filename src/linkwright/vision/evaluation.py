@@ -116,14 +116,14 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], found: Sequence
     for place, name in enumerate(names):
         precisions = _average_precisions(place, truth, detections)
         right = int(confusion[place, place])
-        told, there = int(confusion[:, place].sum()), int(confusion[place].sum())
+        detected, there = int(confusion[:, place].sum()), int(confusion[place].sum())
         figures.append(
             ClassFigures(
                 name,
                 there,
                 None if precisions is None else float(precisions[0]),
                 None if precisions is None else float(precisions.mean()),
-                right / told if told else None,
+                right / detected if detected else None,
                 right / there if there else None,
             )
         )
@@ -149,8 +149,8 @@ def balanced_score(names: Sequence[str], truth: Sequence[GroundTruth], found: Se
     scores: list[NDArray[np.float32]] = [np.zeros(0, np.float32)]
     right: list[NDArray[np.bool_]] = [np.zeros(0, bool)]
     there = 0
-    for objects, each in zip(truth, found, strict=True):
-        detections, asked = _in_terms_of(known, each), objects.where(~objects.ignored)
+    for objects, predictions in zip(truth, found, strict=True):
+        detections, asked = _in_terms_of(known, predictions), objects.where(~objects.ignored)
         same = overlap(detections.boxes, asked.boxes) * (detections.classes[:, None] == asked.classes[None])
         hits = _matches(same, _CONFUSION_OVERLAP) >= 0
         hidden = _within(detections.boxes, objects.boxes[objects.ignored]) >= _CONFUSION_OVERLAP

@@ -52,7 +52,7 @@ class Eye:
     def see(self, *points, origin=(2.05, 2.05, 0.3)) -> np.ndarray:
         self.time_ns += SECOND
         points = np.array([(*point, 0.3)[:3] if len(point) == 2 else point for point in points], float).reshape(-1, 3)
-        self.buffer.take(np.array(origin, float), points, self.time_ns)
+        self.buffer.add(np.array(origin, float), points, self.time_ns)
         return self.update()
 
     def update(self) -> np.ndarray:
@@ -69,7 +69,7 @@ def inflated(*obstacles, **parameters) -> tuple[np.ndarray, float]:
     grid = occupancy()
     for row, column in obstacles:
         grid.cells[row, column] = 100
-    layer.take(grid)
+    layer.set_map(grid)
     scene.update(HERE, 0)
     return scene.costmap.grid.cells, scene.inscribed_radius
 
@@ -101,7 +101,7 @@ def test_a_part_that_is_updated_is_as_if_all_of_it_were():
     scene = costmap(layer, InflationLayer(Inflation(inflation_radius=0.5)))
     grid = occupancy()
     grid.cells[5:9, 20] = 100
-    layer.take(grid)
+    layer.set_map(grid)
     scene.update(HERE, 0)
     eye = Eye(layers=[InflationLayer(Inflation(inflation_radius=0.5))])
     eye.see((2.55, 3.05), (1.05, 2.05))
@@ -118,7 +118,7 @@ def test_what_nobody_has_seen_costs_only_where_a_robot_would_touch():
         grid = occupancy()
         grid.cells[:] = -1
         grid.cells[20, 20] = 100
-        layer.take(grid)
+        layer.set_map(grid)
         scene.update(HERE, 0)
         cells = scene.costmap.grid.cells
         assert cells[20, 21] == INSCRIBED
@@ -199,7 +199,7 @@ def test_a_sensor_that_is_silent_for_too_long_is_told():
 def test_there_is_nothing_where_the_robot_stands():
     buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
     scene = costmap(ObstacleLayer([buffer], Heights()))
-    buffer.take(np.array([2.05, 2.05, 0.3]), np.array([[2.15, 2.05, 0.3], [2.45, 2.05, 0.3]]), 0)
+    buffer.add(np.array([2.05, 2.05, 0.3]), np.array([[2.15, 2.05, 0.3], [2.45, 2.05, 0.3]]), 0)
     scene.update(HERE, 0)
     assert np.argwhere(scene.costmap.grid.cells).tolist() == [[20, 24]]
 
@@ -246,7 +246,7 @@ def test_a_map_lies_turned_in_the_frame_of_the_costmap():
     scene = costmap(layer)
     grid = occupancy()
     grid.cells[0, 39] = 100  # x 3.95, y 0.05 in the map
-    layer.take(grid)
+    layer.set_map(grid)
     scene.update(HERE, 0)
     assert np.argwhere(scene.costmap.grid.cells).tolist() == [[39, 39]]
 
@@ -258,7 +258,7 @@ def test_a_map_lies_somewhere_else_than_the_costmap(x, y):
     grid = occupancy(20, 30)
     grid.cells[:] = np.where(np.random.default_rng(0).random((20, 30)) < 0.5, 100, 0)
     grid.x, grid.y = 0.1 * x, 0.1 * y
-    layer.take(grid)
+    layer.set_map(grid)
     scene.update(HERE, 0)
     rows, columns = np.mgrid[:40, :40]
     there = np.stack((rows - y, columns - x), axis=-1)
@@ -271,11 +271,11 @@ def test_a_map_lies_somewhere_else_than_the_costmap(x, y):
 def test_a_part_of_a_map_changes():
     layer = StaticLayer(Interpretation())
     scene = costmap(layer)
-    assert not layer.take_part(0, 0, np.array([[100]], np.int8))
-    layer.take(occupancy())
+    assert not layer.update_map(0, 0, np.array([[100]], np.int8))
+    layer.set_map(occupancy())
     scene.update(HERE, 0)
-    assert layer.take_part(3, 4, np.array([[100]], np.int8))
-    assert not layer.take_part(39, 39, np.array([[100, 100]], np.int8))
+    assert layer.update_map(3, 4, np.array([[100]], np.int8))
+    assert not layer.update_map(39, 39, np.array([[100, 100]], np.int8))
     scene.update(HERE, 0)
     assert np.argwhere(scene.costmap.grid.cells).tolist() == [[3, 4]]
 
@@ -285,7 +285,7 @@ def test_without_a_map_it_is_not_current():
     scene = costmap(layer)
     scene.update(HERE, 0)
     assert not scene.is_current(0)
-    layer.take(occupancy())
+    layer.set_map(occupancy())
     scene.update(HERE, 0)
     assert scene.is_current(0)
     assert not scene.update(HERE, 0)
@@ -303,7 +303,7 @@ class Sonar:
 
     def measure(self, distance: float, *, free: bool = False, times: int = 5) -> np.ndarray:
         for _ in range(times):
-            self.layer.take(Reading(1.05, 2.05, 0.0, distance, 0.5, free, SECOND))
+            self.layer.add(Reading(1.05, 2.05, 0.0, distance, 0.5, free, SECOND))
         self.costmap.update(HERE, SECOND)
         return self.costmap.costmap.grid.cells
 
@@ -360,7 +360,7 @@ def test_small_groups_go(connectivity, left):
     grid.cells[10, 10] = 100
     grid.cells[[20, 21], [20, 21]] = 100
     grid.cells[30, 3:6] = 100
-    layer.take(grid)
+    layer.set_map(grid)
     scene.update(HERE, 0)
     assert np.count_nonzero(scene.costmap.grid.cells) == left
 
@@ -373,10 +373,10 @@ def test_a_window_that_moves_keeps_what_was_seen():
     layer = ObstacleLayer([buffer], Heights(), footprint_clearing=False)
     scene = costmap(layer, rolling=True, size=2.0)
     scene.update((0.0, 0.0, 0.0), 0)
-    buffer.take(np.array([0.0, 0.0, 0.3]), np.array([[0.55, 0.25, 0.3]]), 0)
+    buffer.add(np.array([0.0, 0.0, 0.3]), np.array([[0.55, 0.25, 0.3]]), 0)
     scene.update((0.0, 0.0, 0.0), 0)
     assert scene.costmap.cost_at(np.array([0.55, 0.25])) == LETHAL
-    buffer.take(np.array([0.0, 0.0, 0.3]), np.zeros((0, 3)), 0)
+    buffer.add(np.array([0.0, 0.0, 0.3]), np.zeros((0, 3)), 0)
     scene.update((0.73, -0.31, 0.0), 0)
     grid = scene.costmap.grid
     assert scene.costmap.cost_at(np.array([0.55, 0.25])) == LETHAL
@@ -390,7 +390,7 @@ def test_clearing_around_the_robot_and_everywhere_else():
     for kind, more in ((ObstacleLayer, ()), (VoxelLayer, (Voxels(),))):
         eye = Eye(kind, *more)
         eye.see((2.55, 2.05), (3.55, 2.05))
-        eye.buffer.take(np.array([2.05, 2.05, 0.3]), np.zeros((0, 3)), 0)
+        eye.buffer.add(np.array([2.05, 2.05, 0.3]), np.zeros((0, 3)), 0)
         eye.costmap.clear_around(HERE, 1.4, except_it=True)
         assert np.argwhere(eye.update() == LETHAL).tolist() == [[20, 25]]
         eye.costmap.clear_around(HERE, 1.4)
@@ -403,10 +403,10 @@ def test_clearing_forgets_what_was_seen_and_keeps_the_map():
     scene = LayeredCostmap(blank(), [layer, eye.layer], circle(RADIUS))
     grid = occupancy()
     grid.cells[3, 3] = 100
-    layer.take(grid)
+    layer.set_map(grid)
     eye.costmap = scene
     eye.see((2.55, 2.05))
-    eye.buffer.take(np.array([2.05, 2.05, 0.3]), np.zeros((0, 3)), 0)
+    eye.buffer.add(np.array([2.05, 2.05, 0.3]), np.zeros((0, 3)), 0)
     scene.clear_entirely()
     assert not scene.is_current(0)
     assert np.argwhere(eye.update()).tolist() == [[3, 3]]

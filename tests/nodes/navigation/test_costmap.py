@@ -207,7 +207,7 @@ async def test_it_can_be_cleared(scene, start):
     scene.tell_scan((0, 1.0), (180, 0.5))
     await scene.run(0.3)
     layer = node.layered.layers[1]
-    layer.buffers[0].take(np.zeros(3), np.zeros((0, 3)), 0)  # what was seen is not seen any more
+    layer.buffers[0].add(np.zeros(3), np.zeros((0, 3)), 0)  # what was seen is not seen any more
     near, far = np.array([0.5, 1.0]), np.array([2.0, 1.0])
     await call(scene, "/global_costmap/clear_around_global_costmap", "ClearCostmapAroundRobot", reset_distance=1.2)
     assert node.costmap.cost_at(near) < INSCRIBED

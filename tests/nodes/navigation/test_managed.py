@@ -22,7 +22,7 @@ class _Node(ManagedNode):
 
     def configure(self) -> None:
         self._do("configure")
-        self.keep(self.create_publisher(get_message("std_msgs/msg/String"), "kept", 1))
+        self.register(self.create_publisher(get_message("std_msgs/msg/String"), "kept", 1))
 
     def activate(self) -> None:
         self._do("activate")

@@ -55,7 +55,7 @@ class SeekingRobot(SteppedSimulation):
         images: bool = False,
         laser: bool = False,
         seeker: dict[str, Any] | None = None,
-        seen_object: str = "ball",
+        thing: str = "ball",
     ) -> None:
         arguments = {"camera": True, "laser": laser}
         world = GAZEBO_PACKAGE / "worlds" / "empty.world"
@@ -63,7 +63,7 @@ class SeekingRobot(SteppedSimulation):
         self._model = folder / "ball.sdf"
         self._model.write_text(_BALL)
         self._ball, self._images, self._seeker = ball, images, seeker or {}
-        self._thing = seen_object
+        self._thing = thing
         self._visible = True
 
     def __enter__(self) -> Self:

@@ -46,7 +46,7 @@ def test_it_goes_to_the_red_ball_that_its_camera_sees(tmp_path):
 @pytest.mark.parametrize("language", ["en", "zh"])
 def test_it_answers_in_the_language_that_it_is_asked_in(tmp_path, language):
     with SeekingRobot(tmp_path, (1.0, 0.0), seeker={"language": language}) as test:
-        for topic, seen_object in (
+        for topic, thing in (
             ("go_to/zh", "ball"),
             ("go_to/en", "球"),
             ("follow/zh", "ball"),
@@ -54,7 +54,7 @@ def test_it_answers_in_the_language_that_it_is_asked_in(tmp_path, language):
             ("go_to", "ball"),
             ("go_to", "球"),
         ):
-            test.tell(f"/vision/{topic}", seen_object)
+            test.tell(f"/vision/{topic}", thing)
             test.settle()
         test.tell_to_stop()
         test.settle()

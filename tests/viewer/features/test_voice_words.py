@@ -67,7 +67,7 @@ async def test_what_cannot_serve_is_not_taken():
     async with opened() as (client, _):
         judged = await record(client, "stop", np.zeros(16_000, np.int16))
         assert (judged["code"], judged["peak"]) == ("VOICE205", 0.0)
-        assert "nothing is heard" in judged["text"]
+        assert "no audible word" in judged["text"]
         assert Words.read(words_path()).names == ()
 
 

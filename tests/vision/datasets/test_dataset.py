@@ -60,7 +60,7 @@ def test_lights_and_background_of_the_world_are_kept_where_that_is_asked_for(tmp
         )
         studio = Studio(source)
         try:
-            images = [np.asarray(Image.open(BytesIO(studio.take(index).data)).convert("RGB")) for index in range(4)]
+            images = [np.asarray(Image.open(BytesIO(studio.make(index).data)).convert("RGB")) for index in range(4)]
         finally:
             studio.close()
         made[kept] = np.concatenate(images).reshape(-1, 3).astype(int)
@@ -128,9 +128,9 @@ def test_a_image_does_not_depend_on_those_before(source, monkeypatch, way):
         if way != "OpenGL":
             assert f"by {way}," in str(first.way).replace("rays of", "by")
         for number in (0, 49, 3, 51):
-            first.take(number)
-        assert first.take(52) == second.take(52)
-        assert first.take(1) == second.take(1)
+            first.make(number)
+        assert first.make(52) == second.make(52)
+        assert first.make(1) == second.make(1)
     finally:
         first.close()
         second.close()
@@ -198,6 +198,16 @@ def test_other_classes_cannot_be_added(source, tmp_path):
     assert code_of(caught) == "VISION206"
 
 
+def test_nothing_is_added_to_a_dataset_with_a_card_of_another_form(source, tmp_path):
+    folder = tmp_path / "set"
+    make(source, folder, 1)
+    card = folder / "dataset.json"
+    card.write_text(card.read_text().replace('"form": 2', '"form": 1'))
+    with pytest.raises(LinkwrightError) as caught:
+        make(source, folder, 1, append=True)
+    assert code_of(caught) == "VISION206"
+
+
 def test_an_interrupted_dataset_is_complete(source, tmp_path):
     folder = tmp_path / "set"
 
@@ -227,7 +237,7 @@ def test_things_of_one_world_are_in_the_others(source, tmp_path):
     studio = Studio(replace(source, worlds=(*source.worlds, str(path))))
     try:
         assert studio.classes == ("ball", "crate", "drums")
-        labels = {label.label for index in range(1, 30, 2) for label in studio.take(index).labels}
+        labels = {label.label for index in range(1, 30, 2) for label in studio.make(index).labels}
         assert labels == {0, 1, 2}
     finally:
         studio.close()

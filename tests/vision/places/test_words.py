@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.vision.places.words import Answer, Sighting, answer, described, named, wanted
+from linkwright.vision.places.words import Answer, Sighting, answer, described, named, requested
 
 
 @pytest.mark.parametrize(
@@ -37,14 +37,14 @@ from linkwright.vision.places.words import Answer, Sighting, answer, described, 
     ],
 )
 def test_what_somebody_asks_for(text, noun, colour):
-    found = wanted(text)
+    found = requested(text)
     assert (found.noun, found.colour) == (noun, colour)
     assert found.language == ("en" if text.isascii() else "zh")
 
 
 @pytest.mark.parametrize("text", ["", "  ", "the", "。"])
 def test_nothing_is_asked_for(text):
-    assert wanted(text) is None
+    assert requested(text) is None
 
 
 @pytest.mark.parametrize(
@@ -66,34 +66,34 @@ def test_nothing_is_asked_for(text):
     ],
 )
 def test_whether_this_is_it(asked, name, colour, is_it):
-    assert wanted(asked).is_it(name, colour) is is_it
+    assert requested(asked).is_it(name, colour) is is_it
 
 
 def test_a_patch_of_a_colour_is_a_ball_if_it_is_as_wide_as_high():
-    assert wanted("red ball").is_it("red", None, 1.1)
-    assert not wanted("red ball").is_it("red", None, 0.4)
-    assert wanted("red ball").is_it("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
-    assert wanted("red").is_it("red", None, 0.4)
+    assert requested("red ball").is_it("red", None, 1.1)
+    assert not requested("red ball").is_it("red", None, 0.4)
+    assert requested("red ball").is_it("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
+    assert requested("red").is_it("red", None, 0.4)
 
 
 def test_a_round_patch_of_any_colour_is_a_ball_and_a_square_one_is_none():
-    assert wanted("ball").is_it("orange", None, 1.0, 0.79)
-    assert not wanted("ball").is_it("orange", None, 1.0, 0.99)
-    assert not wanted("ball").is_it("orange", None, 0.5, 0.79)
-    assert not wanted("crate").is_it("orange", None, 1.0, 0.79)
+    assert requested("ball").is_it("orange", None, 1.0, 0.79)
+    assert not requested("ball").is_it("orange", None, 1.0, 0.99)
+    assert not requested("ball").is_it("orange", None, 0.5, 0.79)
+    assert not requested("crate").is_it("orange", None, 1.0, 0.79)
 
 
 def test_what_is_said_of_it_has_no_verb():
-    assert wanted("go to the ball").text == "ball"
-    assert wanted("去红色的球那里").text == "红色的球"
+    assert requested("go to the ball").text == "ball"
+    assert requested("去红色的球那里").text == "红色的球"
 
 
 def test_an_answer_names_the_thing_in_its_own_language():
-    assert answer(Answer.LOOKING, wanted("red ball"), "en") == "I am looking for the red ball."
-    assert answer(Answer.LOOKING, wanted("traffic_cone"), "zh") == "我在找锥桶。"
-    assert answer(Answer.ARRIVED, wanted("red ball"), "zh") == "我到红色的球这里了。"
-    assert answer(Answer.FOUND, wanted("红球"), "zh") == "我看到红球了，正在过去。"
-    assert answer(Answer.LOST, wanted("红球"), "en") == "I have lost the red ball."
+    assert answer(Answer.LOOKING, requested("red ball"), "en") == "I am looking for the red ball."
+    assert answer(Answer.LOOKING, requested("traffic_cone"), "zh") == "我在找锥桶。"
+    assert answer(Answer.ARRIVED, requested("red ball"), "zh") == "我到红色的球这里了。"
+    assert answer(Answer.FOUND, requested("红球"), "zh") == "我看到红球了，正在过去。"
+    assert answer(Answer.LOST, requested("红球"), "en") == "I have lost the red ball."
 
 
 def test_what_is_seen_in_a_sentence():

@@ -88,7 +88,7 @@ class Spin(Behavior):
     def __init__(self, angle: float, allowance: float, parameters: SpinParameters, start: Pose) -> None:
         super().__init__(allowance)
         self._angle = angle
-        self._told = parameters
+        self._parameters = parameters
         self._before = start[2]
         self._turned = 0.0
 
@@ -98,10 +98,13 @@ class Spin(Behavior):
         left = abs(self._angle) - copysign(self._turned, self._turned * self._angle)
         if left <= _ENOUGH:
             return Step(Outcome.DONE, traveled=self._turned)
-        told = self._told
-        speed = min(max(sqrt(2.0 * told.rotational_acc_lim * left), told.min_rotational_vel), told.max_rotational_vel)
+        parameters = self._parameters
+        speed = min(
+            max(sqrt(2.0 * parameters.rotational_acc_lim * left), parameters.min_rotational_vel),
+            parameters.max_rotational_vel,
+        )
         velocity = Velocity(yaw=copysign(speed, self._angle))
-        ahead = _ahead(pose, velocity, min(told.simulate_ahead_time, left / speed))
+        ahead = _ahead(pose, velocity, min(parameters.simulate_ahead_time, left / speed))
         if not is_free(ahead):
             return Step(Outcome.COLLISION, traveled=self._turned)
         return Step(Outcome.RUNNING, velocity, self._turned)

@@ -88,8 +88,8 @@ class InflationLayer(Layer):
         unknown = cells == UNKNOWN
         least = FREE + 1 if self._inflation.inflate_unknown else INSCRIBED
         np.maximum(cells, costs, out=cells)
-        told = unknown & (costs >= least)
-        cells[told] = costs[told]
+        inflated = unknown & (costs >= least)
+        cells[inflated] = costs[inflated]
 
     def _reach(self, grid: Grid) -> int:
         return max(0, ceil(self._inflation.inflation_radius / grid.resolution))

@@ -169,7 +169,7 @@ class SeenLayer(Layer):
             self.seen.cells[window.cells] = UNKNOWN
         self._extra = Window.of(self.seen)
 
-    def take_extra(self) -> Window:
+    def pop_extra(self) -> Window:
         """The window that changed other than by observations since the last call."""
         extra, self._extra = self._extra, Window()
         return extra

@@ -72,26 +72,26 @@ class ObservationBuffer:
 
     def __init__(self, source: Source) -> None:
         self.source = source
-        self._kept: deque[Observation] = deque()
+        self._observations: deque[Observation] = deque()
         self._updated_ns: int | None = None
 
-    def take(self, origin: NDArray[np.float64], points: NDArray[np.float64], time_ns: int) -> None:
+    def add(self, origin: NDArray[np.float64], points: NDArray[np.float64], time_ns: int) -> None:
         """Add an observation; points that are not finite, or outside of the height limits, are dropped."""
         height = points[:, 2]
         counts = np.isfinite(points).all(axis=1)
         counts &= (height >= self.source.min_obstacle_height) & (height <= self.source.max_obstacle_height)
         if not self.source.observation_persistence:
-            self._kept.clear()
-        self._kept.append(Observation(origin, points[counts], self.source, time_ns))
+            self._observations.clear()
+        self._observations.append(Observation(origin, points[counts], self.source, time_ns))
         self._updated_ns = time_ns
 
     def observations(self, time_ns: int) -> list[Observation]:
         """The observations that are valid at a time."""
         if self.source.observation_persistence:
             oldest = time_ns - round(self.source.observation_persistence * _NANOSECONDS)
-            while self._kept and self._kept[0].time_ns < oldest:
-                self._kept.popleft()
-        return list(self._kept)
+            while self._observations and self._observations[0].time_ns < oldest:
+                self._observations.popleft()
+        return list(self._observations)
 
     def is_current(self, time_ns: int) -> bool:
         """Whether the sensor published within the expected time."""

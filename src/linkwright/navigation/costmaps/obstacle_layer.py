@@ -68,7 +68,7 @@ class ObstacleLayer(SeenLayer):
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
         """The window that rays and points of the new observations touch."""
         self._forgotten = False
-        window = window.joined(self.take_extra())
+        window = window.joined(self.pop_extra())
         seen = [
             (observation, buffer.source)
             for buffer in self.buffers

@@ -80,7 +80,7 @@ class RangeLayer(SeenLayer):
         self._readings: deque[Reading] = deque()
         self._heard_ns: int | None = None
 
-    def take(self, reading: Reading) -> None:
+    def add(self, reading: Reading) -> None:
         """Add a reading."""
         self._readings.append(reading)
         self._heard_ns = reading.time_ns
@@ -101,7 +101,7 @@ class RangeLayer(SeenLayer):
 
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
         """The window that new readings touch."""
-        window = window.joined(self.take_extra())
+        window = window.joined(self.pop_extra())
         while self._readings:
             window = window.joined(self._learn(self._readings.popleft(), grid))
         return window

@@ -78,13 +78,13 @@ class StaticLayer(Layer):
         self._placed: MapPose | None = None
         self._news = True
 
-    def take(self, occupancy: Grid) -> None:
+    def set_map(self, occupancy: Grid) -> None:
         """Set a new map; cells of type int8, in per cent or -1."""
         costs = self.interpretation.table()[occupancy.cells.astype(np.uint8)]
         self.map = Grid(cells=costs, resolution=occupancy.resolution, x=occupancy.x, y=occupancy.y, yaw=occupancy.yaw)
         self._news = True
 
-    def take_part(self, top: int, left: int, occupancy: Costs) -> bool:
+    def update_map(self, top: int, left: int, occupancy: Costs) -> bool:
         """Update a part of the map; False, without effect, if it is not within the map."""
         rows, columns = occupancy.shape
         known = self.map

@@ -20,7 +20,7 @@ from linkwright.navigation.grids.rays import cells_on_lines
 
 MOST_LEVELS: Final = 16
 _ALL: Final = (1 << MOST_LEVELS) - 1
-_BITS: Final = np.array([each.bit_count() for each in range(1 << MOST_LEVELS)], np.uint8)
+_BITS: Final = np.array([number.bit_count() for number in range(1 << MOST_LEVELS)], np.uint8)
 """The number of set bits of each 16-bit number."""
 
 Levels = NDArray[np.uint16]

@@ -39,8 +39,8 @@ class SimpleGoalChecker(GoalChecker):
     """Place and heading within tolerances; once the place was reached, the heading alone counts (`stateful`)."""
 
     def __init__(self, parameters: SimpleGoalParameters | None = None) -> None:
-        self._told = parameters or SimpleGoalParameters()
-        self.xy_tolerance = self._told.xy_goal_tolerance
+        self._parameters = parameters or SimpleGoalParameters()
+        self.xy_tolerance = self._parameters.xy_goal_tolerance
         self._is_there = False
 
     def begin(self) -> None:
@@ -50,10 +50,10 @@ class SimpleGoalChecker(GoalChecker):
     def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
         """Whether the goal is reached."""
         if not self._is_there:
-            if hypot(pose[0] - goal[0], pose[1] - goal[1]) > self._told.xy_goal_tolerance:
+            if hypot(pose[0] - goal[0], pose[1] - goal[1]) > self._parameters.xy_goal_tolerance:
                 return False
-            self._is_there = self._told.stateful
-        return abs(wrapped(pose[2] - goal[2])) <= self._told.yaw_goal_tolerance
+            self._is_there = self._parameters.stateful
+        return abs(wrapped(pose[2] - goal[2])) <= self._parameters.yaw_goal_tolerance
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,7 +99,7 @@ class ProgressChecker:
     """Detects that a robot makes no progress: it must move so far, or turn so much, within a time."""
 
     def __init__(self, parameters: ProgressParameters | None = None) -> None:
-        self._told = parameters or ProgressParameters()
+        self._parameters = parameters or ProgressParameters()
         self._from: Pose | None = None
         self._since_ns = 0
 
@@ -112,12 +112,13 @@ class ProgressChecker:
         if self._from is None or self._has_moved(self._from, pose):
             self._from, self._since_ns = pose, time_ns
             return True
-        return time_ns - self._since_ns <= self._told.movement_time_allowance * 1e9
+        return time_ns - self._since_ns <= self._parameters.movement_time_allowance * 1e9
 
     def _has_moved(self, before: Pose, now: Pose) -> bool:
-        told = self._told
-        if hypot(now[0] - before[0], now[1] - before[1]) > told.required_movement_radius:
+        parameters = self._parameters
+        if hypot(now[0] - before[0], now[1] - before[1]) > parameters.required_movement_radius:
             return True
         return (
-            isinstance(told, PoseProgressParameters) and abs(wrapped(now[2] - before[2])) > told.required_movement_angle
+            isinstance(parameters, PoseProgressParameters)
+            and abs(wrapped(now[2] - before[2])) > parameters.required_movement_angle
         )

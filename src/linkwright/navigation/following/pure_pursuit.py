@@ -71,75 +71,83 @@ class RegulatedPurePursuit(Follower):
 
     def velocity(self, situation: Situation) -> Velocity:
         """The velocity for the next cycle; see `Follower.velocity`."""
-        told = self.parameters
+        parameters = self.parameters
         seen = in_frame_of(situation.pose, situation.path[:, :2])
-        cusp = _distance_to_cusp(seen) if told.allow_reversing else len(seen)
+        cusp = _distance_to_cusp(seen) if parameters.allow_reversing else len(seen)
         seen = seen[: cusp + 1]
         lookahead = self._lookahead(situation.velocity.x)
         carrot = carrot_on(seen, lookahead)
-        sign = -1.0 if told.allow_reversing and carrot[0] < 0.0 else 1.0
+        sign = -1.0 if parameters.allow_reversing and carrot[0] < 0.0 else 1.0
         to_goal = hypot(*in_frame_of(situation.pose, situation.path[-1, :2]))
-        if told.use_rotate_to_heading and to_goal < situation.xy_tolerance:
+        if parameters.use_rotate_to_heading and to_goal < situation.xy_tolerance:
             command = self._turn(wrapped(situation.path[-1, 2] - situation.pose[2]), situation)
         elif self._must_turn(angle := atan2(sign * carrot[1], sign * carrot[0])):
             command = self._turn(angle, situation)
         else:
-            bent = carrot_on(seen, told.curvature_lookahead_dist) if told.use_fixed_curvature_lookahead else carrot
+            bent = (
+                carrot_on(seen, parameters.curvature_lookahead_dist)
+                if parameters.use_fixed_curvature_lookahead
+                else carrot
+            )
             curvature = curvature_to(bent)
             speed = self._speed(curvature, seen, situation)
             command = Velocity(sign * speed, 0.0, sign * speed * curvature)
-        if told.use_collision_detection:
+        if parameters.use_collision_detection:
             self._check(command, hypot(*carrot), situation)
         return command
 
     def _lookahead(self, speed: float) -> float:
-        told = self.parameters
-        if not told.use_velocity_scaled_lookahead_dist:
-            return told.lookahead_dist
-        return min(max(abs(speed) * told.lookahead_time, told.min_lookahead_dist), told.max_lookahead_dist)
+        parameters = self.parameters
+        if not parameters.use_velocity_scaled_lookahead_dist:
+            return parameters.lookahead_dist
+        return min(
+            max(abs(speed) * parameters.lookahead_time, parameters.min_lookahead_dist), parameters.max_lookahead_dist
+        )
 
     def _must_turn(self, angle: float) -> bool:
-        told = self.parameters
-        return told.use_rotate_to_heading and abs(angle) > told.rotate_to_heading_min_angle
+        parameters = self.parameters
+        return parameters.use_rotate_to_heading and abs(angle) > parameters.rotate_to_heading_min_angle
 
     def _turn(self, angle: float, situation: Situation) -> Velocity:
-        told = self.parameters
+        parameters = self.parameters
         return Velocity(
             yaw=turning_speed(
                 angle,
                 situation.velocity.yaw,
                 situation.period,
-                told.rotate_to_heading_angular_vel,
-                told.max_angular_accel,
+                parameters.rotate_to_heading_angular_vel,
+                parameters.max_angular_accel,
             )
         )
 
     def _speed(self, curvature: float, seen: NDArray[np.float64], situation: Situation) -> float:
         """The speed, in m/s."""
-        told = self.parameters
+        parameters = self.parameters
         speed = self._top
-        if told.use_regulated_linear_velocity_scaling:
-            speed = min(speed, speed_in_curve(self._top, curvature, told.regulated_linear_scaling_min_radius))
-        if told.use_cost_regulated_linear_velocity_scaling:
+        if parameters.use_regulated_linear_velocity_scaling:
+            speed = min(speed, speed_in_curve(self._top, curvature, parameters.regulated_linear_scaling_min_radius))
+        if parameters.use_cost_regulated_linear_velocity_scaling:
             speed = min(speed, self._speed_near_obstacles(situation.pose, situation.costmap, situation.footprint))
-        speed = min(max(speed, told.regulated_linear_scaling_min_speed), self._top)
+        speed = min(max(speed, parameters.regulated_linear_scaling_min_speed), self._top)
         left = float(lengths_along(seen)[-1])
-        if told.approach_velocity_scaling_dist > 0.0 and left < told.approach_velocity_scaling_dist:
-            slow = speed * left / told.approach_velocity_scaling_dist
-            speed = min(speed, max(slow, told.min_approach_linear_velocity))
+        if parameters.approach_velocity_scaling_dist > 0.0 and left < parameters.approach_velocity_scaling_dist:
+            slow = speed * left / parameters.approach_velocity_scaling_dist
+            speed = min(speed, max(slow, parameters.min_approach_linear_velocity))
         return speed
 
     def _speed_near_obstacles(self, pose: Pose, costmap: Costmap, footprint: Footprint) -> float:
         """The speed within `cost_scaling_dist` of an obstacle, whose distance follows from the inflated cost."""
-        told = self.parameters
+        parameters = self.parameters
         cost = int(costmap.cost_at(np.array(pose[:2])))
         if cost in (FREE, UNKNOWN):
             return self._top
         inscribed, _ = radii(footprint)
-        distance = inscribed - log(min(cost, INSCRIBED - 1) / (INSCRIBED - 1)) / told.inflation_cost_scaling_factor
-        if distance >= told.cost_scaling_dist:
+        distance = (
+            inscribed - log(min(cost, INSCRIBED - 1) / (INSCRIBED - 1)) / parameters.inflation_cost_scaling_factor
+        )
+        if distance >= parameters.cost_scaling_dist:
             return self._top
-        return self._top * told.cost_scaling_gain * distance / told.cost_scaling_dist
+        return self._top * parameters.cost_scaling_gain * distance / parameters.cost_scaling_dist
 
     def _check(self, command: Velocity, carrot_distance: float, situation: Situation) -> None:
         """Raise where the footprint meets an obstacle within the look-ahead time, before the carrot."""

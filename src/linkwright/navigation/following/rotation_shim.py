@@ -43,7 +43,7 @@ class RotationShim(Follower):
 
     def __init__(self, primary: Follower, parameters: RotationShimParameters | None = None) -> None:
         self._primary = primary
-        self._told = parameters or RotationShimParameters()
+        self._parameters = parameters or RotationShimParameters()
         self._is_new = True
         self._turns = False
 
@@ -58,15 +58,15 @@ class RotationShim(Follower):
 
     def velocity(self, situation: Situation) -> Velocity:
         """The velocity for the next cycle; see `Follower.velocity`."""
-        told = self._told
+        parameters = self._parameters
         seen = in_frame_of(situation.pose, situation.path[:, :2])
         lengths = lengths_along(situation.path)
-        index = min(int(np.searchsorted(lengths, told.forward_sampling_distance)), len(seen) - 1)
+        index = min(int(np.searchsorted(lengths, parameters.forward_sampling_distance)), len(seen) - 1)
         angle = atan2(float(seen[index, 1]), float(seen[index, 0]))
         if self._is_new:
-            self._turns = abs(angle) > told.angular_dist_threshold
+            self._turns = abs(angle) > parameters.angular_dist_threshold
             self._is_new = False
-        elif abs(angle) <= told.angular_disengage_threshold:
+        elif abs(angle) <= parameters.angular_disengage_threshold:
             self._turns = False
         if not self._turns:
             return self._primary.velocity(situation)
@@ -75,10 +75,10 @@ class RotationShim(Follower):
                 angle,
                 situation.velocity.yaw,
                 situation.period,
-                told.rotate_to_heading_angular_vel,
-                told.max_angular_accel,
+                parameters.rotate_to_heading_angular_vel,
+                parameters.max_angular_accel,
             )
         )
-        if not is_free(situation, command, told.simulate_ahead_time):
+        if not is_free(situation, command, parameters.simulate_ahead_time):
             raise FollowingError("there is an obstacle where the robot would turn")
         return command

@@ -128,9 +128,9 @@ class SamplingFollower(Follower):
 
     def _best(self, situation: Situation) -> Velocity:
         """The best collision-free velocity; footprints are checked from the best one on."""
-        told = self.parameters
+        parameters = self.parameters
         candidates = self._candidates(situation)
-        ways = motions(situation.pose, candidates, np.linspace(0.0, told.seconds, told.steps + 1)[1:])
+        ways = motions(situation.pose, candidates, np.linspace(0.0, parameters.seconds, parameters.steps + 1)[1:])
         costs = situation.costmap.cost_at(ways[..., :2]).astype(np.float64)
         costs[costs == UNKNOWN] = 0.0
         highest: NDArray[np.float64] = costs.max(axis=1)
@@ -138,22 +138,22 @@ class SamplingFollower(Follower):
         judged = self._judged(ways[free], highest[free] / INSCRIBED, situation)
         for index in free[np.argsort(judged)][:_MOST_FOOTPRINTS]:
             best = Velocity(*map(float, candidates[index]))
-            if highest[index] <= 0.0 or is_free(situation, best, told.seconds):
+            if highest[index] <= 0.0 or is_free(situation, best, parameters.seconds):
                 return self._reachable(best, situation)
         raise FollowingError("every velocity that was tried leads into an obstacle")
 
     def _candidates(self, situation: Situation) -> NDArray[np.float64]:
         """Velocities that can be reached within the simulated time, of shape (candidates, 3)."""
-        told, limits = self.parameters, self.parameters.limits
+        parameters, limits = self.parameters, self.parameters.limits
         highest = (min(limits.most.x, self._top), limits.most.y, limits.most.yaw)
         axes = []
-        for axis, count in enumerate(told.samples):
-            now, change = situation.velocity[axis], limits.acceleration[axis] * told.seconds
+        for axis, count in enumerate(parameters.samples):
+            now, change = situation.velocity[axis], limits.acceleration[axis] * parameters.seconds
             low, high = max(limits.least[axis], now - change), min(highest[axis], now + change)
             values = np.linspace(low, max(low, high), count if high > low else 1)
             axes.append(np.append(values, 0.0) if low < 0.0 < high else values)
         mesh = np.meshgrid(*axes, indexing="ij")
-        candidates: NDArray[np.float64] = np.stack([each.ravel() for each in mesh], axis=-1)
+        candidates: NDArray[np.float64] = np.stack([axis_samples.ravel() for axis_samples in mesh], axis=-1)
         return candidates
 
     def _reachable(self, wanted: Velocity, situation: Situation) -> Velocity:
@@ -170,10 +170,10 @@ class SamplingFollower(Follower):
         self, ways: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
     ) -> NDArray[np.float64]:
         """The costs of motions, in metres of the path, of shape (motions,)."""
-        told = self.parameters
+        parameters = self.parameters
         path = situation.path
         lengths = lengths_along(path)
-        checked = ways[:, [told.steps // 2, -1], :2]
+        checked = ways[:, [parameters.steps // 2, -1], :2]
         squared = ((checked[:, :, None] - path[None, None, :, :2]) ** 2).sum(axis=-1)
         nearest = squared.argmin(axis=-1)
         beside = np.sqrt(np.take_along_axis(squared, nearest[..., None], axis=-1))[..., 0].sum(axis=1)
@@ -187,7 +187,7 @@ class SamplingFollower(Follower):
         turn = np.abs(np.arctan2(np.sin(turn), np.cos(turn)))
         turn[np.hypot(towards[:, 0], towards[:, 1]) < _NO_WAY] = 0.0
         judged: NDArray[np.float64] = (
-            left + told.off_path * beside + told.off_heading * turn + told.near_obstacle * costs
+            left + parameters.off_path * beside + parameters.off_heading * turn + parameters.near_obstacle * costs
         )
         return judged
 

@@ -63,7 +63,7 @@ def differential(
     first = 0.0 if drive < _STANDS_STILL else turned_by(atan2(y, x) - before[2])
     second = turned_by(turn - first)
     # Driving backwards is not a half turn.
-    first_size, second_size = (min(abs(each), abs(turned_by(each - pi))) for each in (first, second))
+    first_size, second_size = (min(abs(rotation), abs(turned_by(rotation - pi))) for rotation in (first, second))
     count = len(particles)
     drive_sigma = sqrt(
         noise.drive_of_drive * drive**2 + noise.drive_of_turn * first_size**2 + noise.drive_of_turn * second_size**2

@@ -50,10 +50,10 @@ def load_map(path: str | Path) -> Grid:
     Raises:
         LinkwrightError: NAV201 or NAV202, see `read_map_yaml`; NAV203 or NAV204, see `read_image`.
     """
-    said = read_map_yaml(path)
-    cells = cells_of_image(read_image(said.image), said)
-    x, y, yaw = said.origin
-    return Grid(cells=cells, resolution=said.resolution, x=x, y=y, yaw=yaw)
+    map_yaml = read_map_yaml(path)
+    cells = cells_of_image(read_image(map_yaml.image), map_yaml)
+    x, y, yaw = map_yaml.origin
+    return Grid(cells=cells, resolution=map_yaml.resolution, x=x, y=y, yaw=yaw)
 
 
 def save_map(grid: Grid, saved: SavedAs, warn: Callable[[str], object] = _unheard) -> tuple[Path, Path]:
@@ -125,7 +125,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _yaml(grid: Grid, saved: SavedAs, image: str) -> str:
-    origin = ", ".join(_number(each) for each in (grid.x, grid.y, grid.yaw))
+    origin = ", ".join(_number(number) for number in (grid.x, grid.y, grid.yaw))
     return (
         f"image: {image}\nmode: {saved.mode.value}\nresolution: {_number(grid.resolution)}\norigin: [{origin}]\n"
         f"negate: 0\noccupied_thresh: {_number(saved.occupied_thresh)}\nfree_thresh: {_number(saved.free_thresh)}"

@@ -133,7 +133,7 @@ class _Reader:
         if len(node.value) != 3:
             message = phrase("'origin' must have 3 values (x, y, yaw) and has {count}", count=len(node.value))
             raise self._error(message, node)
-        return [self._number(each, "origin") for each in node.value]
+        return [self._number(number, "origin") for number in node.value]
 
     def _threshold(self, key: str) -> float:
         node = self._nodes[key]

@@ -15,30 +15,30 @@ UNKNOWN_DARKNESS = 1.0 - _UNKNOWN_GREY / 255.0
 _OPAQUE = 255
 
 
-def cells_of_image(image: MapImage, said: MapYaml) -> NDArray[np.int8]:
+def cells_of_image(image: MapImage, map_yaml: MapYaml) -> NDArray[np.int8]:
     """Convert pixels to cells.
 
     Args:
         image: the pixels, from the top row down.
-        said: the thresholds, the mode and whether black is free.
+        map_yaml: the thresholds, the mode and whether black is free.
 
     Returns:
         Per cent or `UNKNOWN`, from the lowest row up, of the image's shape.
     """
     shade, opacity = image.shade[::-1], None if image.opacity is None else image.opacity[::-1]
-    if said.mode is MapMode.RAW:
+    if map_yaml.mode is MapMode.RAW:
         value = np.floor(shade * 255.0 + 0.5)
         return np.where(value <= OCCUPIED, value, UNKNOWN).astype(np.int8)
-    if said.mode is MapMode.TRINARY and opacity is not None:
+    if map_yaml.mode is MapMode.TRINARY and opacity is not None:
         shade = (shade * 3.0 + opacity) / 4.0  # opacity counts as a fourth colour there
-    dark = shade if said.negate else 1.0 - shade
-    if said.mode is MapMode.SCALE:
-        span = said.occupied_thresh - said.free_thresh
-        between = np.rint((dark - said.free_thresh) / span * 100.0) if span > 0.0 else np.zeros_like(dark)
+    dark = shade if map_yaml.negate else 1.0 - shade
+    if map_yaml.mode is MapMode.SCALE:
+        span = map_yaml.occupied_thresh - map_yaml.free_thresh
+        between = np.rint((dark - map_yaml.free_thresh) / span * 100.0) if span > 0.0 else np.zeros_like(dark)
     else:
         between = np.full_like(dark, UNKNOWN)
-    cells = np.where(dark > said.occupied_thresh, OCCUPIED, np.where(dark < said.free_thresh, FREE, between))
-    if said.mode is MapMode.SCALE and opacity is not None:
+    cells = np.where(dark > map_yaml.occupied_thresh, OCCUPIED, np.where(dark < map_yaml.free_thresh, FREE, between))
+    if map_yaml.mode is MapMode.SCALE and opacity is not None:
         cells = np.where(opacity < 1.0, UNKNOWN, cells)
     return cells.astype(np.int8)
 

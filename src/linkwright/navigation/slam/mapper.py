@@ -222,7 +222,7 @@ class Mapper:
     def _around(self, pose: Floats) -> list[int]:
         """The nearest scans of all."""
         order = np.argsort(self._distances(pose), kind="stable")
-        return [int(each) for each in order[: 2 * self.settings.scan_buffer_size]]
+        return [int(index) for index in order[: 2 * self.settings.scan_buffer_size]]
 
     def _distances(self, pose: Floats) -> Floats:
         away = self.graph.poses[:, :2] - pose[:2]
@@ -274,11 +274,11 @@ class Mapper:
         away = self._distances(self.graph.poses[number])
         last = number - self.settings.scan_buffer_size
         chains: list[list[int]] = []
-        for each in np.flatnonzero(away[: max(last, 0)] <= distance).tolist():
-            if chains and chains[-1][-1] == each - 1:
-                chains[-1].append(each)
+        for index in np.flatnonzero(away[: max(last, 0)] <= distance).tolist():
+            if chains and chains[-1][-1] == index - 1:
+                chains[-1].append(index)
             else:
-                chains.append([each])
+                chains.append([index])
         return sorted(chains, key=lambda chain: (float(away[chain].min()), chain[0]))
 
     def _close(self, number: int, chain: list[int]) -> Steps[bool]:
@@ -299,7 +299,7 @@ class Mapper:
         """Match a node against a chain, and add an edge if the match is beyond doubt; None if it is not."""
         scan = self.scans[number]
         guess = self.graph.poses[number] if around is None else around
-        nodes = sorted(chain, key=lambda each: float(self._distances(guess)[each]))[: self.settings.scan_buffer_size]
+        nodes = sorted(chain, key=lambda index: float(self._distances(guess)[index]))[: self.settings.scan_buffer_size]
         found = yield from self._match(nodes, scan, guess, search)
         if found is None or found.response < least or found.inliers < _LEAST_INLIERS:
             return None

@@ -89,13 +89,13 @@ def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Float
     scale = np.array((1.0, 1.0, 1.0 / reach))  # rotation as the distance that it moves points
     pose, farthest = start.copy(), _FARTHEST
     system = _equations(reference, scan, pose, farthest, scale)
-    free = _told(system[0], len(scan.points))
+    free = _constrained(system[0], len(scan.points))
     turn = wrapped(start - guess)[2]
     shift: Floats = np.array((start[0] - guess[0], start[1] - guess[1], turn)) / scale
     pose = guess + scale * (free @ shift)
     for _ in range(_ROUNDS):
         hessian, gradient, _, _ = _equations(reference, scan, pose, farthest, scale)
-        free = _told(hessian, len(scan.points))
+        free = _constrained(hessian, len(scan.points))
         step: Floats = -np.linalg.pinv(free @ hessian @ free, rcond=1e-9, hermitian=True) @ (free @ gradient)
         step *= min(1.0, 0.2 / max(float(np.abs(step).max()), 1e-12))
         pose += scale * step
@@ -103,7 +103,7 @@ def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Float
             break
         farthest = max(_NEAREST, 0.7 * farthest)
     hessian, _, inliers, error = _equations(reference, scan, pose, _NEAREST, scale)
-    free = _told(hessian, len(scan.points))
+    free = _constrained(hessian, len(scan.points))
     unscaled = free @ hessian @ free / np.outer(scale, scale)
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     axes = np.array(((cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0)))
@@ -112,7 +112,7 @@ def _refined(reference: Reference, scan: PlanarScan, guess: Floats, start: Float
     return Match(pose, response, information, inliers, error)
 
 
-def _told(hessian: Floats, points: int) -> Floats:
+def _constrained(hessian: Floats, points: int) -> Floats:
     """The projection onto the directions that the points constrain, of shape (3, 3)."""
     values, vectors = np.linalg.eigh(hessian)
     kept = vectors[:, values > _SINGULAR * points]

@@ -97,7 +97,7 @@ def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[Floats]]:
         raise ValueError
     measured, information = arrays["measured"].reshape(links, 3), arrays["information"].reshape(links, 3, 3)
     doubtful = arrays["doubtful"].reshape(links)
-    if not all(np.isfinite(each).all() for each in (poses, measured, information, arrays["points"])):
+    if not all(np.isfinite(array).all() for array in (poses, measured, information, arrays["points"])):
         raise ValueError
     parts = np.split(arrays["points"].reshape(-1, 2), np.cumsum(counts.ravel())[:-1])
     scans = [
@@ -105,7 +105,7 @@ def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[Floats]]:
         for index in range(number)
     ]
     first, second = edges.tolist()
-    graph = PoseGraph(poses, first, second, list(measured), list(information), [bool(each) for each in doubtful])
+    graph = PoseGraph(poses, first, second, list(measured), list(information), [bool(flag) for flag in doubtful])
     return graph, scans, list(arrays["odometry"])
 
 

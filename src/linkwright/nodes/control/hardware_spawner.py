@@ -32,18 +32,18 @@ class HardwareSpawner(ManagerProgram):
         target = parser.add_mutually_exclusive_group(required=True)
         target.add_argument("--activate", action="store_true")
         target.add_argument("--configure", action="store_true")
-        self._wanted = parsed(parser, remove_ros_arguments(options.arguments))
+        self._arguments = parsed(parser, remove_ros_arguments(options.arguments))
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._client = ManagerClient(
-            self._node, self._wanted.controller_manager, self._wanted.controller_manager_timeout
+            self._node, self._arguments.controller_manager, self._arguments.controller_manager_timeout
         )
         self._begin(self._lead)
 
     async def _lead(self) -> int:
         logger, status = self._node.get_logger(), 0
-        target, action = (ACTIVE, "activated") if self._wanted.activate else (INACTIVE, "configured")
-        listed = [each.name for each in (await self._client.ask("list_hardware_components")).component]
-        for name in self._wanted.hardware_component_names:
+        target, action = (ACTIVE, "activated") if self._arguments.activate else (INACTIVE, "configured")
+        listed = [component.name for component in (await self._client.ask("list_hardware_components")).component]
+        for name in self._arguments.hardware_component_names:
             if name not in listed:
                 logger.warning("Hardware Component is not loaded - state can not be changed.")
                 status = 1

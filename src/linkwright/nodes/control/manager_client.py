@@ -129,7 +129,7 @@ class ManagerProgram(SingleNode):
             self.finished.set_result(status)
 
 
-def _said(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
+def _without_empty(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
     """The words of a command line without empty ones, which launch files leave, unless they are values of options."""
     flags = [action for action in parser._actions if action.nargs == 0]
     valueless = {"", *(option for action in flags for option in action.option_strings)}
@@ -153,6 +153,6 @@ def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Na
     # argparse ends the program where a required option is missing, in Python up to 3.12 also with exit_on_error=False.
     parser.error = refuse  # type: ignore[method-assign]  # on purpose, see above
     try:
-        return parser.parse_args(_said(parser, words))
+        return parser.parse_args(_without_empty(parser, words))
     except argparse.ArgumentError as error:
         refuse(str(error))

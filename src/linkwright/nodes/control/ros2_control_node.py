@@ -91,10 +91,10 @@ class Ros2ControlNode(SingleNode):
                 "[Deprecated] Passing the robot description parameter directly to the control_manager node is "
                 "deprecated. Use the 'robot_description' topic from 'robot_state_publisher' instead."
             )
-            self._take(text)
+            self._load(text)
             return
         topics = dict.fromkeys(
-            self._node.handle.resolve_topic_name(each) for each in ("robot_description", "~/robot_description")
+            self._node.handle.resolve_topic_name(name) for name in ("robot_description", "~/robot_description")
         )
         for topic in topics:
             self._node.create_subscription(String, topic, self._on_description, DESCRIPTION_QOS)
@@ -124,9 +124,9 @@ class Ros2ControlNode(SingleNode):
         if self._loaded:
             logger.warning("ResourceManager has already loaded a urdf. Ignoring attempt to reload a robot description.")
             return
-        self._take(message.data)
+        self._load(message.data)
 
-    def _take(self, text: str) -> None:
+    def _load(self, text: str) -> None:
         manager = self._manager
         self._loaded = load_hardware(manager, text, self._library, _hardware) and bool(manager.resources.components)
         if not self._loaded:  # no services either, as upstream: they would hide those of another manager

@@ -37,7 +37,7 @@ class Spawner(ManagerProgram):
         self._unloads = False
         wanted = parsed(_parser(), remove_ros_arguments(options.arguments))
         self._node, _ = create_node(graph, options, f"spawner_{wanted.controller_names[0]}")
-        self._wanted = wanted
+        self._arguments = wanted
         of_process = [*options.for_others.files, *parse(options.arguments).parameters.files]
         self._files = list(dict.fromkeys([*(wanted.param_file or ()), *of_process]))
         with starting(self._node):
@@ -54,11 +54,11 @@ class Spawner(ManagerProgram):
         """Close it; with ``--unload-on-kill`` the controllers are unloaded."""
         if self._unloads:
             self._unloads = False
-            self._take_away()
+            self._unload_at_once()
         super().close()
 
     async def _spawn(self) -> int:
-        wanted, logger = self._wanted, self._node.get_logger()
+        wanted, logger = self._arguments, self._node.get_logger()
         for name in wanted.controller_names:
             if not await self._load(name):
                 return 1
@@ -85,12 +85,12 @@ class Spawner(ManagerProgram):
         return 0
 
     async def _activate(self, names: Sequence[str]) -> Any:
-        return await self._client.switch(names, (), self._wanted.switch_timeout, asap=self._wanted.switch_asap)
+        return await self._client.switch(names, (), self._arguments.switch_timeout, asap=self._arguments.switch_asap)
 
     async def _load(self, name: str) -> bool:
         logger = self._node.get_logger()
         listed = await self._client.ask("list_controllers")
-        if any(each.name == name for each in listed.controller):
+        if any(controller.name == name for controller in listed.controller):
             logger.warning("Controller already loaded, skipping load_controller")
             return True
         for parameter, value in self._parameters(name).items():
@@ -107,7 +107,7 @@ class Spawner(ManagerProgram):
 
     def _parameters(self, name: str) -> dict[str, Any]:
         """The parameters of a controller for the manager."""
-        wanted, found = self._wanted, {}
+        wanted, found = self._arguments, {}
         if wanted.controller_type:
             found["type"] = wanted.controller_type
         if wanted.controller_ros_args:
@@ -120,13 +120,13 @@ class Spawner(ManagerProgram):
             found["params_file"] = self._files
             full_name = join(self._node.get_namespace(), name)
             for path in self._files:
-                said = read_parameter_file(path).for_node(full_name)
-                found |= {each: said[each] for each in _TAKEN if each in said}
+                values = read_parameter_file(path).for_node(full_name)
+                found |= {key: values[key] for key in _TAKEN if key in values}
         return found
 
-    def _take_away(self) -> None:
+    def _unload_at_once(self) -> None:
         """Deactivate and unload the controllers, without waiting for responses: the program ends."""
-        names, manager = self._wanted.controller_names, self._client.manager
+        names, manager = self._arguments.controller_names, self._client.manager
         kind = get_service("controller_manager_msgs/srv/SwitchController")
         switch = self._node.create_client(kind, f"{manager}/switch_controller")
         switch.call_async(kind.Request(deactivate_controllers=names, strictness=2))
@@ -148,14 +148,14 @@ class Unspawner(ManagerProgram):
         parser.add_argument("controller_names", nargs="+")
         parser.add_argument("-c", "--controller-manager", default="/controller_manager")
         parser.add_argument("--switch-timeout", type=float, default=5.0)
-        self._wanted = parsed(parser, remove_ros_arguments(options.arguments))
-        self._node, _ = create_node(graph, options, f"unspawner_{self._wanted.controller_names[0]}")
-        self._client = ManagerClient(self._node, self._wanted.controller_manager)
+        self._arguments = parsed(parser, remove_ros_arguments(options.arguments))
+        self._node, _ = create_node(graph, options, f"unspawner_{self._arguments.controller_names[0]}")
+        self._client = ManagerClient(self._node, self._arguments.controller_manager)
         self._begin(self._unspawn)
 
     async def _unspawn(self) -> int:
-        logger, names = self._node.get_logger(), self._wanted.controller_names
-        await self._client.switch((), names, self._wanted.switch_timeout, asap=True)
+        logger, names = self._node.get_logger(), self._arguments.controller_names
+        await self._client.switch((), names, self._arguments.switch_timeout, asap=True)
         logger.info("Deactivated controller")
         for name in names:
             if not (await self._client.ask("unload_controller", name=name)).ok:

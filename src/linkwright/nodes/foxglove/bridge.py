@@ -16,7 +16,7 @@ from linkwright.nodes.foxglove.assets import Assets
 from linkwright.nodes.foxglove.clients import Client
 from linkwright.nodes.foxglove.names import NameFilter
 from linkwright.nodes.foxglove.origins import is_welcome
-from linkwright.nodes.foxglove.parameters import Parameters, told
+from linkwright.nodes.foxglove.parameters import Parameters, parameter_entry
 from linkwright.nodes.foxglove.protocol import ENCODING, SUBPROTOCOLS, time_frame
 from linkwright.nodes.foxglove.services import Services
 from linkwright.nodes.foxglove.session import Offer, Session
@@ -127,11 +127,11 @@ class FoxgloveBridge(SingleNode):
         if gone:
             messages.append({"op": "unadvertise", "channelIds": gone})
         if channels:
-            messages.append({"op": "advertise", "channels": [channel.told() for channel in channels]})
+            messages.append({"op": "advertise", "channels": [channel.advertisement() for channel in channels]})
         if ended:
             messages.append({"op": "unadvertiseServices", "serviceIds": ended})
         if services:
-            messages.append({"op": "advertiseServices", "services": [service.told() for service in services]})
+            messages.append({"op": "advertiseServices", "services": [service.advertisement() for service in services]})
         for session in self._sessions:
             for message in messages:
                 session.client.send(message)
@@ -144,11 +144,13 @@ class FoxgloveBridge(SingleNode):
         if not watching:
             return
         changed = [
-            told(f"{event.node}.{new_parameter.name}", plain_value(new_parameter.value))
+            parameter_entry(f"{event.node}.{new_parameter.name}", plain_value(new_parameter.value))
             for new_parameter in (*event.new_parameters, *event.changed_parameters)
         ]
         for session in watching:
-            wanted = [each for each in changed if not session.parameters or each["name"] in session.parameters]
+            wanted = [
+                parameter for parameter in changed if not session.parameters or parameter["name"] in session.parameters
+            ]
             if wanted:
                 session.client.send({"op": "parameterValues", "parameters": wanted})
 
@@ -216,11 +218,13 @@ class FoxgloveBridge(SingleNode):
                 "sessionId": self._identity,
             }
         )
-        client.send({"op": "advertise", "channels": [channel.told() for channel in self._offer.channels.all()]})
+        client.send(
+            {"op": "advertise", "channels": [channel.advertisement() for channel in self._offer.channels.all()]}
+        )
         client.send(
             {
                 "op": "advertiseServices",
-                "services": [offered_service.told() for offered_service in self._offer.services.all()],
+                "services": [offered_service.advertisement() for offered_service in self._offer.services.all()],
             }
         )
 

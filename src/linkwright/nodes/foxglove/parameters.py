@@ -26,7 +26,7 @@ class Parameters:
 
     def __init__(self, node: Node, wanted: NameFilter) -> None:
         self._node = node
-        self._wanted = wanted
+        self._filter = wanted
         self._clients: dict[str, AsyncParameterClient] = {}
 
     async def get(self, names: Sequence[str]) -> list[dict[str, Any]]:
@@ -41,15 +41,15 @@ class Parameters:
         self._forget_the_gone()
         found = await asyncio.gather(*(self._of(node, wanted) for node, wanted in by_node.items()))
         return [
-            parameter for parameters in found for parameter in parameters if self._wanted.accepts(parameter["name"])
+            parameter for parameters in found for parameter in parameters if self._filter.accepts(parameter["name"])
         ]
 
-    async def set(self, told: Sequence[Mapping[str, Any]]) -> None:
+    async def set(self, parameters: Sequence[Mapping[str, Any]]) -> None:
         """Set parameters; those that nodes refuse keep their values."""
-        for mapping in told:
+        for mapping in parameters:
             name = str(mapping.get("name", ""))
             node, _, parameter = name.partition(".")
-            if parameter and node in self._nodes() and self._wanted.accepts(name):
+            if parameter and node in self._nodes() and self._filter.accepts(name):
                 value = _value(mapping)
                 await self._answer(self._client(node).set_parameters([Parameter(parameter, value=value)]))
 
@@ -85,7 +85,7 @@ class Parameters:
         if answer is None:
             return []
         pairs = zip(wanted, map(plain_value, answer.values), strict=False)
-        return [told(f"{node}.{name}", value) for name, value in pairs if value is not None]
+        return [parameter_entry(f"{node}.{name}", value) for name, value in pairs if value is not None]
 
     def _client(self, node: str) -> AsyncParameterClient:
         if node not in self._clients:
@@ -104,24 +104,24 @@ class Parameters:
             return None
 
 
-def told(name: str, value: Any) -> dict[str, Any]:
+def parameter_entry(name: str, value: Any) -> dict[str, Any]:
     """A parameter in the form for clients."""
     parameter: dict[str, Any] = {"name": name, "value": value}
     if isinstance(value, (bytes, bytearray)):
         parameter.update(value=base64.b64encode(value).decode(), type="byte_array")
     elif isinstance(value, float):
         parameter["type"] = "float64"
-    elif isinstance(value, list) and value and all(isinstance(each, float) for each in value):
+    elif isinstance(value, list) and value and all(isinstance(number, float) for number in value):
         parameter["type"] = "float64_array"
     return parameter
 
 
-def _value(told: Mapping[str, Any]) -> Any:
-    value, kind = told.get("value"), told.get("type")
+def _value(parameter: Mapping[str, Any]) -> Any:
+    value, kind = parameter.get("value"), parameter.get("type")
     if kind == "byte_array":
         return [bytes([byte]) for byte in base64.b64decode(str(value))]
     if kind == "float64" and isinstance(value, (int, float)):
         return float(value)
     if kind == "float64_array" and isinstance(value, list):
-        return [float(each) for each in value]
+        return [float(number) for number in value]
     return value

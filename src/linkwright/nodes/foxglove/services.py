@@ -30,19 +30,19 @@ class OfferedService:
     name: str
     type_name: str
 
-    def told(self) -> dict[str, Any]:
+    def advertisement(self) -> dict[str, Any]:
         """The service in the form for clients, with the keys of older versions too."""
         schemas = {part: schema_of(f"{self.type_name}_{part}") for part in ("Request", "Response")}
-        told: dict[str, Any] = {"id": self.number, "name": self.name, "type": self.type_name}
+        advertisement: dict[str, Any] = {"id": self.number, "name": self.name, "type": self.type_name}
         for part, schema in schemas.items():
-            told[part.lower()] = {
+            advertisement[part.lower()] = {
                 "encoding": ENCODING,
                 "schemaName": f"{self.type_name}_{part}",
                 "schemaEncoding": SCHEMA_ENCODING,
                 "schema": schema,
             }
-            told[f"{part.lower()}Schema"] = schema
-        return told
+            advertisement[f"{part.lower()}Schema"] = schema
+        return advertisement
 
 
 class Services:
@@ -55,7 +55,7 @@ class Services:
 
     def __init__(self, node: Node, wanted: NameFilter) -> None:
         self._node = node
-        self._wanted = wanted
+        self._filter = wanted
         self._offered: dict[tuple[str, str], OfferedService] = {}
         self._clients: dict[int, ServiceClient[Any, Any]] = {}
         self._last = 0
@@ -69,7 +69,7 @@ class Services:
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
-            if endpoint.kind is EndpointKind.SERVICE and self._wanted.accepts(endpoint.name)
+            if endpoint.kind is EndpointKind.SERVICE and self._filter.accepts(endpoint.name)
         }
         gone = [self._offered.pop(key).number for key in list(self._offered) if key not in there]
         for number in gone:

@@ -84,9 +84,9 @@ class Session:
         for number, forwarding in list(self._forwardings.items()):
             if forwarding.channel.number in gone:
                 self._forwardings.pop(number).close()
-        self.tell_connections()
+        self.send_connections()
 
-    def tell_connections(self) -> None:
+    def send_connections(self) -> None:
         """Send the changes of the connection graph, if the client subscribed to it."""
         if self.watches_connections:
             now = connections(self.offer.node)
@@ -115,39 +115,39 @@ class Session:
         else:
             self._complain(f"channel {frame.channel} was not advertised")
 
-    def _operation(self, told: dict[str, Any]) -> None:
-        match told["op"]:
+    def _operation(self, request: dict[str, Any]) -> None:
+        match request["op"]:
             case "subscribe":
-                for each in told["subscriptions"]:
-                    self._subscribe(int(each["id"]), int(each["channelId"]))
+                for subscription in request["subscriptions"]:
+                    self._subscribe(int(subscription["id"]), int(subscription["channelId"]))
             case "unsubscribe":
-                for number in told["subscriptionIds"]:
+                for number in request["subscriptionIds"]:
                     if number in self._forwardings:
                         self._forwardings.pop(number).close()
             case "advertise":
-                for channel in told["channels"]:
+                for channel in request["channels"]:
                     self._advertise(int(channel["id"]), channel)
             case "unadvertise":
-                for number in told["channelIds"]:
+                for number in request["channelIds"]:
                     if number in self._publications:
                         self._publications.pop(number).close()
             case "getParameters":
-                self._run(self._tell_parameters([str(name) for name in told["parameterNames"]], told.get("id")))
+                self._run(self._send_parameters([str(name) for name in request["parameterNames"]], request.get("id")))
             case "setParameters":
-                self._run(self._set_parameters(list(told["parameters"]), told.get("id")))
+                self._run(self._set_parameters(list(request["parameters"]), request.get("id")))
             case "subscribeParameterUpdates":
-                names = {str(name) for name in told["parameterNames"]}
+                names = {str(name) for name in request["parameterNames"]}
                 self.parameters = (self.parameters or set()) | names if names else set()
             case "unsubscribeParameterUpdates":
-                left = (self.parameters or set()) - {str(name) for name in told["parameterNames"]}
-                self.parameters = left if told["parameterNames"] and left else None
+                left = (self.parameters or set()) - {str(name) for name in request["parameterNames"]}
+                self.parameters = left if request["parameterNames"] and left else None
             case "subscribeConnectionGraph":
                 self.watches_connections, self._known = True, None
-                self.tell_connections()
+                self.send_connections()
             case "unsubscribeConnectionGraph":
                 self.watches_connections = False
             case "fetchAsset":
-                self._run(self._fetch(str(told["uri"]), int(told["requestId"])))
+                self._run(self._fetch(str(request["uri"]), int(request["requestId"])))
             case operation:
                 self._complain(f"no message has the op '{str(operation)[:40]}'")
 
@@ -191,7 +191,7 @@ class Session:
             return
         self.client.send(service_response(request.service, request.call, answer))
 
-    async def _tell_parameters(self, names: list[str], identity: str | None) -> None:
+    async def _send_parameters(self, names: list[str], identity: str | None) -> None:
         values = await self.offer.parameters.get(names)
         message: dict[str, Any] = {"op": "parameterValues", "parameters": values}
         if identity is not None:
@@ -204,7 +204,7 @@ class Session:
         except (ValueError, TypeError, AttributeError, LinkwrightError) as error:
             self._complain(f"a parameter was not set: {str(error)[:200]}")
         if identity is not None:
-            await self._tell_parameters([str(parameter.get("name", "")) for parameter in parameters], identity)
+            await self._send_parameters([str(parameter.get("name", "")) for parameter in parameters], identity)
 
     async def _fetch(self, uri: str, request: int) -> None:
         try:

@@ -28,7 +28,7 @@ class Channel:
     type_name: str
     schema: str
 
-    def told(self) -> dict[str, Any]:
+    def advertisement(self) -> dict[str, Any]:
         """The channel in the form for clients."""
         return {
             "id": self.number,
@@ -50,7 +50,7 @@ class Channels:
 
     def __init__(self, node: Node, wanted: NameFilter) -> None:
         self._node = node
-        self._wanted = wanted
+        self._filter = wanted
         self._channels: dict[tuple[str, str], Channel] = {}
         self._unknown: set[str] = set()
         self._last = 0
@@ -68,7 +68,7 @@ class Channels:
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
-            if endpoint.kind is EndpointKind.PUBLISHER and self._wanted.accepts(endpoint.name)
+            if endpoint.kind is EndpointKind.PUBLISHER and self._filter.accepts(endpoint.name)
         }
         gone = [self._channels.pop(key).number for key in list(self._channels) if key not in there]
         come = [made for key in sorted(there - self._channels.keys()) if (made := self._make(*key)) is not None]
@@ -138,12 +138,12 @@ class Publication:
         ValueError: the encoding is not CDR.
     """
 
-    def __init__(self, node: Node, told: Mapping[str, Any]) -> None:
-        if told.get("encoding") != ENCODING:
-            raise ValueError(f"the encoding '{str(told.get('encoding'))[:40]}' is not understood; send {ENCODING}")
+    def __init__(self, node: Node, channel: Mapping[str, Any]) -> None:
+        if channel.get("encoding") != ENCODING:
+            raise ValueError(f"the encoding '{str(channel.get('encoding'))[:40]}' is not understood; send {ENCODING}")
         self._node = node
-        self._class: Any = get_message(_full_type(str(told["schemaName"])))
-        self._publisher: Publisher[Any] = node.create_publisher(self._class, str(told["topic"]), 10)
+        self._class: Any = get_message(_full_type(str(channel["schemaName"])))
+        self._publisher: Publisher[Any] = node.create_publisher(self._class, str(channel["topic"]), 10)
 
     def publish(self, data: bytes) -> None:
         """Publish a message.

@@ -152,7 +152,7 @@ class _Bridge(SingleNode):
             commander = Commander(lambda lost: send_stop(self._node, publishers[0], lost))
             drivers = DriverWatch.of(self._node)
 
-        def take(message: Any, info: MessageInfo) -> None:
+        def forward(message: Any, info: MessageInfo) -> None:
             # A bidirectional bridge receives its own messages.
             if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
                 if commander is not None and drivers is not None:
@@ -162,7 +162,7 @@ class _Bridge(SingleNode):
 
         def listen() -> Subscription[Any]:
             profile = QoSProfile(topic.subscriber_queue, reliability=ReliabilityPolicy.BEST_EFFORT)
-            subscription: Subscription[Any] = listening.create_subscription(source_type, source_topic, take, profile)
+            subscription: Subscription[Any] = listening.create_subscription(source_type, source_topic, forward, profile)
             if commander is not None:
                 commander.watch(subscription)
             return subscription
@@ -233,7 +233,7 @@ class ImageBridge(_Bridge):
         """Publish images as JPEG too while a node subscribes to them."""
         name = f"{self._node.resolve_topic_name(topic)}/compressed"
 
-        def take(image: Any) -> None:
+        def forward(image: Any) -> None:
             try:
                 message = compressed(image)
             except ModuleNotFoundError as error:
@@ -249,7 +249,7 @@ class ImageBridge(_Bridge):
 
         def listen() -> Subscription[Any]:
             profile = QoSProfile(1, reliability=ReliabilityPolicy.BEST_EFFORT)
-            return self._gz_node.create_subscription(_IMAGE[0], "/" + topic.lstrip("/"), take, profile)
+            return self._gz_node.create_subscription(_IMAGE[0], "/" + topic.lstrip("/"), forward, profile)
 
         events = PublisherEventCallbacks(matched=_Way(listen, lazy=True).matched)
         publisher: Publisher[Any] = self._node.create_publisher(_COMPRESSED, name, _QUEUE, event_callbacks=events)
@@ -262,7 +262,7 @@ def topic_of_word(word: str) -> BridgedTopic:
         LinkwrightError: NODE820, it has another form.
     """
     name, at, types = word.partition("@")
-    mark = next((each for each in types if each in _DIRECTIONS), "")
+    mark = next((part for part in types if part in _DIRECTIONS), "")
     ros_type, _, gz_type = types.partition(mark or "@")
     if not (name and at and mark and ros_type and gz_type):
         hint = phrase("write it as {form}", form="/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan")

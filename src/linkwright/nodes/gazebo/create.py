@@ -28,7 +28,7 @@ class Create(EntitySpawner):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, words = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            given = self._given(options.parameters) | dict(_options(words))
+            given = self._from_parameters(options.parameters) | dict(_options(words))
             number = {name: _number(name, given.get(name, 0.0)) for name in _NUMBERS}
             name = str(given.get("name", ""))
             entity = Entity(name, (number["x"], number["y"], number["z"]), (number["R"], number["P"], number["Y"]))
@@ -36,7 +36,7 @@ class Create(EntitySpawner):
             self._prepare(self._node, entity)
             self._begin({source: str(given[source]) for source in _TEXTS if given.get(source)}, options.environment)
 
-    def _given(self, parameters: dict[str, Any]) -> dict[str, Any]:
+    def _from_parameters(self, parameters: dict[str, Any]) -> dict[str, Any]:
         """The options that are given as parameters."""
         known = [name for name in (*_TEXTS, *_NUMBERS, "allow_renaming") if name in parameters]
         for name in known:

@@ -49,7 +49,7 @@ class Remove(SimulatorClient):
     def _answered(self, response: Any) -> None:
         """End with the status of a response with ``success`` and ``status_message``."""
         if response.success:
-            self._say("Result: true")
+            self._log("Result: true")
             self._end(0)
         else:
             self._fail(f"Result: false, {getattr(response, 'status_message', '') or 'there is no such entity'}")
@@ -89,11 +89,11 @@ class SetEntityPose(Remove):
             turn = parser.add_mutually_exclusive_group()
             turn.add_argument("--quat", nargs=4, type=float)
             turn.add_argument("--euler", nargs=3, type=float, default=(0.0, 0.0, 0.0))
-            said = _read(parser, words)
-            state = get_message("gazebo_msgs/msg/EntityState")(name=said.name)
+            arguments = _read(parser, words)
+            state = get_message("gazebo_msgs/msg/EntityState")(name=arguments.name)
             position, orientation = state.pose.position, state.pose.orientation
-            position.x, position.y, position.z = said.pos
-            rotation = said.quat or quaternion_from_rpy(tuple(said.euler))
+            position.x, position.y, position.z = arguments.pos
+            rotation = arguments.quat or quaternion_from_rpy(tuple(arguments.euler))
             orientation.x, orientation.y, orientation.z, orientation.w = rotation
             request = get_service(_SET_STATE).Request(state=state)
             self._ask(_SET_STATE, "set_entity_state", request, self._answered)
@@ -118,9 +118,9 @@ def _read(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
     Raises:
         LinkwrightError: NODE812, it is none.
     """
-    said = parser.parse_args(words)
-    if not said.name:
+    arguments = parser.parse_args(words)
+    if not arguments.name:
         message = phrase("{program} is not told which model", program=parser.prog)
         hint = phrase("name it by --name; models have no numbers here")
         raise LinkwrightError(Diagnostic("NODE812", message, hint=hint))
-    return said
+    return arguments

@@ -25,7 +25,7 @@ class SpawnEntity(EntitySpawner):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, words = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            wanted = self._wanted = parse(words)
+            wanted = self._arguments = parse(words)
             self._environment = options.environment
             namespace = self._node.get_namespace() if wanted.robot_namespace is None else wanted.robot_namespace
             entity = Entity(
@@ -39,19 +39,19 @@ class SpawnEntity(EntitySpawner):
             if wanted.wait is None:
                 self._begin()
             else:
-                self._say(f"Waiting for entity {wanted.wait} to exist")
+                self._log(f"Waiting for entity {wanted.wait} to exist")
                 self._look_for(wanted.wait)
 
     def close(self) -> None:
         """Close it; with ``-b`` the entity is deleted."""
-        if self._wanted.b and self._described and not self.finished.done():
+        if self._arguments.b and self._described and not self.finished.done():
             kind = get_service("gazebo_msgs/srv/DeleteEntity")
             client = self._node.create_client(kind, f"{self._service_namespace}/delete_entity")
             client.call_async(kind.Request(name=self._entity.name))
         super().close()
 
     def _begin(self) -> None:
-        wanted = self._wanted
+        wanted = self._arguments
         if wanted.topic is not None:
             self._wait_for(wanted.topic)
         elif wanted.file is not None:
@@ -62,7 +62,7 @@ class SpawnEntity(EntitySpawner):
             self._spawn(text_of_stdin())
 
     def _spawn(self, text: str) -> None:
-        super()._spawn(text.replace("package://", "model://") if self._wanted.package_to_model else text)
+        super()._spawn(text.replace("package://", "model://") if self._arguments.package_to_model else text)
 
     def _look_for(self, name: str) -> None:
         def look(names: list[str]) -> None:
@@ -79,14 +79,14 @@ class SpawnEntity(EntitySpawner):
         self._ask_for_names(look)
 
     def _spawned(self) -> None:
-        if self._wanted.unpause:
+        if self._arguments.unpause:
             kind = "std_srvs/srv/Empty"
             self._ask(kind, "unpause_physics", get_service(kind).Request(), lambda _: self._stay_or_end())
         else:
             self._stay_or_end()
 
     def _stay_or_end(self) -> None:
-        if not self._wanted.b:
+        if not self._arguments.b:
             self._end(0)
 
 

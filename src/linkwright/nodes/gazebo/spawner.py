@@ -83,7 +83,7 @@ class SimulatorClient(SingleNode):
         if client.service_is_ready():
             return
         wait = "" if self._timeout is None else f", timeout = {self._timeout:g}"
-        self._say(f"Waiting for service {path}{wait}")
+        self._log(f"Waiting for service {path}{wait}")
         if self._timeout is None:
             return
         steady = Clock(clock_type=ClockType.STEADY_TIME, timebase=self._node.get_clock().timebase)
@@ -96,7 +96,7 @@ class SimulatorClient(SingleNode):
 
         timer = self._node.create_timer(self._timeout, look, clock=steady)
 
-    def _say(self, text: str) -> None:
+    def _log(self, text: str) -> None:
         self._node.get_logger().info(text)
 
     def _fail(self, text: str) -> None:
@@ -128,7 +128,7 @@ class EntitySpawner(SimulatorClient):
 
     def _wait_for(self, topic: str) -> None:
         """Take the description from a topic, also one that was published before."""
-        self._say(f"Waiting for entity xml on {topic}")
+        self._log(f"Waiting for entity xml on {topic}")
         self._node.create_subscription(String, topic, lambda message: self._spawn(message.data), DESCRIPTION_QOS)
 
     # --- the request ----------------------------------------------------------------------------------------------
@@ -148,7 +148,7 @@ class EntitySpawner(SimulatorClient):
         if not response.success:
             self._fail(f"Spawning '{self._entity.name}' failed: {response.status_message}")
             return
-        self._say(f"Spawn status: {response.status_message}")
+        self._log(f"Spawn status: {response.status_message}")
         self._spawned()
 
     def _spawned(self) -> None:

@@ -70,25 +70,25 @@ class AmclNode(ManagedNode):
         self._join()
 
     def _join(self) -> None:
-        settings, keep = self._settings, self.keep
+        settings, register = self._settings, self.register
         self._buffer = BufferCore(logger=self.get_logger().get_child("tf2"))
         listener = TransformListener(self, self)
-        keep(_Listening(listener))
-        self._clouds = keep(
+        register(_Listening(listener))
+        self._clouds = register(
             self.create_publisher(get_message("nav2_msgs/msg/ParticleCloud"), "particle_cloud", SENSOR_DATA_QOS)
         )
         pose, scan = get_message(_POSE), get_message("sensor_msgs/msg/LaserScan")
-        self._poses = keep(self.create_publisher(pose, "amcl_pose", MAP_QOS))
-        self._transforms = keep(self.create_publisher(TFMessage, "/tf", TF_QOS))
-        keep(self.create_subscription(pose, "initialpose", self._on_initial_pose, 10))
+        self._poses = register(self.create_publisher(pose, "amcl_pose", MAP_QOS))
+        self._transforms = register(self.create_publisher(TFMessage, "/tf", TF_QOS))
+        register(self.create_subscription(pose, "initialpose", self._on_initial_pose, 10))
         grid = get_message("nav_msgs/msg/OccupancyGrid")
-        keep(self.create_subscription(grid, settings.map_topic, self._on_map, MAP_QOS))
-        keep(self.create_subscription(scan, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS))
+        register(self.create_subscription(grid, settings.map_topic, self._on_map, MAP_QOS))
+        register(self.create_subscription(scan, settings.scan_topic, self._on_scan, SENSOR_DATA_QOS))
         empty = get_service("std_srvs/srv/Empty")
-        keep(self.create_service(empty, "reinitialize_global_localization", self._on_global_localization))
-        keep(self.create_service(empty, "request_nomotion_update", self._on_no_motion))
+        register(self.create_service(empty, "reinitialize_global_localization", self._on_global_localization))
+        register(self.create_service(empty, "request_nomotion_update", self._on_no_motion))
         initial = get_service("nav2_msgs/srv/SetInitialPose")
-        keep(self.create_service(initial, "set_initial_pose", self._on_set_initial_pose))
+        register(self.create_service(initial, "set_initial_pose", self._on_set_initial_pose))
 
     def activate(self) -> None:
         """Start, at the initial pose if there is one."""
@@ -174,11 +174,11 @@ class AmclNode(ManagedNode):
             self._waiting.popleft()
             settings = self._settings
             beams = beams_of_scan(scan, laser, settings.max_beams, settings.range_min, settings.range_max)
-            self._take_in(beams, robot_in_odom, stamp_ns)
+            self._update(beams, robot_in_odom, stamp_ns)
 
     # --- the filter --------------------------------------------------------------------------------------------------
 
-    def _take_in(self, beams: Beams, robot_in_odom: Transform, stamp_ns: int) -> None:
+    def _update(self, beams: Beams, robot_in_odom: Transform, stamp_ns: int) -> None:
         assert self._map is not None, "scans wait for the map"
         settings, odometry = self._settings, _flat(robot_in_odom)
         moved = not self._begun or self._forced or self._has_moved(odometry)

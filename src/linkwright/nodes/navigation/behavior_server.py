@@ -115,20 +115,20 @@ class BehaviorNode(ManagedNode):
         """
         self._period = 1.0 / positive(self, "cycle_frequency", self._value("cycle_frequency"))
         raw, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
-        self.keep(self.create_subscription(raw, self._topic("costmap"), self._on_costmap, DESCRIPTION_QOS))
-        self.keep(self.create_subscription(polygon, self._topic("footprint"), self._on_footprint, _DEPTH))
+        self.register(self.create_subscription(raw, self._topic("costmap"), self._on_costmap, DESCRIPTION_QOS))
+        self.register(self.create_subscription(polygon, self._topic("footprint"), self._on_footprint, _DEPTH))
         asked = self._value("cmd_vel_teleop")
         for kind in velocity_types(self, asked, self._stamped):
-            self.keep(self.create_subscription(kind, asked, self._on_asked, _DEPTH))
+            self.register(self.create_subscription(kind, asked, self._on_asked, _DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._stamped)
         for plugin in texts_of(self, "behavior_plugins", list(_TYPES)):
-            kind = type_of(self, plugin, {name: each for name, (each, _) in _TYPES.items()})
-            known = {each: (name, action) for name, (each, action) in _TYPES.items()}
+            kind = type_of(self, plugin, {name: class_name for name, (class_name, _) in _TYPES.items()})
+            known = {class_name: (name, action) for name, (class_name, action) in _TYPES.items()}
             if kind not in known:
                 raise bad_value(f"{plugin}.plugin", kind, self.get_name(), list(known))
             name, action = known[kind]
             self.get_logger().info(f"Creating behavior plugin {plugin} of type {kind}")
-            self._servers[plugin] = self.keep(self._server(plugin, name, action))
+            self._servers[plugin] = self.register(self._server(plugin, name, action))
 
     def deactivate(self) -> None:
         """Stop the robot, and refuse goals."""
@@ -179,13 +179,13 @@ class BehaviorNode(ManagedNode):
             return Wait(_seconds(goal.time))
         allowance = _seconds(goal.time_allowance)
         if name == "spin":
-            told = SpinParameters(
+            parameters = SpinParameters(
                 max_rotational_vel=self._value("max_rotational_vel"),
                 min_rotational_vel=self._value("min_rotational_vel"),
                 rotational_acc_lim=self._value("rotational_acc_lim"),
                 simulate_ahead_time=self._value("simulate_ahead_time"),
             )
-            return Spin(goal.target_yaw, allowance, told, start)
+            return Spin(goal.target_yaw, allowance, parameters, start)
         if name == "assisted_teleop":
             return _AssistedTeleop(allowance, self._value("projection_time"), lambda: self._asked)
         if goal.target.y or goal.target.z:

@@ -57,7 +57,7 @@ class Bond:
         self.formed = False
         self.broken = False
         self._publisher = node.create_publisher(status, TOPIC, _DEPTH)
-        self._subscription = node.create_subscription(status, TOPIC, self._heard, _DEPTH)
+        self._subscription = node.create_subscription(status, TOPIC, self._receive, _DEPTH)
         self._subscription.take_together()  # the heartbeats of all bonds of a system come here
         self._timer = node.create_timer(period, self._tick, clock=self._clock)
         self._send(active=True)
@@ -78,7 +78,7 @@ class Bond:
         if self.formed and self._missed > self._most_missed:
             self._break()
 
-    def _heard(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         if message.id != self._beat.id or message.instance_id == self._beat.instance_id or self.broken:
             return
         self._missed = 0

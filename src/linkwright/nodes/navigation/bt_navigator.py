@@ -64,19 +64,19 @@ class NavigatorNode(StepNode):
     def configure(self) -> None:
         """Make the topics and the action servers."""
         pose, odometry = get_message("geometry_msgs/msg/PoseStamped"), get_message("nav_msgs/msg/Odometry")
-        self.keep(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _DEPTH))
-        self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
+        self.register(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _DEPTH))
+        self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
         raw = get_message("nav2_msgs/msg/Costmap")
-        self.keep(self.create_subscription(raw, _COSTMAP_TOPIC, self._on_costmap, DESCRIPTION_QOS))
+        self.register(self.create_subscription(raw, _COSTMAP_TOPIC, self._on_costmap, DESCRIPTION_QOS))
         self._clients = {
-            name: self.keep(ActionClient(self, f"nav2_msgs/action/{kind}", name)) for name, kind in _ACTIONS.items()
+            name: self.register(ActionClient(self, f"nav2_msgs/action/{kind}", name)) for name, kind in _ACTIONS.items()
         }
         clear = get_service("nav2_msgs/srv/ClearEntireCostmap")
         self._clearing = {
-            which: self.keep(self.create_client(clear, f"{which}_costmap/clear_entirely_{which}_costmap"))
+            which: self.register(self.create_client(clear, f"{which}_costmap/clear_entirely_{which}_costmap"))
             for which in ("global", "local")
         }
-        self._own = self.keep(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
+        self._own = self.register(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
         self._servers = {
             "pose": self._offered("NavigateToPose", "navigate_to_pose", "pose"),
             "poses": self._offered("NavigateThroughPoses", "navigate_through_poses", "poses"),
@@ -84,7 +84,7 @@ class NavigatorNode(StepNode):
         for which in ("pose", "poses"):
             given = self._value(f"default_nav_{'to_pose' if which == 'pose' else 'through_poses'}_bt_xml")
             if given and not _is_usual(given):
-                self._tell_tree(given)
+                self._log_ignored_tree(given)
 
     def activate(self) -> None:
         """Accept goals."""
@@ -95,7 +95,7 @@ class NavigatorNode(StepNode):
         def begin(goal: ServerGoalHandle) -> None:
             self._start(which, goal.request)
 
-        return self.keep(
+        return self.register(
             GoalServer(
                 self, f"nav2_msgs/action/{kind}", name, begin, may_begin=lambda goal: self._may_begin(which, goal)
             )
@@ -107,10 +107,10 @@ class NavigatorNode(StepNode):
             self.get_logger().error("there are no poses to go to: the goal is rejected")
             return False
         if goal.behavior_tree and not _is_usual(goal.behavior_tree):
-            self._tell_tree(goal.behavior_tree)
+            self._log_ignored_tree(goal.behavior_tree)
         return True
 
-    def _tell_tree(self, path: str) -> None:
+    def _log_ignored_tree(self, path: str) -> None:
         self.get_logger().warning(f"behaviour trees are not read: the usual one runs instead of {path}")
 
     def _start(self, which: str, goal: Any) -> None:
@@ -125,7 +125,7 @@ class NavigatorNode(StepNode):
         self._since_ns = self.now_ns()
         self.work_on(self._servers[which], self._navigate(which))
 
-    def tell_progress(self, server: GoalServer) -> None:
+    def publish_feedback(self, server: GoalServer) -> None:
         """Publish the feedback of the goal."""
         pose = get_message("geometry_msgs/msg/PoseStamped")()
         found = self._transform()
@@ -135,7 +135,7 @@ class NavigatorNode(StepNode):
             turn = pose.pose.orientation
             turn.x, turn.y, turn.z, turn.w = found[3:]
         left = self._left
-        told: dict[str, Any] = {
+        feedback: dict[str, Any] = {
             "current_pose": pose,
             "distance_remaining": left,
             "number_of_recoveries": self._recoveries,
@@ -143,8 +143,8 @@ class NavigatorNode(StepNode):
             "estimated_time_remaining": Duration(seconds=left / max(self._speed, _SLOWEST)).to_msg(),
         }
         if server is self._servers["poses"]:
-            told["number_of_poses_remaining"] = len(self._poses)
-        server.feedback(**told)
+            feedback["number_of_poses_remaining"] = len(self._poses)
+        server.feedback(**feedback)
 
     # --- what is done -------------------------------------------------------------------------------------------------
 

@@ -74,19 +74,19 @@ class MonitorNode(ManagedNode):
         base, odom = str(self._value("base_frame_id")), str(self._value("odom_frame_id"))
         fixed = odom if self._value("base_shift_correction") else None
         for name in texts_of(self, "observation_sources", []):
-            self._sources.append(self.keep(Source(self, name, self._transforms, base, fixed)))
+            self._sources.append(self.register(Source(self, name, self._transforms, base, fixed)))
         for name in texts_of(self, "polygons", []):
-            self._zones.append(self.keep(Zone(self, name, self._transforms, base)))
+            self._zones.append(self.register(Zone(self, name, self._transforms, base)))
         topic = str(self._value("state_topic"))
         if topic:
-            self._state = self.keep(self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _DEPTH))
+            self._state = self.register(self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _DEPTH))
         self._output = VelocityTopic(self, str(self._value("cmd_vel_out_topic")), self._stamped)
         topic = str(self._value("cmd_vel_in_topic"))
         for kind in velocity_types(self, topic, self._stamped):
             commander = Commander(self._on_lost, DriverWatch.of(self))
             take = commander.taking(self._on_velocity)
             heard: Subscription[Any] = self.create_subscription(kind, topic, take, _DEPTH)
-            commander.watch(self.keep(heard))
+            commander.watch(self.register(heard))
 
     def activate(self) -> None:
         """Start to forward velocities."""
@@ -122,7 +122,7 @@ class MonitorNode(ManagedNode):
         self._output.frame_id = message.header.frame_id if stamped else ""
         verdict = self._judged(velocity)
         if verdict.zone != self._verdict.zone:
-            self._tell(verdict)
+            self._publish_state(verdict)
         self._publish(verdict.velocity)
         self._verdict = verdict
         for zone in self._zones:
@@ -157,7 +157,7 @@ class MonitorNode(ManagedNode):
             self._output.stop()
             self._verdict = Verdict(STILL)
 
-    def _tell(self, verdict: Verdict) -> None:
+    def _publish_state(self, verdict: Verdict) -> None:
         self.get_logger().info(_DONE[verdict.action].format(verdict.zone))
         if self._state is not None:
             state = get_message("nav2_msgs/msg/CollisionMonitorState")

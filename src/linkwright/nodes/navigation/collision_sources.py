@@ -59,7 +59,7 @@ class Source:
         self._value("enabled", True)
         topic = str(self._value("topic", "scan"))
         type_ = get_message(f"sensor_msgs/msg/{message}")
-        self._subscription = node.create_subscription(type_, topic, self._hear, SENSOR_DATA_QOS)
+        self._subscription = node.create_subscription(type_, topic, self._receive, SENSOR_DATA_QOS)
 
     def destroy(self) -> None:
         """Remove the subscription."""
@@ -114,7 +114,7 @@ class Source:
     def _value(self, name: str, default: Any) -> Any:
         return value_of(self._node, f"{self.name}.{name}", default)
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._waiting.append(message)
 
     def _of_cloud(self, message: Any) -> NDArray[np.float64] | None:

@@ -47,7 +47,7 @@ class Zone:
         self._node, self._transforms, self._base = node, transforms, base
         self._parts: list[Any] = []
         self._shape: Shape | None = None
-        self._told: Any = None
+        self._polygon: Any = None
         self._ranges: list[SpeedRange] = []
         self._value("enabled", True)
         self.rule = self._read_rule()
@@ -56,13 +56,13 @@ class Zone:
         if kind not in _TYPES:
             raise bad_value(f"{name}.type", kind, node.get_name(), _TYPES)
         if kind == "velocity_polygon":
-            self._ranges = [self._read_range(each) for each in texts_of(node, f"{name}.velocity_polygons", [])]
+            self._ranges = [self._read_range(part) for part in texts_of(node, f"{name}.velocity_polygons", [])]
         else:
             self._read_shape(kind)
         self._publisher: Any = None
         if self._value("visualize", False):
             topic = str(self._value("polygon_pub_topic", name))
-            self._publisher = self._keep(node.create_publisher(get_message(_POLYGON), topic, _DEPTH))
+            self._publisher = self._register(node.create_publisher(get_message(_POLYGON), topic, _DEPTH))
 
     def destroy(self) -> None:
         """Remove the topics."""
@@ -147,19 +147,19 @@ class Zone:
             if not topic:
                 raise bad_value(f"{self.name}.radius", radius, self._node.get_name())
             number = get_message("std_msgs/msg/Float32")
-            self._keep(self._node.create_subscription(number, topic, self._on_radius, _DEPTH))
+            self._register(self._node.create_subscription(number, topic, self._on_radius, _DEPTH))
             return
         corners = self._corners("points")
         if corners is not None:
             self._shape = Outline(corners)
         elif self.rule.action is Action.APPROACH:
             topic = str(self._value("footprint_topic", "local_costmap/published_footprint"))
-            self._keep(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
+            self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
         else:
             topic = str(self._value("polygon_sub_topic", ""))
             if not topic:
                 raise bad_value(f"{self.name}.points", "", self._node.get_name())
-            self._keep(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
+            self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
 
     def _corners(self, name: str) -> Footprint | None:
         """Return the corners from Jazzy's parameter, a text, or Humble's, a list of numbers; None if there are none."""
@@ -179,7 +179,7 @@ class Zone:
 
     # --- topics ------------------------------------------------------------------------------------------------------
 
-    def _keep(self, part: Any) -> Any:
+    def _register(self, part: Any) -> Any:
         self._parts.append(part)
         return part
 
@@ -187,7 +187,7 @@ class Zone:
         self._shape = Circle(float(message.data))
 
     def _on_polygon(self, message: Any) -> None:
-        self._told = message if len(message.polygon.points) >= 3 else None
+        self._polygon = message if len(message.polygon.points) >= 3 else None
         self._place()
 
     def _place(self) -> None:
@@ -195,18 +195,18 @@ class Zone:
 
         Footprints come placed where the robot was when they were sent, so they are taken back as of that time.
         """
-        if self._told is None:
+        if self._polygon is None:
             return
-        header = self._told.header
+        header = self._polygon.header
         stamp_ns = header.stamp.nanoseconds if self.rule.action is Action.APPROACH else 0
         try:
             pose = self._transforms.lookup(self._base, header.frame_id or self._base, stamp_ns)[0]
         except TransformException:
             return
-        corners = np.array([(point.x, point.y, 0.0) for point in self._told.polygon.points])
+        corners = np.array([(point.x, point.y, 0.0) for point in self._polygon.polygon.points])
         self._shape = Outline((corners @ rotation_matrix(pose[3:]).T + np.array(pose[:3]))[:, :2])
         if header.frame_id in ("", self._base) or stamp_ns:
-            self._told = None
+            self._polygon = None
 
 
 _RANGES = ("linear_min", "linear_max", "theta_min", "theta_max")

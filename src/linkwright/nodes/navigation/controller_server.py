@@ -80,8 +80,8 @@ class ControllerNode(ManagedNode):
         self._frequency = positive(self, "controller_frequency", self._value("controller_frequency"))
         progress = [self._old_progress] if self._old_progress else None
         self._progress = {
-            each: make_progress_checker(self, each)
-            for each in progress or texts_of(self, "progress_checker_plugins", ["progress_checker"])
+            checker: make_progress_checker(self, checker)
+            for checker in progress or texts_of(self, "progress_checker_plugins", ["progress_checker"])
         }
         names = texts_of(self, "goal_checker_plugins", ["goal_checker"])
         self._checkers = {name: make_goal_checker(self, name) for name in names}
@@ -89,10 +89,10 @@ class ControllerNode(ManagedNode):
         self._followers = {name: make_follower(self, name) for name in names}
         self.costmap.trigger_configure()
         odometry, limit = get_message("nav_msgs/msg/Odometry"), get_message("nav2_msgs/msg/SpeedLimit")
-        self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
-        self.keep(self.create_subscription(limit, self._value("speed_limit_topic"), self._on_speed_limit, _DEPTH))
+        self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
+        self.register(self.create_subscription(limit, self._value("speed_limit_topic"), self._on_speed_limit, _DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._stamped)
-        self._goals = self.keep(GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start))
+        self._goals = self.register(GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start))
 
     def activate(self) -> None:
         """Accept goals."""
@@ -131,7 +131,7 @@ class ControllerNode(ManagedNode):
             self._checker = _chosen(self._checkers, request.goal_checker_id, "goal checker", "INVALID_CONTROLLER")
             asked = getattr(request, "progress_checker_id", "")
             checker = _chosen(self._progress, asked, "progress checker", "INVALID_CONTROLLER")
-            self._take_path(request.path)
+            self._accept_path(request.path)
         except GoalError as failure:
             self._fail(failure)
             return
@@ -142,7 +142,7 @@ class ControllerNode(ManagedNode):
             self._output.review()
             self.begin_cycles(1.0 / self._frequency, self._cycle)
 
-    def _take_path(self, message: Any) -> None:
+    def _accept_path(self, message: Any) -> None:
         poses = poses_of(message.poses)
         if not len(poses):
             raise GoalError("INVALID_PATH", "Path is empty.")

@@ -34,7 +34,7 @@ from linkwright.nodes.navigation.costmap_layers import (
 )
 from linkwright.nodes.navigation.costmap_messages import CostmapPublisher, raw_message
 from linkwright.nodes.navigation.managed import ManagedNode
-from linkwright.nodes.navigation.plugins import take_unread, texts_of
+from linkwright.nodes.navigation.plugins import declare_unread, texts_of
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.settings import bad_value
 
@@ -188,11 +188,13 @@ class CostmapNode(ManagedNode):
             footprint_padding=self._value("footprint_padding"),
         )
         always_full = self._value("always_send_full_costmap")
-        self._publisher = self.keep(CostmapPublisher(self, self._layered, self.global_frame, always_full=always_full))
+        self._publisher = self.register(
+            CostmapPublisher(self, self._layered, self.global_frame, always_full=always_full)
+        )
         polygon = get_message("geometry_msgs/msg/PolygonStamped")
-        self._footprints = self.keep(self.create_publisher(polygon, "published_footprint", 10))
+        self._footprints = self.register(self.create_publisher(polygon, "published_footprint", 10))
         polygon = get_message("geometry_msgs/msg/Polygon")
-        self.keep(self.create_subscription(polygon, "footprint", self._on_footprint, 10))
+        self.register(self.create_subscription(polygon, "footprint", self._on_footprint, 10))
         self._offer_services()
 
     def activate(self) -> None:
@@ -218,7 +220,7 @@ class CostmapNode(ManagedNode):
         if pose is None:
             return False
         for sensor in self._shared.sensors:
-            sensor.take_in()
+            sensor.process()
         layered = self.layered
         if layered.update(pose, self.now_ns()) and self._publisher is not None:
             self._publisher.note(layered.changed)
@@ -248,7 +250,7 @@ class CostmapNode(ManagedNode):
 
     def _leave_out_filters(self) -> None:
         for name in self._filters:
-            take_unread(self, name)
+            declare_unread(self, name)
         if self._filters:
             named = ", ".join(self._filters)
             self.get_logger().warning(f"costmap filters are not supported: the costmap ignores {named}")
@@ -333,7 +335,7 @@ class CostmapNode(ManagedNode):
         if not is_before_iron():
             offered.append(("GetCost", f"get_cost_{name}", self._get_cost))
         for kind, service, callback in offered:
-            self.keep(self.create_service(get_service(f"nav2_msgs/srv/{kind}"), service, callback))
+            self.register(self.create_service(get_service(f"nav2_msgs/srv/{kind}"), service, callback))
 
     def _clear_entirely(self, _request: Any, response: Any) -> Any:
         self.get_logger().info("Received request to clear entirely the " + self.get_name())

@@ -24,7 +24,7 @@ from linkwright.navigation.costmaps.static_layer import Interpretation, MapPose,
 from linkwright.navigation.costmaps.voxel_layer import MOST_LEVELS, VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
 from linkwright.nodes.navigation.costmap_sources import MapTopic, PointsTopic, RangeTopic, SensorTopic
-from linkwright.nodes.navigation.plugins import declared, take_unread, texts_of, value_of
+from linkwright.nodes.navigation.plugins import declare_unread, declared, texts_of, value_of
 from linkwright.nodes.settings import bad_value
 
 DEFAULT_LAYERS: Final = {
@@ -84,7 +84,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
             raise LinkwrightError(Diagnostic("NODE431", message))
         maker = makers.get(kind.removeprefix("nav2_costmap_2d::"))
         if maker is None:
-            take_unread(node, name)
+            declare_unread(node, name)
             node.get_logger().warning(f"there is no layer {kind} here: the costmap does without '{name}'")
             continue
         node.get_logger().info(f'Using plugin "{name}"')
@@ -97,7 +97,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
         if undeclared_override.endswith(".plugin")
     ]
     for name in given:
-        take_unread(node, name)
+        declare_unread(node, name)
     if given:
         node.get_logger().info(f"layers that 'plugins' does not name are ignored: {', '.join(given)}")
 
@@ -105,20 +105,20 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
 def follow(shared: Surroundings, changed: list[Parameter]) -> bool:
     """Apply changed parameters of layers; whether there were any."""
     found = False
-    for each in changed:
-        name, _, parameter = each.name.partition(".")
+    for changed_parameter in changed:
+        name, _, parameter = changed_parameter.name.partition(".")
         layer = shared.layers.get(name)
         if layer is None:
             continue
         found = True
         if parameter == "enabled":
-            layer.enabled = each.value
+            layer.enabled = changed_parameter.value
         elif isinstance(layer, InflationLayer) and hasattr(layer.inflation, parameter):
-            layer.inflation = replace(layer.inflation, **{parameter: each.value})
+            layer.inflation = replace(layer.inflation, **{parameter: changed_parameter.value})
         elif isinstance(layer, ObstacleLayer) and hasattr(layer.heights, parameter):
-            layer.heights = replace(layer.heights, **{parameter: each.value})
+            layer.heights = replace(layer.heights, **{parameter: changed_parameter.value})
         elif isinstance(layer, ObstacleLayer) and parameter == "combination_method":
-            layer.combination_method = each.value
+            layer.combination_method = changed_parameter.value
     return found
 
 

@@ -75,9 +75,9 @@ class CostmapPublisher:
 
     def destroy(self) -> None:
         """Remove the topics."""
-        for each in (self._full, self._raw, self._updates, self._raw_updates):
-            if each is not None:
-                each.destroy()
+        for publisher in (self._full, self._raw, self._updates, self._raw_updates):
+            if publisher is not None:
+                publisher.destroy()
 
     def note(self, window: Window) -> None:
         """Record a changed window."""
@@ -97,8 +97,10 @@ class CostmapPublisher:
         self._sent = place
         stamp = self._node.get_clock().now().to_msg()
         if whole:
-            told = Grid(cells=PERCENTAGES[grid.cells].view(np.int8), resolution=grid.resolution, x=grid.x, y=grid.y)
-            self._full.publish(occupancy_message(told, self._frame, stamp))
+            percentages = Grid(
+                cells=PERCENTAGES[grid.cells].view(np.int8), resolution=grid.resolution, x=grid.x, y=grid.y
+            )
+            self._full.publish(occupancy_message(percentages, self._frame, stamp))
         elif not window.is_empty:
             cells = PERCENTAGES[grid.cells[window.cells]].tobytes()
             message = self._update("map_msgs/msg/OccupancyGridUpdate", array("b", cells), window, stamp)

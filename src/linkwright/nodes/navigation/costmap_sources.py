@@ -58,13 +58,13 @@ class SensorTopic(ABC):
         self._transforms, self._frame = transforms, frame
         self._waiting: deque[Any] = deque(maxlen=_WAITING)
         message = get_message(f"sensor_msgs/msg/{kind}")
-        self._subscription = node.create_subscription(message, topic, self._hear, SENSOR_DATA_QOS)
+        self._subscription = node.create_subscription(message, topic, self._receive, SENSOR_DATA_QOS)
 
     def destroy(self) -> None:
         """Remove the subscription."""
         self._subscription.destroy()
 
-    def take_in(self) -> None:
+    def process(self) -> None:
         """Give the layer the messages whose transforms are known."""
         waiting = list(self._waiting)
         placed = [(message, pose) for message in waiting if (pose := self._pose(message)) is not None]
@@ -85,7 +85,7 @@ class SensorTopic(ABC):
     def _observe(self, message: Any, pose: Transform) -> None:
         """Give the layer a message with the sensor's pose in the frame of the costmap."""
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._waiting.append(message)
 
     def _pose(self, message: Any) -> Transform | None:
@@ -146,7 +146,7 @@ class PointsTopic(SensorTopic):
             except TransformException:
                 return
         placed = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3])
-        self.buffer.take(origin, placed, message.header.stamp.nanoseconds)
+        self.buffer.add(origin, placed, message.header.stamp.nanoseconds)
 
     def _of_scan(self, message: Any) -> NDArray[np.float64]:
         scan = scan_of(message)
@@ -182,7 +182,7 @@ class RangeTopic(SensorTopic):
         yaw = float(np.arctan2(ahead[1], ahead[0]))
         flat = float(np.hypot(ahead[0], ahead[1]))
         stamp_ns = message.header.stamp.nanoseconds
-        self._layer.take(Reading(pose[0], pose[1], yaw, distance * flat, message.field_of_view, free, stamp_ns))
+        self._layer.add(Reading(pose[0], pose[1], yaw, distance * flat, message.field_of_view, free, stamp_ns))
 
 
 class MapTopic:
@@ -211,29 +211,29 @@ class MapTopic:
         self._node, self._layer, self._on_map = node, layer, on_map
         qos = DESCRIPTION_QOS if transient_local else QoSProfile(10, durability=DurabilityPolicy.VOLATILE)
         message = get_message("nav_msgs/msg/OccupancyGrid")
-        self._subscriptions = [node.create_subscription(message, topic, self._take, qos)]
+        self._subscriptions = [node.create_subscription(message, topic, self._receive, qos)]
         if updates:
             message = get_message("map_msgs/msg/OccupancyGridUpdate")
-            self._subscriptions.append(node.create_subscription(message, f"{topic}_updates", self._take_part, 10))
+            self._subscriptions.append(node.create_subscription(message, f"{topic}_updates", self._receive_part, 10))
 
     def destroy(self) -> None:
         """Remove the subscriptions."""
         for subscription in self._subscriptions:
             subscription.destroy()
 
-    def _take(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         try:
             grid = grid_of(message)
         except BadGridError as error:
             self._node.get_logger().error(f"Received map message is malformed. Rejecting: {error}")
             return
         self.frame = message.header.frame_id
-        self._layer.take(grid)
+        self._layer.set_map(grid)
         self._on_map(grid, message.header.frame_id)
 
-    def _take_part(self, message: Any) -> None:
+    def _receive_part(self, message: Any) -> None:
         cells = np.frombuffer(message.data, np.uint8)
-        if cells.size != message.width * message.height or not self._layer.take_part(
+        if cells.size != message.width * message.height or not self._layer.update_map(
             message.y, message.x, cells.reshape(message.height, message.width)
         ):
             self._node.get_logger().warning("an update of the map does not fit into it and is left out")

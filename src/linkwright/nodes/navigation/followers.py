@@ -24,7 +24,7 @@ from linkwright.navigation.following.follower import Follower, Velocity
 from linkwright.navigation.following.pure_pursuit import PurePursuitParameters, RegulatedPurePursuit
 from linkwright.navigation.following.rotation_shim import RotationShim, RotationShimParameters
 from linkwright.navigation.following.sampling import Limits, SamplingFollower, SamplingParameters
-from linkwright.nodes.navigation.plugins import declared, take_unread, type_of, value_of
+from linkwright.nodes.navigation.plugins import declare_unread, declared, type_of, value_of
 from linkwright.nodes.settings import bad_value
 
 DWB, MPPI = "dwb_core/DWBLocalPlanner", "nav2_mppi_controller/MPPIController"
@@ -48,10 +48,10 @@ def make_follower(node: Node, plugin: str) -> Follower:
     if kind == ROTATION_SHIM:
         return _with_shim(node, plugin)
     follower = _made(node, plugin, kind)
-    unread = take_unread(node, plugin)
+    unread = declare_unread(node, plugin)
     if kind in (DWB, MPPI):
-        told = f"; without effect here: {', '.join(unread)}" if unread else ""
-        logger.info(f"{plugin}: our own follower that samples velocities replaces {kind}{told}")
+        ignored = f"; without effect here: {', '.join(unread)}" if unread else ""
+        logger.info(f"{plugin}: our own follower that samples velocities replaces {kind}{ignored}")
     elif kind != PURE_PURSUIT:
         logger.warning(f"{plugin}: there is no {kind} here; regulated pure pursuit takes its place")
     elif unread:
@@ -63,7 +63,7 @@ def _with_shim(node: Node, plugin: str) -> Follower:
     parameters = declared(node, plugin, RotationShimParameters)
     primary = str(value_of(node, f"{plugin}.primary_controller", DWB)).replace("::", "/")
     follower = RotationShim(_made(node, plugin, primary), parameters)
-    unread = take_unread(node, plugin)
+    unread = declare_unread(node, plugin)
     if unread:
         node.get_logger().info(f"{plugin}: without effect here: {', '.join(unread)}")
     return follower

@@ -20,7 +20,7 @@ from linkwright.nodes.answers import answered, is_served
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.navigation.bond import TIMEOUT, Bond
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import bad_value, tell_unknown
+from linkwright.nodes.settings import bad_value, log_unknown
 
 _ONE_SECOND = 1.0
 
@@ -143,7 +143,7 @@ class LifecycleManager(SingleNode):
         self._logger.info("Creating")
         with starting(self._node):
             self._declare()
-            tell_unknown(self._node)
+            log_unknown(self._node)
         self._state = _State.UNCONFIGURED
         self._busy = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()

@@ -11,7 +11,7 @@ from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
 from linkwright.graph.lifecycle.states import ACTIVE, LifecycleState, TransitionCallbackReturn
 from linkwright.nodes.navigation.bond import PERIOD, Bond
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node_of, starting
-from linkwright.nodes.settings import tell_unknown
+from linkwright.nodes.settings import log_unknown
 
 _SUCCESS = TransitionCallbackReturn.SUCCESS
 
@@ -27,17 +27,17 @@ class ManagedNode(LifecycleNodeMixin, Node):
     """A server of nav2 as a managed node.
 
     Derived classes declare their parameters in `declare` and do their work in `configure`, `activate`, `deactivate`
-    and `cleanup`. A `LinkwrightError` raised there is logged, and the transition fails. What `keep` was given goes when
-    the node is cleaned up.
+    and `cleanup`. A `LinkwrightError` raised there is logged, and the transition fails. Parts passed to `register` are
+    destroyed when the node is cleaned up.
     """
 
     def __init__(self, *arguments: Any, **named: Any) -> None:
         Node.__init__(self, *arguments, **named)
         LifecycleNodeMixin.__init__(self)
-        self._kept: list[_Destroyable] = []
+        self._parts: list[_Destroyable] = []
         self._bond: Bond | None = None
         self._timer: Timer | None = None
-        self._told = False
+        self._has_logged = False
         self.get_logger().info("Creating")
         self._beats: float = self.declare_parameter("bond_heartbeat_period", PERIOD).value
         self._starts_itself: bool = self.declare_parameter("autostart_node", False).value
@@ -56,11 +56,11 @@ class ManagedNode(LifecycleNodeMixin, Node):
         """Stop working."""
 
     def cleanup(self) -> None:
-        """Drop what `configure` made and did not `keep`, as far as it got."""
+        """Drop the parts that `configure` created without `register`, as far as it got."""
 
-    def keep(self, part: P) -> P:
+    def register(self, part: P) -> P:
         """Register a part of the node that is destroyed when it is cleaned up, and return it."""
-        self._kept.append(part)
+        self._parts.append(part)
         return part
 
     @property
@@ -102,9 +102,9 @@ class ManagedNode(LifecycleNodeMixin, Node):
             self.tell(error)
             self._let_go()
             return TransitionCallbackReturn.FAILURE
-        if not self._told:
-            self._told = True
-            tell_unknown(self)
+        if not self._has_logged:
+            self._has_logged = True
+            log_unknown(self)
         return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -159,9 +159,9 @@ class ManagedNode(LifecycleNodeMixin, Node):
 
     def _let_go(self) -> None:
         self.cleanup()
-        for part in self._kept:
+        for part in self._parts:
             part.destroy()
-        self._kept.clear()
+        self._parts.clear()
 
     def _end_bond(self) -> None:
         if self._bond is not None:

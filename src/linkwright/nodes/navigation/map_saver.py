@@ -17,7 +17,7 @@ from linkwright.nodes.answers import answered
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.map_server import MAP_QOS
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import tell_unknown
+from linkwright.nodes.settings import log_unknown
 
 _USAGE = """Usage:
   map_saver_cli [arguments] [--ros-args ROS remapping args]
@@ -104,14 +104,14 @@ class _Saving:
         node = self._node
         come: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
-        def take(message: Any) -> None:
+        def receive(message: Any) -> None:
             if not come.done():
                 come.set_result(message)
 
         qos = MAP_QOS if self._latched else QoSProfile(depth=10)
         group = ReentrantCallbackGroup()  # the service that waits for the map holds the group of the node
         kind = get_message("nav_msgs/msg/OccupancyGrid")
-        subscription = node.create_subscription(kind, topic, take, qos, callback_group=group)
+        subscription = node.create_subscription(kind, topic, receive, qos, callback_group=group)
         try:
             if not await answered(node, come, self._timeout):
                 senders = node.count_publishers(topic)
@@ -145,14 +145,14 @@ class MapSaver(SingleNode):
             return
         with starting(self._node):
             saving = _Saving(self._node)
-            tell_unknown(self._node)
+            log_unknown(self._node)
         try:
-            said = _said(words)
+            arguments = _parsed(words)
         except ValueError as error:
             self._node.get_logger().error(str(error))
             self.finished.set_result(_INVALID)
             return
-        self._task = asyncio.get_running_loop().create_task(self._run(saving, said))
+        self._task = asyncio.get_running_loop().create_task(self._run(saving, arguments))
 
     def close(self) -> None:
         """End it."""
@@ -160,23 +160,23 @@ class MapSaver(SingleNode):
             self._task.cancel()
         super().close()
 
-    async def _run(self, saving: _Saving, said: dict[str, str]) -> None:
-        free, occupied = (float(said.get(option, 0.0)) for option in ("--free", "--occ"))
-        mode = saving.mode(said.get("--mode", ""))
+    async def _run(self, saving: _Saving, arguments: dict[str, str]) -> None:
+        free, occupied = (float(arguments.get(option, 0.0)) for option in ("--free", "--occ"))
+        mode = saving.mode(arguments.get("--mode", ""))
         saved = await saving.save(
-            said.get("-t", "map"), said.get("-f", ""), said.get("--fmt", ""), mode, free, occupied
+            arguments.get("-t", "map"), arguments.get("-f", ""), arguments.get("--fmt", ""), mode, free, occupied
         )
         if not self.finished.done():
             self.finished.set_result(0 if saved else 1)
 
 
-def _said(words: list[str]) -> dict[str, str]:
+def _parsed(words: list[str]) -> dict[str, str]:
     """Parse the options of a command line.
 
     Raises:
         ValueError: one is unknown, has no value, or not a number where one must be.
     """
-    said = {}
+    arguments = {}
     rest = iter(words)
     for word in rest:
         if word not in _OPTIONS:
@@ -189,8 +189,8 @@ def _said(words: list[str]) -> dict[str, str]:
                 float(value)
             except ValueError:
                 raise ValueError(f"Wrong argument: {word} should be followed by a number, not '{value}'") from None
-        said[word] = value
-    return said
+        arguments[word] = value
+    return arguments
 
 
 class MapSaverNode(ManagedNode):
@@ -203,7 +203,7 @@ class MapSaverNode(ManagedNode):
     def configure(self) -> None:
         """Offer the service."""
         name = f"{self.get_name()}/save_map"
-        self.keep(self.create_service(get_service("nav2_msgs/srv/SaveMap"), name, self._on_save))
+        self.register(self.create_service(get_service("nav2_msgs/srv/SaveMap"), name, self._on_save))
 
     async def _on_save(self, request: Any, response: Any) -> Any:
         mode = self._saving.mode(request.map_mode)

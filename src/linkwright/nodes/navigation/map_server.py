@@ -42,10 +42,10 @@ class MapServerNode(ManagedNode):
         else:
             self.get_logger().info("yaml-filename parameter is empty, set map through '/load_map'-service")
         name = self.get_name()
-        self.keep(self.create_service(get_service("nav_msgs/srv/GetMap"), f"{name}/map", self._on_get))
-        self.keep(self.create_service(get_service("nav2_msgs/srv/LoadMap"), f"{name}/load_map", self._on_load))
+        self.register(self.create_service(get_service("nav_msgs/srv/GetMap"), f"{name}/map", self._on_get))
+        self.register(self.create_service(get_service("nav2_msgs/srv/LoadMap"), f"{name}/load_map", self._on_load))
         kind = get_message("nav_msgs/msg/OccupancyGrid")
-        self._publisher = self.keep(self.create_publisher(kind, self.get_parameter("topic_name").value, MAP_QOS))
+        self._publisher = self.register(self.create_publisher(kind, self.get_parameter("topic_name").value, MAP_QOS))
 
     def activate(self) -> None:
         """Publish the map."""

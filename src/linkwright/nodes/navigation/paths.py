@@ -27,7 +27,7 @@ def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
 
 def poses_of(stamped: Any) -> NDArray[np.float64]:
     """Convert geometry_msgs/PoseStamped to x, y (metres) and yaw (radians), of shape (n, 3)."""
-    return np.array([pose_of(each) for each in stamped], np.float64).reshape(-1, 3)
+    return np.array([pose_of(pose) for pose in stamped], np.float64).reshape(-1, 3)
 
 
 def pose_of(stamped: Any) -> tuple[float, float, float]:

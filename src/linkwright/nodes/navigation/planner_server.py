@@ -26,7 +26,7 @@ from linkwright.nodes.navigation.costmap import CostmapNode, make_costmap
 from linkwright.nodes.navigation.goals import GoalError, GoalServer
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.paths import path_message, pose_of, poses_of
-from linkwright.nodes.navigation.plugins import declared, take_unread, texts_of, type_of
+from linkwright.nodes.navigation.plugins import declare_unread, declared, texts_of, type_of
 from linkwright.nodes.navigation.slices import WAIT, SlicedWork
 from linkwright.nodes.options import NodeOptions
 
@@ -75,11 +75,11 @@ class PlannerNode(ManagedNode):
                 "The expected planner frequency parameter is 0 Hz or less: it is not told when plans take too long"
             )
         self.costmap.trigger_configure()
-        self._plans = self.keep(self.create_publisher(get_message("nav_msgs/msg/Path"), "plan", 1))
+        self._plans = self.register(self.create_publisher(get_message("nav_msgs/msg/Path"), "plan", 1))
         self._offer("ComputePathToPose", "compute_path_to_pose", self._to_pose)
         self._offer("ComputePathThroughPoses", "compute_path_through_poses", self._through_poses)
         kind = get_service("nav2_msgs/srv/IsPathValid")
-        self.keep(self.create_service(kind, "is_path_valid", self._is_path_valid))
+        self.register(self.create_service(kind, "is_path_valid", self._is_path_valid))
 
     def activate(self) -> None:
         """Accept goals."""
@@ -104,7 +104,7 @@ class PlannerNode(ManagedNode):
         usual = _OTHERS.get(kind, Settings())
         settings = declared(self, name, Settings, **{field.name: getattr(usual, field.name) for field in fields(usual)})
         if kind != _NAVFN:
-            take_unread(self, name)
+            declare_unread(self, name)
             self.get_logger().warning(
                 f"there is no {kind} here: plans of '{name}' go the way of NavFn, in all directions and with no regard "
                 "to how tightly a robot can turn"
@@ -120,7 +120,7 @@ class PlannerNode(ManagedNode):
             self.get_logger().error(f"planner {name} is not a valid planner. Planner names are: {known}")
             raise GoalError("INVALID_PLANNER", f"Planner id {name} is invalid")
         names = [field.name for field in fields(Settings)]
-        now = {each: self.get_parameter(f"{name}.{each}").value for each in names}
+        now = {parameter: self.get_parameter(f"{name}.{parameter}").value for parameter in names}
         return name, replace(self._planners[name], **now)
 
     # --- goals --------------------------------------------------------------------------------------------------------
@@ -138,7 +138,7 @@ class PlannerNode(ManagedNode):
 
             self._work[name] = SlicedWork(self, work(goal.request), lambda: not server.is_canceled, done)
 
-        server = self.keep(GoalServer(self, f"nav2_msgs/action/{kind}", name, begin))
+        server = self.register(GoalServer(self, f"nav2_msgs/action/{kind}", name, begin))
 
     def _finish(self, server: GoalServer, poses: Any, error: Exception | None, began_ns: int) -> None:
         if isinstance(error, GoalError):

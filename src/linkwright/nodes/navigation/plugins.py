@@ -42,7 +42,7 @@ def texts_of(node: Node, name: str, default: Sequence[str]) -> list[str]:
     """As `value_of`, for a list of texts, which may be given empty."""
     if not node.has_parameter(name):
         node.declare_parameter(name, list(default), ParameterDescriptor(dynamic_typing=True))
-    return [str(each) for each in node.get_parameter(name).value or ()]
+    return [str(text) for text in node.get_parameter(name).value or ()]
 
 
 def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
@@ -69,7 +69,7 @@ def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
     return str(given).replace("::", "/")
 
 
-def take_unread(node: Node, plugin: str) -> list[str]:
+def declare_unread(node: Node, plugin: str) -> list[str]:
     """Declare the unknown parameters of a plugin; their names without the plugin's."""
     names = [
         undeclared_override

@@ -22,7 +22,7 @@ from linkwright.nodes.navigation.costmap_reading import costmap_of
 from linkwright.nodes.navigation.goals import GoalServer
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.paths import path_message, poses_of
-from linkwright.nodes.navigation.plugins import declared, take_unread, texts_of, type_of
+from linkwright.nodes.navigation.plugins import declare_unread, declared, texts_of, type_of
 
 _SIMPLE: Final = "nav2_smoother/SimpleSmoother"
 _USUAL: Final = {"simple_smoother": _SIMPLE}
@@ -54,14 +54,14 @@ class SmootherNode(ManagedNode):
         self.get_logger().info(f"Smoother Server has {' '.join(names)}  smoothers available.")
         raw, path = get_message("nav2_msgs/msg/Costmap"), get_message("nav_msgs/msg/Path")
         topic = self.get_parameter("costmap_topic").value
-        self.keep(self.create_subscription(raw, topic, self._on_costmap, DESCRIPTION_QOS))
-        self._output = self.keep(self.create_publisher(path, "plan_smoothed", 1))
-        self._goals = self.keep(GoalServer(self, "nav2_msgs/action/SmoothPath", "smooth_path", self._smooth))
+        self.register(self.create_subscription(raw, topic, self._on_costmap, DESCRIPTION_QOS))
+        self._output = self.register(self.create_publisher(path, "plan_smoothed", 1))
+        self._goals = self.register(GoalServer(self, "nav2_msgs/action/SmoothPath", "smooth_path", self._smooth))
 
     def _make(self, name: str) -> None:
         kind = type_of(self, name, _USUAL)
         declared(self, name, Smoothing)
-        take_unread(self, name)
+        declare_unread(self, name)
         if kind != _SIMPLE:
             self.get_logger().warning(f"there is no {kind} here: '{name}' smooths as {_SIMPLE} does")
         self.get_logger().info(f"Created smoother : {name} of type {kind}")

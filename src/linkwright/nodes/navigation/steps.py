@@ -48,7 +48,7 @@ class StepNode(ManagedNode):
         self._server, self._work = server, work
         self.begin_cycles(_PERIOD, self._cycle)
 
-    def tell_progress(self, server: GoalServer) -> None:
+    def publish_feedback(self, server: GoalServer) -> None:
         """Publish the feedback of the goal; called each cycle."""
 
     def result(self) -> dict[str, Any]:
@@ -118,7 +118,7 @@ class StepNode(ManagedNode):
             self._stop()
             server.abort(failure.code, str(failure), **self.result())
         else:
-            self.tell_progress(server)
+            self.publish_feedback(server)
 
     def _stop(self) -> None:
         """End the work; goals at other servers are canceled."""
@@ -168,8 +168,8 @@ class Sent:
 
     def reason(self, usual: str) -> str:
         """The reason of its failure from the server (Jazzy), else a usual one."""
-        said = getattr(self.result, "error_msg", "")
-        return f"{usual}: {said}" if said else usual
+        message = getattr(self.result, "error_msg", "")
+        return f"{usual}: {message}" if message else usual
 
     def cancel(self) -> None:
         """Cancel it, unless it has ended."""

@@ -45,11 +45,11 @@ class WaypointNode(StepNode):
             self._pause = int(value_of(self, f"{task}.waypoint_pause_duration", 0)) / 1000.0 if is_on else 0.0
         else:
             self.get_logger().warning(f"{task}: there is no {kind} here; nothing is done at waypoints")
-        self._navigation = self.keep(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
+        self._navigation = self.register(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
         kind = "nav2_msgs/action/FollowWaypoints"
-        self._waypoints = self.keep(GoalServer(self, kind, "follow_waypoints", self._start))
+        self._waypoints = self.register(GoalServer(self, kind, "follow_waypoints", self._start))
 
-    def tell_progress(self, server: GoalServer) -> None:
+    def publish_feedback(self, server: GoalServer) -> None:
         """Publish the feedback of the goal."""
         server.feedback(current_waypoint=self._index)
 

@@ -196,7 +196,7 @@ def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
         name=name,
         kind=kind,
         topic=topic,
-        used=tuple(bool(each and can) for each, can in zip(used, gives, strict=True)),
+        used=tuple(bool(flag and can) for flag, can in zip(used, gives, strict=True)),
         differential=differential,
         relative=relative,
         queue_size=int(declare("queue_size", 10)),
@@ -258,7 +258,7 @@ def _numbers(node: Node, name: str, lengths: tuple[int, ...]) -> list[float] | N
     if given is None:
         return None
     check_length(name, len(given), lengths)
-    return [float(each) for each in given]
+    return [float(number) for number in given]
 
 
 def _flags(node: Node, name: str, length: int) -> Used | None:
@@ -267,7 +267,7 @@ def _flags(node: Node, name: str, length: int) -> Used | None:
     if given is None:
         return None
     check_length(name, len(given), (length,))
-    return tuple(bool(each) for each in given)
+    return tuple(bool(flag) for flag in given)
 
 
 def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
@@ -278,10 +278,10 @@ def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
     """
     if length not in lengths:
         known = " / ".join(str(length) for length in lengths)
-        told = phrase(
+        message = phrase(
             "parameter '{name}' must have {known} values and has {length}", name=name, known=known, length=length
         )
-        raise LinkwrightError(Diagnostic("NODE441", told))
+        raise LinkwrightError(Diagnostic("NODE441", message))
 
 
 def _nanoseconds(seconds: float) -> int:

@@ -28,7 +28,7 @@ from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.robot_localization.configuration import configuration_of
 from linkwright.nodes.robot_localization.sources import Source, Surroundings
-from linkwright.nodes.settings import tell_unknown
+from linkwright.nodes.settings import log_unknown
 
 _POSE_VARIANCE = 1e-6
 """The variance of a set pose where its message has none."""
@@ -49,7 +49,7 @@ class EkfNode(SingleNode):
         with starting(self._node):
             self._configuration = configuration_of(self._node)
             self._filter = self._make_filter()
-            tell_unknown(self._node)
+            log_unknown(self._node)
         self._estimator = Estimator(self._filter, self._configuration.timing)
         self._enabled = self._configuration.enabled
         self._toggled_on = True
@@ -141,7 +141,7 @@ class EkfNode(SingleNode):
             return
         self._published_ns = kalman.time_ns
         roll, pitch, yaw = (float(angle) for angle in kalman.state[ANGLES])
-        x, y, z = (float(each) for each in kalman.state[POSITION])
+        x, y, z = (float(coordinate) for coordinate in kalman.state[POSITION])
         pose: Transform = (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
         if configuration.publish_tf:
             self._publish_transform(pose)
@@ -225,7 +225,7 @@ class EkfNode(SingleNode):
         position, orientation = message.pose.pose.position, message.pose.pose.orientation
         turn = normalized(orientation.x, orientation.y, orientation.z, orientation.w)
         pose: Transform = (position.x, position.y, position.z, *turn)
-        if not all(isfinite(each) for each in pose):
+        if not all(isfinite(number) for number in pose):
             self._node.get_logger().error("set_pose: the pose has numbers that are none, and is left aside")
             return
         reader = PoseReader((True,) * SIZE, two_d=self._configuration.two_d)

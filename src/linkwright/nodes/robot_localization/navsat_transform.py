@@ -35,7 +35,7 @@ from linkwright.messages import TFMessage, TransformBatch, get_message, get_serv
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.robot_localization.configuration import check_length
-from linkwright.nodes.settings import bad_value, positive, tell_unknown
+from linkwright.nodes.settings import bad_value, log_unknown, positive
 
 _KNOWN_COVARIANCE, _GBAS_FIX, _NO_FIX = 3, 2, -1
 _ZONE_LETTERS = "CDEFGHJKLMNPQRSTUVWXX"
@@ -56,7 +56,7 @@ class NavsatTransformNode(SingleNode):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
             datum = self._declare()
-            tell_unknown(self._node)
+            log_unknown(self._node)
         self._poses = FramePoses(self._node, "Could not obtain transform:")
         self._zone: Zone | None = None
         self._plane: TangentPlane | None = None
@@ -95,7 +95,7 @@ class NavsatTransformNode(SingleNode):
         check_length("datum", len(datum), (3,))
         if not (abs(datum[0]) <= 90.0 and abs(datum[1]) <= 360.0):
             raise bad_value("datum", list(datum), node.get_name())
-        return [float(each) for each in datum]
+        return [float(number) for number in datum]
 
     def _open(self) -> None:
         node = self._node
@@ -105,10 +105,12 @@ class NavsatTransformNode(SingleNode):
             self._fix_publisher = node.create_publisher(kind, "gps/filtered", 10)
         if self._broadcast:
             self._tf_publisher = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
-        node.create_subscription(get_message("nav_msgs/msg/Odometry"), "odometry/filtered", self._hear_odometry, 10)
-        node.create_subscription(get_message("sensor_msgs/msg/NavSatFix"), "gps/fix", self._hear_fix, SENSOR_DATA_QOS)
+        node.create_subscription(get_message("nav_msgs/msg/Odometry"), "odometry/filtered", self._receive_odometry, 10)
+        node.create_subscription(
+            get_message("sensor_msgs/msg/NavSatFix"), "gps/fix", self._receive_fix, SENSOR_DATA_QOS
+        )
         if not self._odometry_yaw and not self._manual:
-            node.create_subscription(get_message("sensor_msgs/msg/Imu"), "imu", self._hear_imu, SENSOR_DATA_QOS)
+            node.create_subscription(get_message("sensor_msgs/msg/Imu"), "imu", self._receive_imu, SENSOR_DATA_QOS)
         for name, service, answer in (
             ("datum", "SetDatum", self._on_datum),
             ("fromLL", "FromLL", self._on_from_ll),
@@ -121,7 +123,7 @@ class NavsatTransformNode(SingleNode):
 
     # --- input -------------------------------------------------------------------------------------------------------
 
-    def _hear_odometry(self, message: Any) -> None:
+    def _receive_odometry(self, message: Any) -> None:
         self._world_frame = message.header.frame_id or self._world_frame
         self._base_frame = message.child_frame_id or self._base_frame
         self._odometry, self._new_odometry = message, True
@@ -130,9 +132,9 @@ class NavsatTransformNode(SingleNode):
             if self._odometry_yaw:
                 self._heading = self._first_pose[3:]
 
-    def _hear_fix(self, message: Any) -> None:
+    def _receive_fix(self, message: Any) -> None:
         place = (message.latitude, message.longitude, message.altitude)
-        if message.status.status == _NO_FIX or not all(isfinite(each) for each in place):
+        if message.status.status == _NO_FIX or not all(isfinite(number) for number in place):
             return
         if not message.header.frame_id:
             self._node.get_logger().error(
@@ -143,7 +145,7 @@ class NavsatTransformNode(SingleNode):
         if self._map is None and not self._manual:
             self._first_fix = place
 
-    def _hear_imu(self, message: Any) -> None:
+    def _receive_imu(self, message: Any) -> None:
         if self._map is not None or self._odometry is None:  # the frame of the body comes with the odometry
             return
         mounting = self._poses.pose(

@@ -92,7 +92,7 @@ class Source:
             surroundings.node.create_subscription(
                 get_message(_TYPES[settings.kind]),
                 settings.topic,
-                lambda message: self._hear(message, hear[settings.kind]),
+                lambda message: self._receive(message, hear[settings.kind]),
                 QoSProfile(settings.queue_size, ReliabilityPolicy.BEST_EFFORT),
             )
 
@@ -102,7 +102,7 @@ class Source:
         if time:
             self._last_ns = -1
 
-    def _hear(self, message: Any, read: Callable[[Any, int], None]) -> None:
+    def _receive(self, message: Any, read: Callable[[Any, int], None]) -> None:
         stamp_ns: int = message.header.stamp.nanoseconds
         if stamp_ns <= self._around.ignored_until_ns:
             return

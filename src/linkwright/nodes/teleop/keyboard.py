@@ -66,8 +66,8 @@ class TeleopTwistKeyboard(SingleNode):
         if repeat_rate > 0.0:
             node.create_timer(1.0 / repeat_rate, self._publish, clock=clock)
         self._silence = node.create_timer(self._key_timeout or 1.0, self._lost, clock=clock, autostart=False)
-        self._say(localized(help_text()))
-        self._say(speeds_text(self._speed, self._turn))
+        self._print(localized(help_text()))
+        self._print(speeds_text(self._speed, self._turn))
 
     def close(self) -> None:
         """Stop the robot, restore the terminal, and close."""
@@ -83,7 +83,7 @@ class TeleopTwistKeyboard(SingleNode):
             raise LinkwrightError(Diagnostic("NODE902", message))
         return value
 
-    def _say(self, text: str) -> None:
+    def _print(self, text: str) -> None:
         with contextlib.suppress(OSError):  # the terminal is closing; reading reports that
             self._output(text)
 
@@ -102,10 +102,10 @@ class TeleopTwistKeyboard(SingleNode):
         if key in SPEEDS:
             faster, turning = SPEEDS[key]
             self._speed, self._turn = self._speed * faster, self._turn * turning
-            self._say(speeds_text(self._speed, self._turn))
+            self._print(speeds_text(self._speed, self._turn))
             self._helps = (self._helps + 1) % _SPEEDS_BETWEEN_HELPS
             if self._helps == 0:
-                self._say(localized(help_text()))
+                self._print(localized(help_text()))
         else:
             self._direction = MOVES.get(key, STILL)
 

@@ -78,7 +78,7 @@ class TeleopTwistJoy(SingleNode):
         node.add_post_set_parameters_callback(lambda _: self._follow_parameters())
         self._topic = VelocityTopic(node, "cmd_vel", stamped, frame)
         self._joy = node.resolve_topic_name("joy")
-        node.create_subscription(get_message("sensor_msgs/msg/Joy"), "joy", self._heard, _DEPTH)
+        node.create_subscription(get_message("sensor_msgs/msg/Joy"), "joy", self._receive, _DEPTH)
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         node.create_timer(_REVIEW_SECONDS, self._review, clock=clock)
         logger = node.get_logger()
@@ -103,7 +103,7 @@ class TeleopTwistJoy(SingleNode):
         self._linear = [_axis(node, "linear", name) for name in _LINEAR]
         self._angular = [_axis(node, "angular", name) for name in _ANGULAR]
 
-    def _heard(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         buttons, axes = message.buttons, message.axes
         turbo = _pressed(buttons, self._turbo_button)
         if turbo or not self._needs_button or _pressed(buttons, self._button):

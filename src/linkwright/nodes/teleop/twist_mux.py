@@ -126,16 +126,16 @@ class TwistMux(SingleNode):
     def _health(self) -> Health:
         now = self._now_ns()
         lock = self._lock_priority(now)
-        said = {
+        values = {
             f"velocity {topic.name}": topic.described("masked" if self._masked(topic, lock, now) else "unmasked")
             for topic in self._topics
         }
-        said |= {
+        values |= {
             f"lock {lock.name}": lock.described("locked" if lock.locked or lock.expired(now) else "free")
             for lock in self._locks
         }
-        said["current priority"] = str(lock)
-        return Health(Level.OK, "ok", said)
+        values["current priority"] = str(lock)
+        return Health(Level.OK, "ok", values)
 
 
 def _sources(node: Node, group: str) -> list[_Source]:

@@ -76,11 +76,13 @@ class _ManagedSmoother(ManagedNode):
         self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
         commander = Commander(self._lose, DriverWatch.of(self))
         for kind in velocity_types(self, "cmd_vel", stamped):
-            heard: Subscription[Any] = self.create_subscription(kind, "cmd_vel", commander.taking(self._heard), _DEPTH)
-            commander.watch(self.keep(heard))
+            heard: Subscription[Any] = self.create_subscription(
+                kind, "cmd_vel", commander.taking(self._receive), _DEPTH
+            )
+            commander.watch(self.register(heard))
         if self._value("feedback") == "CLOSED_LOOP":
             odometry = get_message("nav_msgs/msg/Odometry")
-            self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
+            self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
 
     def activate(self) -> None:
         """Start to publish."""
@@ -150,7 +152,7 @@ class _ManagedSmoother(ManagedNode):
                 )
         return None
 
-    def _heard(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         stamped = hasattr(message, "twist")
         twist = message.twist if stamped else message
         values = _values(twist)
@@ -202,7 +204,7 @@ class _ManagedSmoother(ManagedNode):
             seen = [values for _, values in self._measured] or [[0.0] * len(_AXES)]
             now = [sum(column) / len(seen) for column in zip(*seen, strict=True)]
         self._last = smoothed(self._limits, now, self._command, 1.0 / self._frequency, scaled=self._scaled)
-        quiet = [axis.quiet(each) for axis, each in zip(self._limits, self._last, strict=True)]
+        quiet = [axis.quiet(speed) for axis, speed in zip(self._limits, self._last, strict=True)]
         assert self._output is not None, "it is configured"
         self._output.publish(quiet[:3], quiet[3:])
 

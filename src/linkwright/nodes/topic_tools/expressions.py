@@ -98,7 +98,7 @@ class _ExpressionTool(SingleNode, ABC):
             qos = self._profile([source.qos_profile for source in sources])
             self._publisher = self._node.create_publisher(self._output_class, self._words.output_topic, qos)
             self._subscription = self._node.create_subscription(
-                sources[0].topic_type, self._words.input, self._hear, qos
+                sources[0].topic_type, self._words.input, self._receive, qos
             )
 
     def _profile(self, offers: list[QoSProfile]) -> QoSProfile:
@@ -115,7 +115,7 @@ class _ExpressionTool(SingleNode, ABC):
             HistoryPolicy[given["history"].upper()] if given["history"] else base.history,
         )
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         try:
             made = self._make(message)
         except Exception as error:  # noqa: BLE001 - whatever the user's expression raises
@@ -219,8 +219,8 @@ def _imported(name: str) -> Any:
 def _prepared(value: Any) -> Callable[[Any], Any]:
     """Compile a value of YAML: a text is an expression, or a literal text if it is not a valid expression."""
     if isinstance(value, dict):
-        fields = {name: _prepared(each) for name, each in value.items()}
-        return lambda message: {name: each(message) for name, each in fields.items()}
+        fields = {name: _prepared(compute) for name, compute in value.items()}
+        return lambda message: {name: compute(message) for name, compute in fields.items()}
     if not isinstance(value, str):
         return lambda message: value  # noqa: ARG005  # it is the same for all
     try:

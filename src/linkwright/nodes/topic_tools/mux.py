@@ -76,7 +76,7 @@ class _Switch(TopicTool):
         else:
             super()._look()
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._send(message)
 
     def _same(self, first: str, second: str) -> bool:
@@ -102,13 +102,13 @@ class _Switch(TopicTool):
         name, topic, logger = self.DEFAULT_NAME, request.topic, self._node.get_logger()
         logger.info(f"trying to delete {topic} to {name}")
         response.success = False
-        for each in self._topics:
-            if not self._same(each, topic):
+        for candidate in self._topics:
+            if not self._same(candidate, topic):
                 continue
             if self._same(self._selected, topic):
                 logger.warning(f"tried to delete currently selected topic {topic} from {name}")
                 return response
-            self._topics.remove(each)
+            self._topics.remove(candidate)
             logger.info(f"deleted topic {topic} from {name}")
             response.success = True
             return response
@@ -128,7 +128,7 @@ class _Switch(TopicTool):
             logger.info(f"{name} selected to no {'input' if name == 'mux' else 'output'}.")
         else:
             logger.info(f"trying to switch {name} to {topic}")
-            response.success = any(self._same(each, topic) for each in self._topics)
+            response.success = any(self._same(candidate, topic) for candidate in self._topics)
             if not response.success:
                 return response
             logger.info(f"{name} selected {'input' if name == 'mux' else 'output'}: [{topic}]")

@@ -49,7 +49,7 @@ class Relay(_InputToOutput):
 
     def _declare_rest(self) -> None: ...
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._send(message)
 
 
@@ -95,7 +95,7 @@ class Throttle(_InputToOutput):
         self._declare_clock()
         self._last_ns = self._clock.now_ns()
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         now_ns = self._clock.now_ns()
         if self._period_ns:
             self._count(message, now_ns)
@@ -135,7 +135,7 @@ class Drop(_InputToOutput):
         self._round: int = declare_required(self._node, "Y", ParameterType.INTEGER, self.USAGE)
         self._count = 0
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         if self._count >= self._dropped:
             self._send(message)
         self._count += 1
@@ -162,7 +162,7 @@ class Delay(_InputToOutput):
             raise bad_value("delay", self._delay, self._node.get_name())
         self._declare_clock()
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         if not self._delay:
             self._send(message)
             return

@@ -16,7 +16,7 @@ from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.qos.compatibility import fit
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import options_from_words, tell_unknown, words_of
+from linkwright.nodes.settings import log_unknown, options_from_words, words_of
 from linkwright.nodes.teleop.standstill import VELOCITIES, send_stop
 
 
@@ -47,7 +47,7 @@ class TopicTool(SingleNode, ABC):
         self._mixed = False
         with starting(self._node):
             self._declare()
-            tell_unknown(self._node)
+            log_unknown(self._node)
         self._changed = self._node.create_guard_condition(self._look)
         graph.watch(self._changed.trigger)
         self._look()
@@ -66,7 +66,7 @@ class TopicTool(SingleNode, ABC):
         """Declare the parameters and read them."""
 
     @abstractmethod
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         """Take a message of the input."""
 
     def _send(self, message: Any) -> None:
@@ -93,9 +93,9 @@ class TopicTool(SingleNode, ABC):
 
     def _subscribed(self, kind: str, qos: QoSProfile) -> Subscription[Any]:
         if kind not in VELOCITIES:
-            return self._node.create_subscription(kind, self._input, self._hear, qos)
+            return self._node.create_subscription(kind, self._input, self._receive, qos)
         commander = Commander(self._stop_output, DriverWatch.of(self._node))
-        hear = commander.taking(self._hear)
+        hear = commander.taking(self._receive)
         subscription: Subscription[Any] = self._node.create_subscription(kind, self._input, hear, qos)
         commander.watch(subscription)
         return subscription

@@ -20,7 +20,7 @@ from linkwright.messages import get_message
 from linkwright.nodes.depthimage_to_laserscan import depths_of
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import positive, tell_unknown
+from linkwright.nodes.settings import log_unknown, positive
 from linkwright.nodes.vision.detection_reading import VISION_FORM, YOLO_FORM, DetectionForm
 from linkwright.vision.detectors.drawing import colour_of
 from linkwright.vision.places.camera import CameraModel, camera_model
@@ -70,7 +70,7 @@ class Detect3DNode(SingleNode):
                 DEFAULT_QOS if declare(name, 2).value == _RELIABLE else SENSOR_DATA_QOS
                 for name in ("depth_image_reliability", "depth_info_reliability")
             )
-            tell_unknown(node)
+            log_unknown(node)
         self._unit = _MILLIMETRES / divisor
         self._poses = FramePoses(node, "detections have no place:")
         self._depths: deque[Any] = deque(maxlen=_KEPT)
@@ -84,7 +84,7 @@ class Detect3DNode(SingleNode):
         node.create_subscription(
             info, "camera_info", lambda message: self._see_camera("colour", message), SENSOR_DATA_QOS
         )
-        node.create_subscription(get_message(self.FORM.images), "detections", self._see, _DEPTH)
+        node.create_subscription(get_message(self.FORM.images), "detections", self._receive, _DEPTH)
 
     def _see_camera(self, which: str, message: Any) -> None:
         try:
@@ -94,7 +94,7 @@ class Detect3DNode(SingleNode):
         except ValueError as error:
             self._complain(str(error))
 
-    def _see(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         header = message.header
         found = self._array()
         found.header.stamp, found.header.frame_id = header.stamp, self._target
@@ -180,9 +180,9 @@ def _markers(form: DetectionForm, found: Any, places: list[Place]) -> Any:
     kind = get_message("visualization_msgs/msg/Marker")
     array = get_message("visualization_msgs/msg/MarkerArray")()
     array.markers.append(kind(header=found.header, action=kind.DELETEALL))
-    for number, (each, place) in enumerate(zip(found.detections, places, strict=True)):
-        name, _ = form.best(each)
-        volume = form.place(each)
+    for number, (detection, place) in enumerate(zip(found.detections, places, strict=True)):
+        name, _ = form.best(detection)
+        volume = form.place(detection)
         box, label = (
             kind(header=found.header, ns=ns, id=number, type=shape, action=kind.ADD)
             for ns, shape in (("boxes", kind.CUBE), ("labels", kind.TEXT_VIEW_FACING))
@@ -193,7 +193,7 @@ def _markers(form: DetectionForm, found: Any, places: list[Place]) -> Any:
         at.x, at.y, at.z = above.x, above.y, above.z + volume.size.z / 2 + _LABEL_METRES
         label.scale.z = _LABEL_METRES
         distance = float(np.linalg.norm(place.centre))
-        label.text = " ".join(filter(None, (name, each.id, f"{distance:.1f} m")))
+        label.text = " ".join(filter(None, (name, detection.id, f"{distance:.1f} m")))
         for marker, alpha in ((box, 0.45), (label, 1.0)):
             colour = marker.color
             colour.r, colour.g, colour.b = (part / 255 for part in colour_of(name))

@@ -65,7 +65,7 @@ class _Vision(DetectionForm):
     def best(self, detection: Any) -> tuple[str, float]:
         if not detection.results:
             return "", 0.0
-        best = max((result.hypothesis for result in detection.results), key=lambda each: float(each.score))
+        best = max((result.hypothesis for result in detection.results), key=lambda hypothesis: float(hypothesis.score))
         return best.class_id, float(best.score)
 
     def box(self, detection: Any) -> NDArray[np.float64]:
@@ -74,8 +74,8 @@ class _Vision(DetectionForm):
     def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
         made = get_message("vision_msgs/msg/Detection3D")(header=header, id=detection.id)
         _fill(made.bbox, pose, size)
-        for each in detection.results:
-            result = get_message("vision_msgs/msg/ObjectHypothesisWithPose")(hypothesis=each.hypothesis)
+        for hypothesis in detection.results:
+            result = get_message("vision_msgs/msg/ObjectHypothesisWithPose")(hypothesis=hypothesis.hypothesis)
             result.pose.pose = made.bbox.center
             made.results.append(result)
         return made

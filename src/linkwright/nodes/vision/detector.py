@@ -55,7 +55,7 @@ from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker,
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.lazy import LazySubscriptions
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import bad_value, tell_unknown
+from linkwright.nodes.settings import bad_value, log_unknown
 from linkwright.nodes.vision.detection_messages import MESSAGES, image_message
 from linkwright.nodes.vision.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
 from linkwright.nodes.vision.latest import LatestWorker
@@ -113,7 +113,7 @@ class DetectorNode(SingleNode):
             self._limits = self._limits_of({}, None)
             self._source = self._image_source(dialect)
             self._qos = self._image_qos()
-            tell_unknown(node)
+            log_unknown(node)
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self.loaded: Future[None] = Future()
         self._names: tuple[str, ...] | None = None
@@ -129,7 +129,7 @@ class DetectorNode(SingleNode):
         node.create_service(choose, "set_classes", self._on_set_classes, callback_group=waiting)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(lambda _: self._follow())
-        self._finished = node.create_guard_condition(self._tell)
+        self._finished = node.create_guard_condition(self._deliver)
         self._lazy: LazySubscriptions | None = None
         load = partial(self._load, self._value(dialect.model), settings)
         self._worker = LatestWorker(load, f"{node.get_name()} detector")
@@ -221,10 +221,10 @@ class DetectorNode(SingleNode):
     def _wanted(self, classes: Any, known: Sequence[str]) -> frozenset[str] | None:
         given = classes if isinstance(classes, Sequence) and not isinstance(classes, str) else [classes]
         wanted = []
-        for each in given:
-            numbered = isinstance(each, int) and not isinstance(each, bool) and 0 <= each < len(known)
-            name = known[each] if numbered else str(each)
-            if each is None or name == "":
+        for class_name in given:
+            numbered = isinstance(class_name, int) and not isinstance(class_name, bool) and 0 <= class_name < len(known)
+            name = known[class_name] if numbered else str(class_name)
+            if class_name is None or name == "":
                 continue
             if known and name not in known:
                 raise bad_value(_CLASSES, name, self._node.get_name(), known)
@@ -262,9 +262,9 @@ class DetectorNode(SingleNode):
 
     def _subscribe(self) -> list[Subscription[Any]]:
         kind = get_message(self._source.message_type)
-        return [self._node.create_subscription(kind, self._source.topic, self._see, self._qos)]
+        return [self._node.create_subscription(kind, self._source.topic, self._receive, self._qos)]
 
-    def _see(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._watch.came()
         if not self._value("enable") or self._is_too_early():
             return
@@ -313,7 +313,7 @@ class DetectorNode(SingleNode):
 
     # --- results, in the node's callbacks ------------------------------------------------------------------------
 
-    def _tell(self) -> None:
+    def _deliver(self) -> None:
         while self._done:
             self._done.popleft()()
 

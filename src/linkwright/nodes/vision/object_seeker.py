@@ -19,12 +19,12 @@ from linkwright.graph.endpoints.commander import Commander, who_was_lost
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import bad_value, positive, tell_unknown
+from linkwright.nodes.settings import bad_value, log_unknown, positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.nodes.vision.nav2_trip import Nav2Trip
 from linkwright.nodes.vision.seen_things import SeenObject, SeenObjects
 from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
-from linkwright.vision.places.words import LANGUAGES, Answer, Sighting, Wanted, answer, described, wanted
+from linkwright.vision.places.words import LANGUAGES, Answer, ObjectRequest, Sighting, answer, described, requested
 
 _DEPTH = 10
 _PERIOD = 0.05
@@ -53,10 +53,10 @@ class ObjectSeeker(SingleNode):
         node = self._node
         with starting(node):
             self._declare()
-            tell_unknown(node)
+            log_unknown(node)
         self._poses = FramePoses(node, "it is not known where the robot is:")
         self._seen = SeenObjects(node, self._poses, self._fixed)
-        self._wanted: Wanted | None = None
+        self._request: ObjectRequest | None = None
         self._answers_in = self._language
         self._target: SeenObject | None = None
         self._began_ns = 0
@@ -111,7 +111,7 @@ class ObjectSeeker(SingleNode):
 
     def _begin(self, language: str | None, follow: bool, message: Any) -> None:
         """Seek what a message names; answers are in that language, or, where it is None, in that of the message."""
-        request = wanted(message.data)
+        request = requested(message.data)
         if request is None:
             self._node.get_logger().warning(f"'{message.data}' names nothing to go to; say 'ball' or 'red ball'")
             return
@@ -119,16 +119,16 @@ class ObjectSeeker(SingleNode):
         if self._seeker.phase is Phase.IDLE:
             self._velocity.review()
         self._cancel_trip()
-        self._wanted, self._target, self._began_ns = request, None, self._now_ns()
+        self._request, self._target, self._began_ns = request, None, self._now_ns()
         self._seeker.begin(follow=follow)
-        self._say(Answer.LOOKING)
+        self._answer(Answer.LOOKING)
 
     def _stop(self) -> None:
         if self._seeker.phase is not Phase.IDLE:
             self._seeker.stop()
             self._cancel_trip()
             self._velocity.stop()
-            self._say(Answer.STOPPED)
+            self._answer(Answer.STOPPED)
 
     def _commander_lost(self, publisher: EndpointInfo) -> None:
         if self._seeker.phase is not Phase.IDLE:
@@ -157,7 +157,7 @@ class ObjectSeeker(SingleNode):
             return
         move = self._seeker.step(self._view())
         if move.event is not None:
-            self._say(move.event)
+            self._answer(move.event)
         if move.event is Answer.FOUND and self._begin_trip():
             self._velocity.stop()
             return
@@ -175,7 +175,7 @@ class ObjectSeeker(SingleNode):
 
     def _trip_ended(self, reached: bool) -> None:
         self._seeker.stop()
-        self._say(Answer.ARRIVED if reached else Answer.BLOCKED)
+        self._answer(Answer.ARRIVED if reached else Answer.BLOCKED)
 
     def _cancel_trip(self) -> None:
         if self._trip is not None:
@@ -206,19 +206,23 @@ class ObjectSeeker(SingleNode):
 
     def _chosen(self, pose: Transform) -> SeenObject | None:
         """The seen object to drive to: the same as before, or else the nearest."""
-        assert self._wanted is not None, "it is asked for while it seeks"
+        assert self._request is not None, "it is asked for while it seeks"
         fitting = [
             seen_object
             for seen_object in self._seen.objects
-            if self._wanted.is_it(seen_object.name, seen_object.colour, seen_object.shape, seen_object.score)
+            if self._request.is_it(seen_object.name, seen_object.colour, seen_object.shape, seen_object.score)
         ]
         before = self._target
         if before is not None:
-            same = [each for each in fitting if each.id and each.id == before.id]
-            near = [each for each in fitting if hypot(each.x - before.x, each.y - before.y) < _SAME_PLACE]
+            same = [candidate for candidate in fitting if candidate.id and candidate.id == before.id]
+            near = [
+                candidate
+                for candidate in fitting
+                if hypot(candidate.x - before.x, candidate.y - before.y) < _SAME_PLACE
+            ]
             if same or near or self._seeker.phase is Phase.GOING:
                 fitting = same or near
-        return min(fitting, key=lambda each: hypot(*_within(pose, each)), default=None)
+        return min(fitting, key=lambda candidate: hypot(*_within(pose, candidate)), default=None)
 
     def _free(self, now_ns: int) -> float:
         """Metres from the robot's centre to a laser's nearest point ahead; 0 if the laser has fallen silent."""
@@ -237,9 +241,9 @@ class ObjectSeeker(SingleNode):
         x, y = pose[0] + ranges[known] * np.cos(yaw), pose[1] + ranges[known] * np.sin(yaw)
         return float(x[(x > 0) & (np.abs(y) < self._radius)].min(initial=inf))
 
-    def _say(self, event: Answer) -> None:
-        if self._wanted is not None:
-            self._speak(answer(event, self._wanted, self._answers_in))
+    def _answer(self, event: Answer) -> None:
+        if self._request is not None:
+            self._speak(answer(event, self._request, self._answers_in))
 
     def _speak(self, text: str) -> None:
         self._node.get_logger().info(text)

@@ -32,7 +32,7 @@ class ImageWatch:
     ) -> None:
         self._node, self._source, self._qos = node, source, qos
         self._is_waiting, self._topic_parameter = is_waiting, topic_parameter
-        self._came = self._told = False
+        self._came = self._has_warned = False
         self._quiet, self._patience = 0, 1  # periods
         # Silence may not wait for simulated time, which may stand still.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
@@ -46,15 +46,15 @@ class ImageWatch:
         came, self._came = self._came, False
         if came or not self._is_waiting():
             self._quiet = 0
-            if came and self._told:
-                self._told = False
+            if came and self._has_warned:
+                self._has_warned = False
                 self._patience *= 2
                 self._node.get_logger().info(localized(phrase("images arrive now")))
             return
         self._quiet += 1
-        if self._told or self._quiet < self._patience:
+        if self._has_warned or self._quiet < self._patience:
             return
-        self._told = True
+        self._has_warned = True
         reason, hint = self._reason()
         logger = self._node.get_logger()
         logger.warning(localized(reason))

@@ -71,10 +71,14 @@ class SeenObjects:
         node.create_subscription(
             get_message("sensor_msgs/msg/Image"), "image_raw", self._images.append, SENSOR_DATA_QOS
         )
-        node.create_subscription(get_message("vision_msgs/msg/Detection2DArray"), "tracking", self._look, _DEPTH)
-        node.create_subscription(get_message("vision_msgs/msg/Detection3DArray"), "detections_3d", self._see, _DEPTH)
+        node.create_subscription(
+            get_message("vision_msgs/msg/Detection2DArray"), "tracking", self._receive_tracking, _DEPTH
+        )
+        node.create_subscription(
+            get_message("vision_msgs/msg/Detection3DArray"), "detections_3d", self._receive, _DEPTH
+        )
 
-    def _look(self, message: Any) -> None:
+    def _receive_tracking(self, message: Any) -> None:
         """Record the colours of objects with ids."""
         time_ns = message.header.stamp.nanoseconds
         image = next((candidate for candidate in self._images if candidate.header.stamp.nanoseconds == time_ns), None)
@@ -92,12 +96,12 @@ class SeenObjects:
                 votes = self._votes.setdefault(detection.id, Counter())
                 votes[colour] += 1
                 if votes.total() > _VOTES:
-                    self._votes[detection.id] = Counter({each: count // 2 for each, count in votes.items()})
+                    self._votes[detection.id] = Counter({name: count // 2 for name, count in votes.items()})
                 self._votes.move_to_end(detection.id)
         while len(self._votes) > _KEPT_COLOURS:
             self._votes.popitem(last=False)
 
-    def _see(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self.heard_ns = self._node.get_clock().now().nanoseconds
         time_ns = message.header.stamp.nanoseconds
         self.objects = []

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 from linkwright.graph import Graph, ParameterDescriptor
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import bad_value, positive, tell_unknown
+from linkwright.nodes.settings import bad_value, log_unknown, positive
 from linkwright.nodes.vision.detection_reading import VISION_FORM, YOLO_FORM, DetectionForm
 from linkwright.vision.places.tracker import Tracker, TrackerSettings
 
@@ -44,10 +44,10 @@ class TrackingNode(SingleNode):
             for name in self.IGNORED:
                 node.declare_parameter(name, None, _ANY)
             self._tracker = Tracker(self._settings())
-            tell_unknown(node)
+            log_unknown(node)
         self._array = get_message(self.FORM.images)
         self._publisher = node.create_publisher(self._array, "tracking", _DEPTH)
-        node.create_subscription(self._array, "detections", self._see, _DEPTH)
+        node.create_subscription(self._array, "detections", self._receive, _DEPTH)
 
     def _settings(self) -> TrackerSettings:
         usual = TrackerSettings()
@@ -69,11 +69,13 @@ class TrackingNode(SingleNode):
     def _positive(self, name: str, usual: int) -> float:
         return positive(self._node, name, self._node.declare_parameter(name, usual).value)
 
-    def _see(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         ids = self._tracker.update(self.FORM.read(message), message.header.stamp.nanoseconds / 1e9)
         tracked = self._array(header=message.header)
         tracked.detections = [
-            self.FORM.with_id(each, number) for each, number in zip(message.detections, ids, strict=True) if number
+            self.FORM.with_id(detection, number)
+            for detection, number in zip(message.detections, ids, strict=True)
+            if number
         ]
         self._publisher.publish(tracked)
 

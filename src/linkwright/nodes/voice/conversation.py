@@ -69,7 +69,7 @@ class Conversation:
         """Whether something is active that a stop would end."""
         return self._driver.is_moving or self._requests.is_active
 
-    def take(self, text: str) -> bool:
+    def handle(self, text: str) -> bool:
         """Carry out the command of a text, or ask back; whether it was understood."""
         answer = self._commands.answer(text) if self._asked is not None else None
         if self._asked is not None and answer is not None:
@@ -102,7 +102,7 @@ class Conversation:
         self._forget()
         self._driver.stop()
         self._requests.cancel_all()
-        self._tell_others()
+        self._notify_others()
         if text:
             stop = self._commands.stops[0]
             found = self._commands.understand(text)
@@ -145,7 +145,7 @@ class Conversation:
             return
         values = found.values
         self._tell_command(
-            " ".join([found.command.intent, *(f"{name}={shown(each)}" for name, each in values.items())])
+            " ".join([found.command.intent, *(f"{name}={shown(value)}" for name, value in values.items())])
         )
         problem = self._done(found)
         if problem is not None:
@@ -186,9 +186,9 @@ class Conversation:
         if not isinstance(action, Drive) and self._driver.is_moving:
             self._driver.stop()
         if not isinstance(action, Publish):  # its subscriber may start on it
-            self._tell_others()
+            self._notify_others()
 
-    def _tell_others(self) -> None:
+    def _notify_others(self) -> None:
         for stop in self._commands.stops:
             for tell in stop.action.tells if isinstance(stop.action, Stop) else ():
                 self._requests.publish(tell, {})

@@ -76,7 +76,7 @@ class Driver:
         self._kind, self._left = given[0] if given else ("", None)
         self._at_ns = self._now_ns()
         self._limit_ns = self._at_ns + round((3.0 + _PATIENCE * self._expected()) * 1e9)
-        self._odometer.take(self._kind)
+        self._odometer.pop(self._kind)
         self._publish(1.0)
         self._timer.reset()
 
@@ -112,7 +112,7 @@ class Driver:
             self._publish(1.0)
             return
         rate = self._rate()
-        measured = self._odometer.take(self._kind) if self._odometer.is_fresh(now_ns) else None
+        measured = self._odometer.pop(self._kind) if self._odometer.is_fresh(now_ns) else None
         done = seconds if self._kind == "duration" else rate * self._part * seconds if measured is None else measured
         self._left -= done
         if self._left <= _CLOSE.get(self._kind, 0.0):
@@ -165,7 +165,7 @@ class _Odometer:
     def is_fresh(self, now_ns: int) -> bool:
         return self._heard_ns is not None and 0 <= now_ns - self._heard_ns < _FRESH * 1e9
 
-    def take(self, kind: str) -> float:
+    def pop(self, kind: str) -> float:
         way = self._way.get(kind, 0.0)
         self._way = {"distance": 0.0, "angle": 0.0}
         return way

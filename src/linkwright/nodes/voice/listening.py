@@ -49,7 +49,7 @@ class Listener:
         self._gaps: deque[tuple[float, float]] = deque(maxlen=_MOST_GAPS)  # where, and how long
         self._sound: SimpleQueue[Samples | bool | None] = SimpleQueue()
         self._found: deque[_Found] = deque()
-        self._ready = node.create_guard_condition(self._tell)
+        self._ready = node.create_guard_condition(self._deliver)
         self._thread = threading.Thread(target=self._run, name="speech engine", daemon=True)
         self._thread.start()
 
@@ -103,8 +103,8 @@ class Listener:
                     found: list[_Found] = [*engine.finish(), None]
                 else:
                     found = [*engine.hear(block)]
-                for each in found:
-                    self._pass(each)
+                for result in found:
+                    self._pass(result)
         finally:
             engine.close()
 
@@ -112,7 +112,7 @@ class Listener:
         self._found.append(found)
         self._ready.trigger()
 
-    def _tell(self) -> None:
+    def _deliver(self) -> None:
         while self._found:
             found = self._found.popleft()
             if isinstance(found, LinkwrightError):

@@ -108,8 +108,8 @@ class Requests:
         said: called with the ``message`` of a service's answer.
     """
 
-    def __init__(self, node: Node, ended: Callable[[bool, str], None], said: Callable[[str], None]) -> None:
-        self._node, self._ended, self._said = node, ended, said
+    def __init__(self, node: Node, ended: Callable[[bool, str], None], say: Callable[[str], None]) -> None:
+        self._node, self._ended, self._say = node, ended, say
         self._goals: dict[str, Goals] = {}
         self._publishers: dict[str, Publisher[Any]] = {}
         self._launched: subprocess.Popen[bytes] | None = None
@@ -222,7 +222,7 @@ class Requests:
         self._node.destroy_client(client)
         text = getattr(future.result(), "message", "")
         if text and isinstance(text, str):
-            self._said(text)
+            self._say(text)
 
 
 def _word(value: Any) -> str:

@@ -17,7 +17,7 @@ from linkwright.graph import Clock, ClockType, Graph, ParameterType, Publisher, 
 from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.settings import bad_value, positive, tell_unknown
+from linkwright.nodes.settings import bad_value, log_unknown, positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.nodes.voice.audio_messages import (
     AUDIO_DEPTH,
@@ -102,16 +102,19 @@ class VoiceCommander(SingleNode):
         silence, patience = self._positive("silence_timeout", 10.0), self._positive("confirmation_timeout", 10.0)
         stamped: bool | None = node.declare_parameter("stamped", ParameterType.BOOL).value
         frame_id: str = node.declare_parameter("frame_id", "").value
-        tell_unknown(node)
+        log_unknown(node)
 
         commands = read_command_file(Path(file) if file else DEFAULT_FILE)
-        said: dict[str, Publisher[Any]] = {
+        publishers: dict[str, Publisher[Any]] = {
             name: node.create_publisher(_STRING, f"voice/{name}", _DEPTH) for name in _SAID
         }
-        self._said = {name: lambda text, to=each: to.publish(to.msg_type(data=text)) for name, each in said.items()}
+        self._publish_text = {
+            name: lambda text, to=publisher: to.publish(to.msg_type(data=text))
+            for name, publisher in publishers.items()
+        }
         self._topic = VelocityTopic(node, "cmd_vel", stamped, frame_id)
         self._driver = Driver(node, self._topic, speed, turn_speed, self._drive_ended)
-        self._requests = Requests(node, self._goal_ended, self._said["response"])
+        self._requests = Requests(node, self._goal_ended, self._publish_text["response"])
         self._conversation = Conversation(
             node,
             commands,
@@ -119,11 +122,11 @@ class VoiceCommander(SingleNode):
             self._driver,
             self._requests,
             patience,
-            self._said["command"],
-            self._said["response"],
+            self._publish_text["command"],
+            self._publish_text["response"],
         )
         self._commands = commands
-        self._take_texts()
+        self._listen_to_texts()
         # Silence may not wait for simulated time, which may stand still.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self._silence = node.create_timer(silence, self._silent, clock=clock, autostart=False)
@@ -144,16 +147,16 @@ class VoiceCommander(SingleNode):
             raise bad_value(name, value, self._node.get_name())
         return positive(self._node, name, value)
 
-    def _take_texts(self) -> None:
+    def _listen_to_texts(self) -> None:
         commander = Commander(self._lost)
-        take = commander.taking(lambda message: self._take(message.data, by_voice=False))
+        take = commander.taking(lambda message: self._execute(message.data, by_voice=False))
         commander.watch(self._node.create_subscription(_STRING, "voice/text_input", take, _DEPTH))
 
     # --- listening -----------------------------------------------------------------------------------------------
 
     def _listen(self, make: Any, clock: Clock) -> None:
         node = self._node
-        self._listener = Listener(node, make, self._heard, self._press_heard, self._warn, self._failed)
+        self._listener = Listener(node, make, self._handle, self._press_heard, self._warn, self._failed)
         self._reader = AudioReader()
         self._gaps = SoundGaps()
         node.create_subscription(AUDIO_INFO, "audio/audio_info", self._on_info, INFO_QOS)
@@ -202,16 +205,16 @@ class VoiceCommander(SingleNode):
             self._gaps.restart()  # nothing is published while no button is held
         if held and not self._held:
             self._presses.begin()
-            self._tell_proposal()
+            self._publish_proposal()
         self._stopped = False
         self._held = held
 
-    def _heard(self, heard: Heard) -> None:
+    def _handle(self, heard: Heard) -> None:
         if not heard.final:
-            self._said["partial_text"](heard.text)
+            self._publish_text["partial_text"](heard.text)
             self._stop_early(heard.text)
             return
-        self._said["text"](heard.text)
+        self._publish_text["text"](heard.text)
         stopped, self._stopped = self._stopped, False
         # After a stop nothing else of the utterance is done, but a command in which the word is: "go to the stop sign".
         if stopped and not (self._commands.is_stop(heard.text) and self._commands.is_other(heard.text)):
@@ -225,7 +228,7 @@ class VoiceCommander(SingleNode):
         """Carry out a recognised text, or ask for it again; False where neither applies."""
         lost = 0.0 if self._listener is None else self._listener.lost_in(heard)
         is_certain = heard.confidence >= self._confidence
-        if is_certain and lost <= _MOST_LOST and self._take(heard.text, by_voice=True):
+        if is_certain and lost <= _MOST_LOST and self._execute(heard.text, by_voice=True):
             return True
         if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
             self._conversation.stop(heard.text)
@@ -240,11 +243,11 @@ class VoiceCommander(SingleNode):
     def _press_heard(self) -> None:
         """Handle the end of a press of the button whose sound was processed."""
         answer = self._presses.end()
-        self._tell_proposal()
+        self._publish_proposal()
         if answer is not None and not self._open:
             self._conversation.answer(answer)
 
-    def _tell_proposal(self) -> None:
+    def _publish_proposal(self) -> None:
         """Publish whether enrolling is proposed, where that has changed."""
         if self._presses.proposes_enrolling != self._proposed:
             self._proposed = self._presses.proposes_enrolling
@@ -288,11 +291,11 @@ class VoiceCommander(SingleNode):
 
     # --- what is said --------------------------------------------------------------------------------------------
 
-    def _take(self, text: str, *, by_voice: bool) -> bool:
+    def _execute(self, text: str, *, by_voice: bool) -> bool:
         """Carry out the command of a text; whether it was understood."""
         if not by_voice:
-            self._said["text"](text)
-        understood = self._conversation.take(text)
+            self._publish_text["text"](text)
+        understood = self._conversation.handle(text)
         if understood:
             self._spoken = by_voice
             self._silence.reset()

@@ -231,7 +231,7 @@ class ActionReader:
 
 def _texts_in(value: Any) -> list[str]:
     if isinstance(value, dict):
-        return [text for each in value.values() for text in _texts_in(each)]
+        return [text for part in value.values() for text in _texts_in(part)]
     if isinstance(value, list):
-        return [text for each in value for text in _texts_in(each)]
+        return [text for part in value for text in _texts_in(part)]
     return [value] if isinstance(value, str) else []

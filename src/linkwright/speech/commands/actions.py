@@ -164,7 +164,7 @@ def filled(template: Any, values: Values) -> Any:
     if isinstance(template, Mapping):
         return {key: filled(value, values) for key, value in template.items()}
     if isinstance(template, list):
-        return [filled(each, values) for each in template]
+        return [filled(part, values) for part in template]
     if not isinstance(template, str):
         return template
     for name, value in values.items():

@@ -57,7 +57,7 @@ class _Reader:
     def __init__(self, source: SourceText) -> None:
         self._document = YamlDocument(source, "VOICE302")
         self._names: dict[str, dict[Words, str]] = {"place": {}, "object": {}}
-        self._said: dict[str, dict[str, tuple[str, ...]]] = {}
+        self._slot_values: dict[str, dict[str, tuple[str, ...]]] = {}
         self._seen: dict[tuple[Any, ...], str] = {}
 
     def read(self) -> CommandSet:
@@ -72,10 +72,10 @@ class _Reader:
         for name, node in self._entries(top, "objects"):
             self._name("object", name, node)
         for slot, node in self._entries(top, "said"):
-            self._add_said(slot, node, top)
+            self._add_slot_values(slot, node, top)
         answers = {name: self._phrases(top.node(name), ()) for name in ("yes", "no")}
         read = tuple(self._command(intent, node, places) for intent, node in commands)
-        found = CommandSet(read, self._names, self._said, places, answers)
+        found = CommandSet(read, self._names, self._slot_values, places, answers)
         self._count(found)
         return found
 
@@ -91,27 +91,27 @@ class _Reader:
     def _name(self, slot: str, name: str, node: yaml.Node | None) -> None:
         """Read the names of a place or an object; without any, its key."""
         texts = self._texts(node) if node is not None else {ANY: [(name, None)]}
-        said = self._said.setdefault(slot, {})
-        for language, each in texts.items():
-            said[language] = (*said.get(language, ()), *(text for text, _ in each))
-            for text, where in each:
+        spoken = self._slot_values.setdefault(slot, {})
+        for language, names in texts.items():
+            spoken[language] = (*spoken.get(language, ()), *(text for text, _ in names))
+            for text, where in names:
                 words = words_of(text)
                 other = self._names[slot].setdefault(words, name)
                 if other != name:
                     message = phrase("'{text}' is also a name of '{other}'", text=text, other=other)
                     raise self._error("VOICE304", message, where)
 
-    def _add_said(self, slot: str, node: yaml.Node, top: Keys) -> None:
+    def _add_slot_values(self, slot: str, node: yaml.Node, top: Keys) -> None:
         if slot not in SAYABLE:
             raise top.error(
                 phrase("there is no quantity slot '{slot}'", slot=slot), node, did_you_mean(slot, list(SAYABLE))
             )
-        for language, each in self._texts(node).items():
-            for text, where in each:
+        for language, entries in self._texts(node).items():
+            for text, where in entries:
                 if quantity(slot, words_of(text)) is None:
                     raise self._document.error(phrase("'{text}' is not a value of {slot}", text=text, slot=slot), where)
             usual = SAYABLE[slot].get(language, ())
-            self._said.setdefault(slot, dict(SAYABLE[slot]))[language] = (*usual, *(text for text, _ in each))
+            self._slot_values.setdefault(slot, dict(SAYABLE[slot]))[language] = (*usual, *(text for text, _ in entries))
 
     def _command(self, intent: str, node: yaml.Node, places: Mapping[str, Place]) -> Command:
         what = phrase("the command '{intent}'", intent=intent)
@@ -136,7 +136,7 @@ class _Reader:
         return self._one_text(node)
 
     def _one_text(self, node: yaml.Node | None) -> dict[str, str]:
-        return {} if node is None else {name: each[0][0] for name, each in self._texts(node).items() if each}
+        return {} if node is None else {name: entries[0][0] for name, entries in self._texts(node).items() if entries}
 
     def _phrases(
         self, node: yaml.Node | None, slots: Sequence[str], intent: str = ""

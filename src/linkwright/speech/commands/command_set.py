@@ -132,15 +132,15 @@ class CommandSet:
 
     def phrases(self, language: str) -> tuple[str, ...]:
         """All phrases of a language, for `EngineOptions`."""
-        said = self._said(language)
-        return tuple(dict.fromkeys(text for template in self._templates(language) for text in template.spoken(said)))
+        values = self._slot_values(language)
+        return tuple(dict.fromkeys(text for template in self._templates(language) for text in template.spoken(values)))
 
     def phrase_count(self, language: str) -> int:
         """The number of phrases in a language, without making them."""
-        said = self._said(language)
-        return sum(prod(len(said[slot]) for slot in template.slots) for template in self._templates(language))
+        values = self._slot_values(language)
+        return sum(prod(len(values[slot]) for slot in template.slots) for template in self._templates(language))
 
-    def _said(self, language: str) -> dict[str, tuple[str, ...]]:
+    def _slot_values(self, language: str) -> dict[str, tuple[str, ...]]:
         """The values of each slot, as they are said."""
         return {
             slot: tuple(text for name in (language, ANY) for text in texts.get(name, ()))

@@ -52,13 +52,13 @@ class Template:
         """The values of the slots; None if the words do not match."""
         return self._rest(words, 0, names)
 
-    def spoken(self, said: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    def spoken(self, values: Mapping[str, Sequence[str]]) -> Iterator[str]:
         """Yield all phrases of the template, with all values of its slots.
 
         Args:
-            said: slot -> its possible values.
+            values: slot -> its possible values.
         """
-        for chosen in product(*(said.get(slot, ()) for slot in self.slots)):
+        for chosen in product(*(values.get(slot, ()) for slot in self.slots)):
             text = self.text
             for slot, value in zip(self.slots, chosen, strict=True):
                 text = text.replace(f"{{{slot}}}", value)
@@ -117,4 +117,4 @@ def _without_brackets(text: str) -> list[str]:
     if match is None:
         return [text]
     before, after = text[: match.start()], _without_brackets(text[match.end() :])
-    return [before + said + rest for said in (*match[1].split("|"), "") for rest in after]
+    return [before + alternative + rest for alternative in (*match[1].split("|"), "") for rest in after]

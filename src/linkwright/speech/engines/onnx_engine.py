@@ -49,12 +49,12 @@ class OnnxEngine(SpeechEngine):
         self._input, self._length, self._names = _form(self._session, options.model)
         self._phrases = {_plain(phrase): phrase for phrase in options.phrases}
         self._frames, self._activity = MelFrames(), VoiceActivity()
-        self._kept: Samples = np.zeros(0, np.int16)
+        self._buffer: Samples = np.zeros(0, np.int16)
         self._heard = 0  # samples
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
         """Process a block. There are no partial results: the network runs when an utterance is over."""
-        self._kept = np.concatenate((self._kept, samples))[-_LONGEST:]
+        self._buffer = np.concatenate((self._buffer, samples))[-_LONGEST:]
         self._heard += len(samples)
         found: list[Heard] = []
         for frame in self._frames.feed(samples):
@@ -63,7 +63,7 @@ class OnnxEngine(SpeechEngine):
             if spoke and not speaks:
                 found += self._end()
             elif not spoke and not speaks:
-                self._kept = self._kept[-_BEFORE - len(samples) :]
+                self._buffer = self._buffer[-_BEFORE - len(samples) :]
         return found
 
     def finish(self) -> Sequence[Heard]:
@@ -74,29 +74,29 @@ class OnnxEngine(SpeechEngine):
         return self._end()
 
     def _end(self) -> list[Heard]:
-        said = self._kept[: max(1, len(self._kept) - self._activity.quiet_frames * HOP)]
-        end = (self._heard - len(self._kept) + len(said)) / RATE
-        scores = self._session.run(None, {self._input: _fitted(said, self._length)[None]})[0][0]
+        utterance = self._buffer[: max(1, len(self._buffer) - self._activity.quiet_frames * HOP)]
+        end = (self._heard - len(self._buffer) + len(utterance)) / RATE
+        scores = self._session.run(None, {self._input: _fitted(utterance, self._length)[None]})[0][0]
         chances = _probabilities(np.asarray(scores, np.float64))
         best = int(np.argmax(chances))
         name, probability = self._names[best], float(chances[best])
         text = self._phrases.get(_plain(name), "") if probability >= LEAST_PROBABILITY else ""
-        self._kept = self._kept[-_BEFORE:]
-        return [Heard(text, probability, True, max(0.0, end - len(said) / RATE), end)]
+        self._buffer = self._buffer[-_BEFORE:]
+        return [Heard(text, probability, True, max(0.0, end - len(utterance) / RATE), end)]
 
 
 def _plain(text: str) -> str:
     return " ".join(text.replace("_", " ").lower().split())
 
 
-def _fitted(said: Samples, length: int) -> NDArray[np.float32]:
+def _fitted(utterance: Samples, length: int) -> NDArray[np.float32]:
     """Sound of a length: the middle of it, or all of it with silence on both sides."""
-    first = (len(said) - length) // 2
+    first = (len(utterance) - length) // 2
     whole: NDArray[np.float32] = np.zeros(length, np.float32)
     if first >= 0:
-        whole[:] = said[first : first + length] / _FULL
+        whole[:] = utterance[first : first + length] / _FULL
     else:
-        whole[-first : -first + len(said)] = said / _FULL
+        whole[-first : -first + len(utterance)] = utterance / _FULL
     return whole
 
 
@@ -136,7 +136,7 @@ def _names(text: str) -> tuple[str, ...]:
     try:
         found = json.loads(text)
     except json.JSONDecodeError:
-        found = [each.strip() for each in text.split(",") if each.strip()]
+        found = [name.strip() for name in text.split(",") if name.strip()]
     if isinstance(found, dict):
         try:
             found = [found[key] for key in sorted(found, key=int)]

@@ -41,16 +41,16 @@ class Phrasing:
         """
         found: dict[Words, str] = {}
         missing: dict[str, None] = {}
-        for each in phrases:
+        for text in phrases:
             words: list[str] = []
-            for word in each.split():
+            for word in text.split():
                 known = _known(word, knows)
                 if known is None:
                     missing[word] = None
                 else:
                     words += known
             if words:
-                found.setdefault(tuple(words), each)
+                found.setdefault(tuple(words), text)
         if missing:
             message = phrase("'{model}' does not know {words}", model=model, words=quoted_names(missing))
             hint = phrase("use other words, or the engine 'enrolled', which needs no vocabulary")
@@ -79,9 +79,9 @@ class Phrasing:
 
 def _known(word: str, knows: Callable[[str], bool]) -> list[str] | None:
     """The words of a vocabulary that make up a word."""
-    for each in (word, word.lower()):
-        if knows(each):
-            return [each]
+    for spelling in (word, word.lower()):
+        if knows(spelling):
+            return [spelling]
     if word.isascii():
         return None
     best: list[list[str] | None] = [[]]

@@ -70,7 +70,7 @@ class PocketsphinxEngine(SpeechEngine):
         found: list[Heard] = []
         while len(self._waiting) >= size:
             frame, self._waiting = self._waiting[:size], self._waiting[size:]
-            found += self._take(self._endpointer.process(frame))
+            found += self._decode(self._endpointer.process(frame))
         if self._speaking:
             found += self._changed()
         return found
@@ -78,14 +78,14 @@ class PocketsphinxEngine(SpeechEngine):
     def finish(self) -> Sequence[Heard]:
         """End the utterance."""
         rest, self._waiting = self._waiting or b"\0\0", b""  # it takes no end without a sample
-        found = self._take(self._endpointer.end_stream(rest)) if self._endpointer.in_speech else []
+        found = self._decode(self._endpointer.end_stream(rest)) if self._endpointer.in_speech else []
         return [*found, *self._end()]
 
     def close(self) -> None:
         """End an unfinished utterance."""
         self._end()
 
-    def _take(self, speech: bytes | None) -> list[Heard]:
+    def _decode(self, speech: bytes | None) -> list[Heard]:
         """Decode the part that the endpointer takes for speech."""
         if speech is None:
             return []
@@ -121,11 +121,11 @@ class PocketsphinxEngine(SpeechEngine):
 
     def _confidence(self) -> float:
         """The confidence: the score of the words beside that of the best phones in any order."""
-        spoken = [each for each in self._decoder.seg() or () if not each.word.startswith(_FILLERS)]
-        frames = sum(each.end_frame - each.start_frame + 1 for each in spoken)
+        spoken = [segment for segment in self._decoder.seg() or () if not segment.word.startswith(_FILLERS)]
+        frames = sum(segment.end_frame - segment.start_frame + 1 for segment in spoken)
         if not frames:
             return 0.0
-        fit = sum(math.log(max(each.ascore, _LEAST)) for each in spoken) / frames
+        fit = sum(math.log(max(segment.ascore, _LEAST)) for segment in spoken) / frames
         return 1.0 / (1.0 + math.exp(_USUAL_FIT - fit))
 
 

@@ -51,13 +51,13 @@ class EnrolledEngine(SpeechEngine):
         self._problem: Diagnostic | None = None
         self._recogniser: Recogniser | None = None
         if self._stamp is not None:
-            self._take(Words.read(self._path))
+            self._use(Words.read(self._path))
         else:
             self._nothing_enrolled()
         self._frames = MelFrames()
         self._activity = VoiceActivity()
         self._earlier: Powers = np.zeros((0, BANDS))
-        self._kept: Powers = np.zeros((0, BANDS))
+        self._buffer: Powers = np.zeros((0, BANDS))
         self._seen = 0
         self._looked = 0
         self._partial: str | None = None
@@ -75,7 +75,7 @@ class EnrolledEngine(SpeechEngine):
             spoke = self._activity.speaking
             speaks = self._activity.step(frame)
             self._seen += 1
-            self._keep(frame, speaks or spoke)
+            self._store(frame, speaks or spoke)
             if spoke and not speaks:
                 heard += self._end()
         if self._activity.speaking and self._seen - self._looked >= _STEP:
@@ -86,12 +86,12 @@ class EnrolledEngine(SpeechEngine):
         """See `SpeechEngine.finish`."""
         return self._end() if self._activity.speaking else []
 
-    def _keep(self, frame: NDArray[np.float64], speech: bool) -> None:
+    def _store(self, frame: NDArray[np.float64], speech: bool) -> None:
         most = self._most() if speech else _BEFORE
-        kept = np.concatenate((self._kept, frame[None]))
+        kept = np.concatenate((self._buffer, frame[None]))
         if len(kept) > most:
             self._earlier = np.concatenate((self._earlier, kept[:-most]))[-_EARLIER:]
-        self._kept = kept[-most:]
+        self._buffer = kept[-most:]
 
     def _most(self) -> int:
         longest = self._recogniser.longest if self._recogniser is not None else 100
@@ -105,7 +105,7 @@ class EnrolledEngine(SpeechEngine):
         if guess is None or name is None or name == self._partial:
             return []
         self._partial = name
-        return [self._heard(name, guess, final=False)]
+        return [self._result(name, guess, final=False)]
 
     def _end(self) -> list[Heard]:
         """End the utterance."""
@@ -113,17 +113,17 @@ class EnrolledEngine(SpeechEngine):
         self._activity.end()
         name = self._name(guess)
         self._partial = None
-        heard = self._heard(name or "", guess, final=True)
-        self._kept, self._earlier = self._kept[-_BEFORE:], self._earlier[:0]
+        heard = self._result(name or "", guess, final=True)
+        self._buffer, self._earlier = self._buffer[-_BEFORE:], self._earlier[:0]
         return [heard]
 
     def _guess(self) -> Guess | None:
         if self._recogniser is None:
             return None
-        noise = unsteady_noise(np.concatenate((self._earlier, self._kept)), self._activity.floor)
-        if noise is None and len(self._kept) >= self._most():
+        noise = unsteady_noise(np.concatenate((self._earlier, self._buffer)), self._activity.floor)
+        if noise is None and len(self._buffer) >= self._most():
             return None
-        return self._recogniser.guess(self._kept, self._activity.floor if noise is None else noise)
+        return self._recogniser.guess(self._buffer, self._activity.floor if noise is None else noise)
 
     def _name(self, guess: Guess | None) -> str | None:
         """The recognised phrase, if any."""
@@ -133,9 +133,9 @@ class EnrolledEngine(SpeechEngine):
             return None
         return self._phrases.get(_plain(guess.name))
 
-    def _heard(self, name: str, guess: Guess | None, *, final: bool) -> Heard:
-        begin = self._seen - len(self._kept)
-        first, last = (guess.first, guess.last + 1) if guess is not None else (0, len(self._kept))
+    def _result(self, name: str, guess: Guess | None, *, final: bool) -> Heard:
+        begin = self._seen - len(self._buffer)
+        first, last = (guess.first, guess.last + 1) if guess is not None else (0, len(self._buffer))
         confidence = guess.confidence if guess is not None and name else 0.0
         is_near = guess is not None and not name and guess.confidence >= _NEAR
         nearest = self._phrases.get(_plain(guess.name), "") if guess is not None and is_near else ""
@@ -151,11 +151,11 @@ class EnrolledEngine(SpeechEngine):
             self._nothing_enrolled()
             return
         try:
-            self._take(Words.read(self._path))
+            self._use(Words.read(self._path))
         except LinkwrightError as error:
             self._problem = error.diagnostics[0]
 
-    def _take(self, words: Words) -> None:
+    def _use(self, words: Words) -> None:
         self._problem = None
         self._recogniser = Recogniser(words) if words.names else None
         if self._recogniser is not None:

@@ -102,12 +102,12 @@ def _above(powers: NDArray[np.float64], noise: NDArray[np.float64]) -> NDArray[n
 
 def _unfit(name: str, samples: Samples, first: int, last: int) -> Diagnostic | None:
     """The reason why the sound itself is unusable."""
-    said = samples[first * HOP : (last - 1) * HOP + WINDOW].astype(np.float64) if last > first else np.zeros(0)
+    spoken = samples[first * HOP : (last - 1) * HOP + WINDOW].astype(np.float64) if last > first else np.zeros(0)
     loudest = 0.0
-    if len(said):
-        blocks = said[: max(1, len(said) // (5 * HOP)) * 5 * HOP]
+    if len(spoken):
+        blocks = spoken[: max(1, len(spoken) // (5 * HOP)) * 5 * HOP]
         loudest = max(
-            float(np.sqrt(np.mean(part**2))) for part in np.array_split(blocks, max(1, len(said) // (5 * HOP)))
+            float(np.sqrt(np.mean(part**2))) for part in np.array_split(blocks, max(1, len(spoken) // (5 * HOP)))
         )
     if loudest < _QUIETEST:
         return _refused(
@@ -135,7 +135,7 @@ def _unfit(name: str, samples: Samples, first: int, last: int) -> Diagnostic | N
             ),
             phrase("say the word once, within {seconds} s", seconds=_LONGEST // 100),
         )
-    if np.mean(np.abs(said) >= _CLIPPED_AT) > _CLIPPED_SHARE:
+    if np.mean(np.abs(spoken) >= _CLIPPED_AT) > _CLIPPED_SHARE:
         return _refused(
             "VOICE207",
             phrase("the recording for '{name}' is clipped: its loudest parts are cut off", name=name),

@@ -177,11 +177,11 @@ def _words(document: Any, shown: str) -> dict[str, tuple[Take, ...]]:
             raise _damaged(
                 shown, phrase("the word '{name}' has no takes, or more than {most}", name=name, most=MOST_TAKES)
             )
-        found[name] = tuple(_take(take, name, shown) for take in takes)
+        found[name] = tuple(_read_take(take, name, shown) for take in takes)
     return found
 
 
-def _take(take: Any, name: str, shown: str) -> Take:
+def _read_take(take: Any, name: str, shown: str) -> Take:
     try:
         frames, noise = (
             np.frombuffer(base64.b64decode(take[key], validate=True), np.uint8) for key in ("frames", "noise")

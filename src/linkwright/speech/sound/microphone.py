@@ -31,7 +31,7 @@ class Microphone:
     def __init__(self, device: str, block: int, heard: Callable[[Samples], None]) -> None:
         sounddevice = _library()
         chosen: int | str | None = int(device) if device.isdigit() else device or None
-        self._heard = heard
+        self._on_samples = heard
         self._resampler: Resampler | None = None
         try:
             rate = self._rate_of(sounddevice, chosen)
@@ -41,7 +41,7 @@ class Microphone:
                 blocksize=block * rate // RATE,
                 channels=1,
                 dtype="int16",
-                callback=self._take,
+                callback=self._receive,
             )
             self._stream.start()
         except (sounddevice.PortAudioError, ValueError, OSError) as error:
@@ -66,9 +66,9 @@ class Microphone:
             return rate
         return RATE
 
-    def _take(self, data: Any, _frames: int, _time: Any, _status: Any) -> None:
+    def _receive(self, data: Any, _frames: int, _time: Any, _status: Any) -> None:
         samples: Samples = np.array(data[:, 0], dtype=np.int16)
-        self._heard(samples if self._resampler is None else self._resampler.feed(samples / _FULL))
+        self._on_samples(samples if self._resampler is None else self._resampler.feed(samples / _FULL))
 
 
 def _library() -> Any:

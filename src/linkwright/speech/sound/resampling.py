@@ -41,7 +41,7 @@ class Resampler:
         table = cutoff * np.sinc(cutoff * offsets) * window
         self._table = table / table.sum(axis=1, keepdims=True)
         self._half = half
-        self._kept: NDArray[np.float64] = np.zeros(half - 1)
+        self._buffer: NDArray[np.float64] = np.zeros(half - 1)
         self._position = 0  # of the next output, in 1/up of an input sample, counted from the first that is kept
 
     def feed(self, values: NDArray[np.floating]) -> Samples:
@@ -49,18 +49,18 @@ class Resampler:
 
         They come late by the half of the filter: 2 ms and less at usual rates; `flush` gives the rest.
         """
-        self._kept = np.concatenate((self._kept, np.asarray(values, dtype=np.float64)))
+        self._buffer = np.concatenate((self._buffer, np.asarray(values, dtype=np.float64)))
         taps = self._table.shape[1]
-        ready = (len(self._kept) - taps) * self._up
+        ready = (len(self._buffer) - taps) * self._up
         count = max(0, (ready - self._position) // self._down + 1)
         found = np.empty(count)
-        windows = np.lib.stride_tricks.sliding_window_view(self._kept, taps) if count else self._kept[None]
+        windows = np.lib.stride_tricks.sliding_window_view(self._buffer, taps) if count else self._buffer[None]
         for first in range(0, count, _AT_ONCE):
             at = self._position + self._down * np.arange(first, min(count, first + _AT_ONCE))
             found[first : first + len(at)] = np.einsum("ij,ij->i", windows[at // self._up], self._table[at % self._up])
         self._position += count * self._down
-        passed = min(self._position // self._up, len(self._kept))
-        self._kept = self._kept[passed:]
+        passed = min(self._position // self._up, len(self._buffer))
+        self._buffer = self._buffer[passed:]
         self._position -= passed * self._up
         return to_samples(found)
 

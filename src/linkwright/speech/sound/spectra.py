@@ -34,7 +34,7 @@ class MelFrames:
     """Computes the frames of a stream from blocks of any length."""
 
     def __init__(self) -> None:
-        self._kept: NDArray[np.float64] = np.zeros(0)
+        self._buffer: NDArray[np.float64] = np.zeros(0)
         self._last = 0.0
 
     def feed(self, samples: Samples) -> Powers:
@@ -46,13 +46,13 @@ class MelFrames:
         emphasised[0] -= _PRE_EMPHASIS * self._last
         emphasised[1:] -= _PRE_EMPHASIS * values[:-1]
         self._last = float(values[-1])
-        self._kept = np.concatenate((self._kept, emphasised))
-        count = (len(self._kept) - WINDOW) // HOP + 1
+        self._buffer = np.concatenate((self._buffer, emphasised))
+        count = (len(self._buffer) - WINDOW) // HOP + 1
         if count <= 0:
             return np.zeros((0, BANDS))
-        frames = np.lib.stride_tricks.sliding_window_view(self._kept, WINDOW)[: (count - 1) * HOP + 1 : HOP]
+        frames = np.lib.stride_tricks.sliding_window_view(self._buffer, WINDOW)[: (count - 1) * HOP + 1 : HOP]
         spectrum = np.abs(np.fft.rfft(frames * _SHAPE, _FFT)) ** 2
-        self._kept = self._kept[count * HOP :]
+        self._buffer = self._buffer[count * HOP :]
         powers: Powers = spectrum @ _FILTERS
         return powers
 

@@ -77,7 +77,7 @@ class _Ground:
         beyond = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half
         return not (beyond < 0.0).all(axis=2).any()
 
-    def take(self, x: float, y: float, radius: float) -> None:
+    def occupy(self, x: float, y: float, radius: float) -> None:
         """Occupy a circle."""
         self._discs.append((x, y, radius))
 
@@ -100,7 +100,7 @@ def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> S
     x, y, heading = _camera_place(stage, ground, generator)
     height = stage.floor + (exp(generator.uniform(log(0.08), log(0.8))) if generator.random() < 0.7 else
                             generator.uniform(0.6, 2.5))  # fmt: skip
-    ground.take(x, y, _ROOM)
+    ground.occupy(x, y, _ROOM)
     shown, target = [], None
     for prop in _chosen(stage, options, generator):
         place = _free_place(stage, ground, prop.radius, (x, y, heading), field, generator, _reach(prop, focal, options))
@@ -144,7 +144,7 @@ def _camera_place(stage: Stage, ground: _Ground, generator: np.random.Generator)
     least, greatest = stage.area
     x = y = heading = 0.0
     for _ in range(_TRIES):
-        x, y = (float(each) for each in generator.uniform(least, greatest))
+        x, y = (float(coordinate) for coordinate in generator.uniform(least, greatest))
         heading = float(generator.uniform(-pi, pi))
         ahead = generator.uniform(0.8, 2.5)
         free = (ground.is_free(x + share * ahead * cos(heading), y + share * ahead * sin(heading), _ROOM)
@@ -203,7 +203,7 @@ def _free_place(
         inside = bool((least < place).all() and (place < greatest).all())
         in_view = hidden or ground.is_open((x, y), place)
         if inside and in_view and ground.is_free(*place, radius):
-            ground.take(*place, radius)
+            ground.occupy(*place, radius)
             return place
     return None
 

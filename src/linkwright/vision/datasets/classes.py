@@ -110,9 +110,9 @@ def usual_rules(simulations: list[Simulation]) -> ClassRules:
     """
     patterns: dict[str, set[str]] = {}
     for simulation in simulations:
-        for name, each in simulation.scene.models.items():
-            if not _is_background(simulation, name, each.model):
-                patterns.setdefault(usual_class(own_name(each.model)), set()).update((name, own_name(each.model)))
+        for name, model in simulation.scene.models.items():
+            if not _is_background(simulation, name, model.model):
+                patterns.setdefault(usual_class(own_name(model.model)), set()).update((name, own_name(model.model)))
     return ClassRules({name: tuple(sorted(found)) for name, found in sorted(patterns.items())})
 
 

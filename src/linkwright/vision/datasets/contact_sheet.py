@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from io import BytesIO
 
-from linkwright.vision.datasets.making import Taken
+from linkwright.vision.datasets.making import LabelledImage
 
 _COLUMNS, _WIDTH = 5, 320
 MOST = 30
@@ -14,7 +14,7 @@ _COLOURS = ("#ffdc00", "#00d5ff", "#ff5ec4", "#7dff5c", "#ff8a3c", "#b09bff", "#
 _IGNORED = "#808080"
 
 
-def contact_sheet(images: Sequence[Taken], classes: Sequence[str]) -> bytes:
+def contact_sheet(images: Sequence[LabelledImage], classes: Sequence[str]) -> bytes:
     """Return a JPEG of the first `MOST` images, with the class and the visible box of each object.
 
     Objects that are too little visible for a label have grey boxes.

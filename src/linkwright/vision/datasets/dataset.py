@@ -12,13 +12,13 @@ from typing import Any
 from linkwright._version import __version__
 from linkwright.vision.datasets.contact_sheet import MOST, contact_sheet
 from linkwright.vision.datasets.folder import SHEET, DatasetFolder, cannot_write
-from linkwright.vision.datasets.making import CHAPTER, Source, Studio, Taken
-from linkwright.vision.datasets.workers import take_in_processes
+from linkwright.vision.datasets.making import CHAPTER, LabelledImage, Source, Studio
+from linkwright.vision.datasets.workers import make_in_processes
 from linkwright.whole_files import write_whole_file
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class DatasetResult:
     """The result of making a dataset.
 
     Attributes:
@@ -43,7 +43,7 @@ def make_dataset(
     append: bool = False,
     progress: Callable[[int], object] = lambda _: None,
     begin: Callable[[Studio], object] = lambda _: None,
-) -> Made:
+) -> DatasetResult:
     """Make a dataset.
 
     Args:
@@ -68,8 +68,8 @@ def make_dataset(
         card = _card(source, studio)
         numbers = range(folder.first, folder.first + images)
         alone = workers == 1 or images <= CHAPTER
-        taking = map(studio.take, numbers) if alone else take_in_processes(source, numbers, workers)
-        shown: list[Taken] = []
+        taking = map(studio.make, numbers) if alone else make_in_processes(source, numbers, workers)
+        shown: list[LabelledImage] = []
         added, interrupted, wrong = 0, False, None
         try:
             for taken in _each(taking):
@@ -90,10 +90,10 @@ def make_dataset(
         write_whole_file(path / SHEET, contact_sheet(shown, studio.classes))
     except OSError as error:
         raise cannot_write(path, error) from None
-    return Made(folder, added, interrupted)
+    return DatasetResult(folder, added, interrupted)
 
 
-def _each(taking: Iterator[Taken]) -> Iterator[Taken]:
+def _each(taking: Iterator[LabelledImage]) -> Iterator[LabelledImage]:
     """Iterate images, and close their source at the end."""
     try:
         yield from taking

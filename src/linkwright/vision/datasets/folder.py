@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
-from linkwright.vision.datasets.making import Taken
+from linkwright.vision.datasets.making import LabelledImage
 from linkwright.vision.datasets.options import SPLITS
 from linkwright.vision.datasets.statistics import ClassStatistics, statistics_of
 from linkwright.whole_files import write_whole_file
@@ -60,7 +60,7 @@ class DatasetFolder:
 
     def statistics(self) -> dict[str, ClassStatistics]:
         """The statistics of the images, by class."""
-        annotations = [each for split in SPLITS for each in self._annotations[split]]
+        annotations = [annotation for split in SPLITS for annotation in self._annotations[split]]
         return statistics_of(self._classes, self._size, annotations)
 
     def open(self, *, force: bool = False, append: bool = False) -> None:
@@ -77,7 +77,7 @@ class DatasetFolder:
         try:
             there = self.path.exists() and (not self.path.is_dir() or any(self.path.iterdir()))
             if there and append:
-                self._take_up()
+                self._read_existing()
             elif there and not (force and (self.path / CARD).is_file()):
                 raise _occupied(self.path, is_dataset=(self.path / CARD).is_file())
             elif there:
@@ -88,7 +88,7 @@ class DatasetFolder:
         except OSError as error:
             raise cannot_write(self.path, error) from None
 
-    def add(self, taken: Taken) -> None:
+    def add(self, taken: LabelledImage) -> None:
         """Write an image and its labels, both or neither.
 
         Raises:
@@ -144,7 +144,7 @@ class DatasetFolder:
             "splits": splits,
             "formats": list(self._formats),
             "made": [*self._runs, made],
-            "statistics": {name: asdict(each) for name, each in self.statistics().items()},
+            "statistics": {name: asdict(facts) for name, facts in self.statistics().items()},
         }
         if "coco" in self._formats:
             (self.path / "annotations").mkdir(exist_ok=True)
@@ -161,12 +161,12 @@ class DatasetFolder:
         write_whole_file(self.path / name, text + "\n")
 
     def _coco(self, split: str, card: Mapping[str, Any]) -> dict[str, Any]:
-        annotations = sorted(self._annotations[split], key=lambda each: int(each["image_id"]))
+        annotations = sorted(self._annotations[split], key=lambda entry: int(entry["image_id"]))
         return {
             "info": {"description": "made by linkwright dataset", "version": card["version"]},
             "licenses": [],
-            "images": sorted(self._images[split], key=lambda each: int(each["id"])),
-            "annotations": [{"id": number, **each} for number, each in enumerate(annotations, start=1)],
+            "images": sorted(self._images[split], key=lambda entry: int(entry["id"])),
+            "annotations": [{"id": number, **entry} for number, entry in enumerate(annotations, start=1)],
             "categories": [
                 {"id": number, "name": name, "supercategory": "object"}
                 for number, name in enumerate(self._classes, start=1)
@@ -179,7 +179,7 @@ class DatasetFolder:
         lines += ["names:", *(f"  {number}: {json.dumps(name)}" for number, name in enumerate(self._classes))]
         return "\n".join(lines) + "\n"
 
-    def _take_up(self) -> None:
+    def _read_existing(self) -> None:
         """Read an existing dataset."""
         shown = display_path(self.path)
         try:
@@ -199,7 +199,8 @@ class DatasetFolder:
         for split, written in lists.items():
             self._images[split] = written["images"]
             self._annotations[split] = [
-                {key: value for key, value in each.items() if key != "id"} for each in written["annotations"]
+                {key: value for key, value in annotation.items() if key != "id"}
+                for annotation in written["annotations"]
             ]
         self._runs = card["made"]
         numbers = [image["id"] for images in self._images.values() for image in images]
@@ -210,12 +211,12 @@ class DatasetFolder:
         newest = sorted(image["id"] for images in self._images.values() for image in images)[-count:]
         gone = set(newest)
         for split in SPLITS:
-            files = [each["file_name"] for each in self._images[split] if each["id"] in gone]
+            files = [entry["file_name"] for entry in self._images[split] if entry["id"] in gone]
             for name in files:
                 text = self.path / "labels" / split / f"{Path(name).stem}.txt"
                 _remove([self.path / "images" / split / name, text])
-            self._images[split] = [each for each in self._images[split] if each["id"] not in gone]
-            self._annotations[split] = [each for each in self._annotations[split] if each["image_id"] not in gone]
+            self._images[split] = [entry for entry in self._images[split] if entry["id"] not in gone]
+            self._annotations[split] = [entry for entry in self._annotations[split] if entry["image_id"] not in gone]
 
     def _remove(self) -> None:
         """Remove the files of a dataset, and leave everything else."""
@@ -224,7 +225,7 @@ class DatasetFolder:
         _remove([self.path / name for name in _FILES])
 
 
-def _yolo(taken: Taken, width: int, height: int) -> str:
+def _yolo(taken: LabelledImage, width: int, height: int) -> str:
     lines = []
     for label in taken.labels:
         if not label.ignored:
@@ -235,7 +236,7 @@ def _yolo(taken: Taken, width: int, height: int) -> str:
     return "".join(lines)
 
 
-def _coco(taken: Taken, width: int, height: int) -> list[dict[str, Any]]:
+def _coco(taken: LabelledImage, width: int, height: int) -> list[dict[str, Any]]:
     found = []
     for label in taken.labels:
         left, top, right, bottom = label.box

@@ -26,9 +26,9 @@ def light(stage: Stage, generator: np.random.Generator) -> None:
     for number in range(int(generator.integers(1, 4))):
         share = 1.0 if number == 0 else 0.5
         colour = _tinted(generator, 0.25) * generator.uniform(0.3, 1.0) * share
-        red, green, blue = (float(each) for each in colour)
+        red, green, blue = (float(channel) for channel in colour)
         diffuse = red, green, blue, 1.0
-        across, along, down = (float(each) for each in generator.normal(size=3))
+        across, along, down = (float(component) for component in generator.normal(size=3))
         direction = across, along, -abs(down) - 0.2
         lights.append(Light(f"light {number}", "directional", diffuse=diffuse, direction=direction))
     ambient = _tinted(generator, 0.15) * generator.uniform(0.1, 0.55)
@@ -42,7 +42,7 @@ def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
         textured = generator.random() < 0.3
         number = int(generator.integers(1 << 16))
         for geom in prop.geoms:
-            own = tuple(float(each) for each in stage.colour_of(geom)[:3])
+            own = tuple(float(channel) for channel in stage.colour_of(geom)[:3])
             if own not in groups:
                 groups[own] = _recoloured(own, way, generator)
             if not stage.has_image(geom):

@@ -49,7 +49,7 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class LabelledImage:
     """An image with its labels.
 
     Attributes:
@@ -85,9 +85,9 @@ class Studio:
         self._options = source.options
         self._image = _pillow()
         loaded = [load_world(name) for name in source.worlds]
-        self.worlds = tuple(each.path for each in loaded)
+        self.worlds = tuple(world.path for world in loaded)
         added = [_model_of(Path(path)) for path in source.added]
-        simulations = [Simulation(each.world, each.finder) for each in loaded]
+        simulations = [Simulation(world.world, world.finder) for world in loaded]
         for simulation in simulations:
             for model in added:
                 simulation.spawn(model, _free_name(model.name, simulation))
@@ -109,7 +109,7 @@ class Studio:
         self._chapters: dict[int, int] = {}
         self._camera = Camera()
 
-    def take(self, index: int) -> Taken:
+    def make(self, index: int) -> LabelledImage:
         """Make an image."""
         options, which = self._options, index % len(self._stages)
         stage, chapter = self._stages[which], index // CHAPTER
@@ -132,7 +132,7 @@ class Studio:
             backdrop(colour, image.geoms, generator)
         if "lens" not in options.kept:
             colour = self._camera.develop(colour, generator)
-        return Taken(index, split_of(index, options), self._encoded(colour, generator), tuple(labels))
+        return LabelledImage(index, split_of(index, options), self._encoded(colour, generator), tuple(labels))
 
     def close(self) -> None:
         """Release the renderers."""

@@ -341,5 +341,5 @@ def _prop(model: Any, scene_object: SceneObject, facts: _Facts) -> Prop:
 
 
 def _colour(colour: Array) -> tuple[float, float, float, float]:
-    red, green, blue = (float(each) for each in colour)
+    red, green, blue = (float(channel) for channel in colour)
     return red, green, blue, 1.0

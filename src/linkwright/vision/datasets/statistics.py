@@ -75,8 +75,8 @@ def as_table(statistics: Mapping[str, ClassStatistics]) -> str:
     """Format statistics as lines of text."""
     titles = ("class", "objects", "images", "small", "medium", "large", "hidden", "truncated", "ignored")
     rows: list[tuple[str, ...]] = [titles]
-    for name, each in statistics.items():
-        rows.append((name, *(str(getattr(each, title)) for title in titles[1:])))
+    for name, facts in statistics.items():
+        rows.append((name, *(str(getattr(facts, title)) for title in titles[1:])))
     widths = [max(len(row[column]) for row in rows) for column in range(len(titles))]
     lines = [
         "  ".join(

@@ -13,13 +13,13 @@ from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.vision.datasets.making import CHAPTER, Source, Studio, Taken
+from linkwright.vision.datasets.making import CHAPTER, LabelledImage, Source, Studio
 
 _PATIENCE = 10.0
 """Seconds that a process has to exit before it is killed."""
 
 
-def take_in_processes(source: Source, numbers: range, workers: int) -> Iterator[Taken]:
+def make_in_processes(source: Source, numbers: range, workers: int) -> Iterator[LabelledImage]:
     """Make images in several processes.
 
     Args:
@@ -39,17 +39,17 @@ def take_in_processes(source: Source, numbers: range, workers: int) -> Iterator[
         started += [_Worker(source) for _ in range(min(workers, len(waiting)))]
         busy = {worker.connection: worker for worker in started}
         for worker in started:
-            worker.take(waiting.popleft())
+            worker.assign(waiting.popleft())
         while busy:
             for ready in wait(list(busy)):
                 worker = busy[ready]  # type: ignore[index]  # connections only were waited for
                 taken = worker.result()
-                if isinstance(taken, Taken):
+                if isinstance(taken, LabelledImage):
                     yield taken
                     worker.left -= 1
                 if not worker.left:
                     if waiting:
-                        worker.take(waiting.popleft())
+                        worker.assign(waiting.popleft())
                     else:
                         del busy[worker.connection]
     finally:
@@ -79,27 +79,27 @@ class _Worker:
             signal.signal(signal.SIGINT, before)
         theirs.close()
 
-    def take(self, numbers: range) -> None:
+    def assign(self, numbers: range) -> None:
         """Assign numbers of images."""
         self.left = len(numbers)
         with suppress(OSError):  # it has died, which `result` reports
             self.connection.send(numbers)
 
-    def result(self) -> Taken:
+    def result(self) -> LabelledImage:
         """Return the next image.
 
         Raises:
             LinkwrightError: the error of the process; VISION208 it has died.
         """
         try:
-            said = self.connection.recv()
+            reply = self.connection.recv()
         except (EOFError, OSError):
             message = phrase("a process that renders images has died")
             hint = phrase("if memory is short, use fewer processes: --workers 1")
             raise LinkwrightError(Diagnostic("VISION208", message, hint=hint)) from None
-        if isinstance(said, Taken):
-            return said
-        raise LinkwrightError(*said)
+        if isinstance(reply, LabelledImage):
+            return reply
+        raise LinkwrightError(*reply)
 
     def stop(self) -> None:
         """Kill the process."""
@@ -125,7 +125,7 @@ def _serve(source: Source, connection: Connection) -> None:
             return
         while True:
             for number in connection.recv():
-                connection.send(studio.take(number))
+                connection.send(studio.make(number))
 
 
 def _end_with_parent() -> None:

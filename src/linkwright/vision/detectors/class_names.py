@@ -82,6 +82,6 @@ def _in_order(found: Any) -> tuple[str, ...] | None:
         found = [numbered[index] for index in range(len(found))]
     if not isinstance(found, Sequence) or isinstance(found, str | bytes) or not found:
         return None
-    if not all(isinstance(each, str | int | float) for each in found):
+    if not all(isinstance(name, str | int | float) for name in found):
         return None
     return tuple(map(str, found))

@@ -20,9 +20,9 @@ _LEAST_TEXT = 9
 
 def colour_of(name: str) -> tuple[int, int, int]:
     """Red, green and blue of a class: the colour in its name, else one that is always the same for a name."""
-    told = paint_of(name)
-    if told is not None:
-        return told
+    paint = paint_of(name)
+    if paint is not None:
+        return paint
     hue = crc32(name.encode()) % _HUES / _HUES * 6.0
     rising = hue % 1.0
     high, up, down = 1.0, rising, 1.0 - rising
@@ -46,7 +46,7 @@ def drawn(image: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
     for index in reversed(range(len(found))):  # the most certain last, so that nothing is drawn over it
         name = found.name(index)
         colour = colour_of(name)
-        left, top, right, bottom = (int(each) for each in np.rint(found.boxes[index]))
+        left, top, right, bottom = (int(edge) for edge in np.rint(found.boxes[index]))
         if found.corners is not None:
             cv2.polylines(canvas, [np.rint(found.corners[index]).astype(np.int32)], True, colour, thick)
         else:

@@ -47,9 +47,9 @@ class EfficientDetDetector(Detector):
             message = phrase("cannot load the network in '{file}': {reason}", file=file, reason=foreign(error))
             raise LinkwrightError(Diagnostic("VISION103", message)) from None
         inputs = self._interpreter.get_input_details()
-        shape = [int(each) for each in inputs[0]["shape"]] if len(inputs) == 1 else []
+        shape = [int(side) for side in inputs[0]["shape"]] if len(inputs) == 1 else []
         if len(shape) != 4 or shape[0] != 1 or shape[3] != 3 or inputs[0]["dtype"] is not np.uint8:
-            shown = ", ".join(f"{np.dtype(each['dtype'])} {list(map(int, each['shape']))}" for each in inputs)
+            shown = ", ".join(f"{np.dtype(entry['dtype'])} {list(map(int, entry['shape']))}" for entry in inputs)
             message = phrase(
                 "the network in '{file}' does not take an image: its inputs are {inputs}", file=file.name, inputs=shown
             )
@@ -93,7 +93,7 @@ def _final_outputs(file: Path, interpreter: Any) -> list[int]:
     if len(last) != 1:
         message = phrase("the network in '{file}' has no final boxes, as EfficientDet-Lite has", file=file.name)
         raise LinkwrightError(Diagnostic("VISION106", message, hint=phrase("export it as ONNX")))
-    return [int(each) for each in last[0]["outputs"]]
+    return [int(output) for output in last[0]["outputs"]]
 
 
 def _names_in(file: Path) -> tuple[str, ...]:

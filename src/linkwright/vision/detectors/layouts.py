@@ -194,4 +194,4 @@ def _possible(shape: Sequence[int], size: tuple[int, int], more: int, *, suppres
     found = [as_columns] if second in places or second > first else []
     if first in triples:
         found.insert(len(found) if second in places else 0, as_rows)
-    return [each for each in found if each[1] >= 1]
+    return [layout for layout in found if layout[1] >= 1]

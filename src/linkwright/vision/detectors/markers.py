@@ -62,7 +62,7 @@ class MarkerDetector(Detector):
         if min(image.shape[:2]) < _SMALLEST_SIDE:
             return Detections.none(self._names)
         corners, numbers, _ = self._detector.detectMarkers(_grey(image))
-        classes = [] if numbers is None else [int(each) for each in np.ravel(numbers)]
+        classes = [] if numbers is None else [int(number) for number in np.ravel(numbers)]
         places = [np.asarray(corner, np.float32).reshape(4, 2) + 0.5 for corner in corners]
         boxes = [_box(place) for place in places]
         return most_certain(boxes, [1.0] * len(classes), classes, self._names, limits, places)
@@ -105,11 +105,11 @@ class QrDetector(Detector):
         grey = _grey(image)
         found, texts, corners, _ = self._detector.detectAndDecodeMulti(grey)
         codes = [np.asarray(corner, np.float32).reshape(4, 2) for corner in corners] if found else []
-        told = [text or self._read(grey, code) for text, code in zip(texts, codes, strict=False)]
-        read = [index for index, text in enumerate(told) if text]
-        names = tuple(dict.fromkeys(told[index] for index in read))
+        decoded = [text or self._read(grey, code) for text, code in zip(texts, codes, strict=False)]
+        read = [index for index, text in enumerate(decoded) if text]
+        names = tuple(dict.fromkeys(decoded[index] for index in read))
         places = [codes[index] + 0.5 for index in read]
-        classes = [names.index(told[index]) for index in read]
+        classes = [names.index(decoded[index]) for index in read]
         return most_certain([_box(place) for place in places], [1.0] * len(read), classes, names, limits, places)
 
     def _read(self, grey: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:

@@ -62,4 +62,8 @@ def _literal(text: str) -> Any:
 
 
 def _are_numbers(found: Any) -> bool:
-    return isinstance(found, list | tuple) and bool(found) and all(isinstance(each, int) and each > 0 for each in found)
+    return (
+        isinstance(found, list | tuple)
+        and bool(found)
+        and all(isinstance(number, int) and number > 0 for number in found)
+    )

@@ -129,8 +129,8 @@ class NetworkDetector(Detector):
             return labels
         if own is not None:
             return own
-        said = self._session.get_modelmeta().custom_metadata_map.get("names")
-        if said:
+        metadata = self._session.get_modelmeta().custom_metadata_map.get("names")
+        if metadata:
             note = phrase(
                 "the names of the classes in '{file}' cannot be read: they are numbered; give a file of labels",
                 file=self._file.name,
@@ -151,7 +151,9 @@ def _image_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floati
         message = phrase("the network in '{file}' takes {count} images at once", file=file.name, count=shape[0])
         raise LinkwrightError(Diagnostic("VISION105", message, hint=phrase("export it with batch 1")))
     if kind is None or len(shape) != 4 or shape[1] != 3:
-        shown = ", ".join(f"{each.type[7:-1]} {list(each.shape)}" for each in inputs) or "none"
+        shown = (
+            ", ".join(f"{network_input.type[7:-1]} {list(network_input.shape)}" for network_input in inputs) or "none"
+        )
         message = phrase(
             "the network in '{file}' does not take an image: its inputs are {inputs}", file=file.name, inputs=shown
         )

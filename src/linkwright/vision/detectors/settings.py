@@ -47,7 +47,8 @@ def hsv_range(name: str, value: object) -> tuple[int, ...]:
     numbers = list(value) if isinstance(value, Sequence) and not isinstance(value, str) else []
     limits = (179, 255, 255) * 2
     if len(numbers) != 6 or not all(
-        isinstance(each, int | float) and 0 <= each <= limit for each, limit in zip(numbers, limits, strict=True)
+        isinstance(component, int | float) and 0 <= component <= limit
+        for component, limit in zip(numbers, limits, strict=True)
     ):
         hint = phrase("it is six numbers: least hue (0 to 179), saturation and value (0 to 255), then the largest")
         raise bad_setting(name, value, hint)

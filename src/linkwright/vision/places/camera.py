@@ -117,7 +117,7 @@ def camera_model(
     if len(k) and k[0] > 0 and k[4] > 0:
         if any(d) and lens not in _LENSES:
             raise ValueError(f"the distortion model '{lens}' is not known; it is one of plumb_bob, rational_polynomial")
-        lens_is = tuple(float(each) for each in d[:_MOST_COEFFICIENTS])
+        lens_is = tuple(float(coefficient) for coefficient in d[:_MOST_COEFFICIENTS])
         return CameraModel(width, height, float(k[0]), float(k[4]), float(k[2]) + _MIDDLE, k[5] + _MIDDLE, lens_is)
     if len(p) and p[0] > 0 and p[5] > 0:
         return CameraModel(width, height, float(p[0]), float(p[5]), float(p[2]) + _MIDDLE, p[6] + _MIDDLE)

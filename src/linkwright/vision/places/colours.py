@@ -51,7 +51,7 @@ def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None
     names = named_colours(sampled)
     counts = np.bincount(names, minlength=len(COLOURS)) / len(names)
     bright = counts.copy()
-    bright[[COLOURS.index(each) for each in ("white", "grey", "black")]] = 0
+    bright[[COLOURS.index(name) for name in ("white", "grey", "black")]] = 0
     best = int(np.argmax(bright))
     if bright[best] >= _LEAST_SHARE:
         return COLOURS[best]

@@ -101,7 +101,7 @@ def place_on_ground(
     Returns:
         None where the ground there cannot be seen: at the horizon and above, or below the image's edge.
     """
-    left, _, right, bottom = (float(each) for each in box)
+    left, _, right, bottom = (float(edge) for edge in box)
     if bottom >= camera.height - _EDGE_PIXELS:
         return None
     foot = camera.rays(np.array([[(left + right) / 2, bottom]]))[0]

@@ -131,9 +131,9 @@ class Tracker:
         scores = detections.scores
         high = [index for index in range(len(detections)) if scores[index] >= settings.high]
         low = [index for index in range(len(detections)) if settings.low <= scores[index] < settings.high]
-        owners = self._take(self._tracks, high, seen)
+        owners = self._correct(self._tracks, high, seen)
         left = [track for track in self._tracks if track.id and track.seen_at != time]
-        owners |= self._take(left, low, seen)
+        owners |= self._correct(left, low, seen)
         self._tracks = [track for track in self._tracks if not self._is_gone(track, time)]
         for index in high:
             if index not in owners and scores[index] >= settings.new:
@@ -145,7 +145,7 @@ class Tracker:
                 track.id = self._last_id
         return [owners[index].id if index in owners else 0 for index in range(len(detections))]
 
-    def _take(self, tracks: Sequence[_Track], candidates: Sequence[int], seen: _Seen) -> dict[int, _Track]:
+    def _correct(self, tracks: Sequence[_Track], candidates: Sequence[int], seen: _Seen) -> dict[int, _Track]:
         """Correct tracks by matching detections; returns them by the detection."""
         owners: dict[int, _Track] = {}
         for row, column in self._pairs(tracks, candidates, seen):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from math import atan2, degrees, hypot
 
-from linkwright.vision.colour_words import SPELLINGS, told_colour, words_of
+from linkwright.vision.colour_words import SPELLINGS, named_colour, words_of
 
 LANGUAGES = ("en", "zh")
 
@@ -86,7 +86,7 @@ _ANSWERS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class ObjectRequest:
     """A requested object.
 
     Attributes:
@@ -117,9 +117,9 @@ class Wanted:
             score: the score of the detection; for a patch of a colour, the share of its box that it fills.
         """
         words = words_of(name)
-        told = told_colour(name)
+        own_colour = named_colour(name)
         rest = " ".join(word for word in words if word not in SPELLINGS)
-        if self.colour is not None and self.colour != (told or colour):
+        if self.colour is not None and self.colour != (own_colour or colour):
             return False
         if not self.noun:
             return True
@@ -150,7 +150,7 @@ def object_name(name: str) -> str:
     return _FIRST.get(singular, singular if singular in _PLURALS.values() else plain)
 
 
-def wanted(text: str) -> Wanted | None:
+def requested(text: str) -> ObjectRequest | None:
     """Parse a request: ``ball``, ``go to the red ball``, ``去红色的球那里``; None for nothing."""
     plain = text.strip().strip(".,!?。，！？").lower()
     if plain.isascii():
@@ -158,12 +158,12 @@ def wanted(text: str) -> Wanted | None:
         words = [word for word in words_of(plain) if word not in _FILLERS]
         colour = next((SPELLINGS[word] for word in words if word in SPELLINGS), None)
         rest = " ".join(word for word in words if word not in SPELLINGS and word not in ("thing", "one"))
-        return Wanted(object_name(rest), colour, " ".join(words)) if colour or rest else None
+        return ObjectRequest(object_name(rest), colour, " ".join(words)) if colour or rest else None
     plain = _CHINESE_VERBS.sub("", plain)
     colour = next((_CHINESE_COLOURS[sign] for sign in plain if sign in _CHINESE_COLOURS), None)
     rest = _CHINESE_FILLERS.sub("", plain)
     rest = "".join(sign for sign in rest if sign not in _CHINESE_COLOURS).replace("东西", "").strip()
-    return Wanted(object_name(rest), colour, re.sub(r"那个|这个|一个|请", "", plain)) if colour or rest else None
+    return ObjectRequest(object_name(rest), colour, re.sub(r"那个|这个|一个|请", "", plain)) if colour or rest else None
 
 
 def described(sightings: Iterable[Sighting], language: str) -> str:
@@ -181,19 +181,19 @@ def described(sightings: Iterable[Sighting], language: str) -> str:
 def named(name: str, colour: str | None, language: str) -> str:
     """An object with its colour: *red ball*, 红色的球."""
     words = [word for word in words_of(name) if word not in SPELLINGS]
-    told = told_colour(name) or colour
+    shown = named_colour(name) or colour
     noun = " ".join(words)
     if language != "zh":
-        return " ".join(filter(None, (told, noun or "thing")))
+        return " ".join(filter(None, (shown, noun or "thing")))
     chinese = _CHINESE.get(object_name(noun), noun) if noun else "东西"
     signs = {english: sign for sign, english in reversed(_CHINESE_COLOURS.items())}
-    return f"{signs[told]}色的{chinese}" if told else chinese
+    return f"{signs[shown]}色的{chinese}" if shown else chinese
 
 
-def answer(event: Answer, request: Wanted, language: str) -> str:
+def answer(event: Answer, request: ObjectRequest, language: str) -> str:
     """The answer to a request; it names the object as it was asked for, or as it is called there."""
-    said = request.text if request.language == language else named(request.noun, request.colour, language)
-    return _ANSWERS[event][language].format(it=said)
+    name = request.text if request.language == language else named(request.noun, request.colour, language)
+    return _ANSWERS[event][language].format(it=name)
 
 
 def _in_english(group: Sequence[Sighting]) -> str:

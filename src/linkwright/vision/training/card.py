@@ -38,11 +38,11 @@ def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination
     """
     lines = [f"# {name}", "", "| | |", "| --- | --- |"]
     lines += [f"| {key} | {_cell(value)} |" for key, value in facts.items()]
-    for each in examinations:
-        origin = [each.origin, ""] if each.origin else []
-        lines += ["", f"## {each.title}", "", *origin, *_figures(each.figures)]
+    for examination in examinations:
+        origin = [examination.origin, ""] if examination.origin else []
+        lines += ["", f"## {examination.title}", "", *origin, *_figures(examination.figures)]
     lines += ["", "## Where it fails", ""]
-    failures = [line for each in examinations for line in _failures(each)]
+    failures = [line for examination in examinations for line in _failures(examination)]
     lines += failures or ["Nothing stands out in these images."]
     return "\n".join(lines) + "\n"
 
@@ -67,12 +67,12 @@ def origin(folder: Path, lesson: Path) -> str:
     making, taught = _making(folder), _making(lesson)
     if making is None:
         return ""
-    told = f"Worlds: {', '.join(sorted(name for name, _ in making.worlds))}. Options: {making.options}."
+    worlds = f"Worlds: {', '.join(sorted(name for name, _ in making.worlds))}. Options: {making.options}."
     if taught is None:
-        return told
+        return worlds
     digests = {digest for _, digest in taught.worlds}
     known = ", ".join(sorted(name for name, digest in making.worlds if digest in digests))
-    return f"{told} {f'It was trained on other images of {known}.' if known else 'It was trained on none of them.'}"
+    return f"{worlds} {f'It was trained on other images of {known}.' if known else 'It was trained on none of them.'}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +88,8 @@ def _making(folder: Path) -> _Making | None:
     """Return the record that `linkwright dataset` wrote; None if there is none."""
     try:
         runs = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))["made"]
-        worlds = {(Path(each["file"]).stem, str(each["sha256"])) for run in runs for each in run["worlds"]}
-        added = {str(each) for run in runs for each in run["added"]}
+        worlds = {(Path(entry["file"]).stem, str(entry["sha256"])) for run in runs for entry in run["worlds"]}
+        added = {str(entry) for run in runs for entry in run["added"]}
         options = [", ".join(f"{key} {value}" for key, value in run["options"].items()) for run in runs]
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
@@ -99,15 +99,15 @@ def _making(folder: Path) -> _Making | None:
 def table(figures: Evaluation) -> list[str]:
     """The figures of all classes, as lines of a Markdown table."""
     lines = ["| class | objects | mAP50 | mAP50-95 | precision | recall |", f"| --- |{' ---: |' * 5}"]
-    lines += [_row(each) for each in figures.classes]
-    objects = sum(each.objects for each in figures.classes)
+    lines += [_row(row) for row in figures.classes]
+    objects = sum(row.objects for row in figures.classes)
     lines.append(f"| all | {objects} | {figures.map50:.3f} | {figures.map:.3f} | | |")
     return lines
 
 
 def confusion(figures: Evaluation) -> list[str]:
     """Return the confusion matrix as lines of a Markdown table: rows are labels, columns detections."""
-    names = [each.name for each in figures.classes]
+    names = [class_figures.name for class_figures in figures.classes]
     lines = [f"| label \\ detection | {' | '.join(names)} | nothing |", "| --- |" + " ---: |" * (len(names) + 1)]
     for name, row in zip([*names, "nothing"], figures.confusion.tolist(), strict=True):
         lines.append(f"| {name} | {' | '.join(str(count) if count else '' for count in row)} |")
@@ -129,29 +129,31 @@ def _figures(figures: Evaluation) -> list[str]:
     ]
 
 
-def _row(each: ClassFigures) -> str:
-    values = (each.ap50, each.ap, each.precision, each.recall)
-    return f"| {each.name} | {each.objects} | {' | '.join(map(_number, values))} |"
+def _row(row: ClassFigures) -> str:
+    values = (row.ap50, row.ap, row.precision, row.recall)
+    return f"| {row.name} | {row.objects} | {' | '.join(map(_number, values))} |"
 
 
 def _number(value: float | None) -> str:
     return "" if value is None else f"{value:.3f}"
 
 
-def _failures(each: Examination) -> list[str]:
+def _failures(examination: Examination) -> list[str]:
     """The classes that are often missed or confused."""
     lines = []
-    for name, objects, recall in each.figures.recall_by_size:
+    for name, objects, recall in examination.figures.recall_by_size:
         if objects and recall < _WEAK:
-            lines.append(f"- {each.title}: of objects {name} it misses {1 - recall:.0%}.")
-    names = [kind.name for kind in each.figures.classes]
-    for place, kind in enumerate(each.figures.classes):
+            lines.append(f"- {examination.title}: of objects {name} it misses {1 - recall:.0%}.")
+    names = [kind.name for kind in examination.figures.classes]
+    for place, kind in enumerate(examination.figures.classes):
         if kind.recall is not None and kind.recall < _WEAK:
-            lines.append(f"- {each.title}: it misses {1 - kind.recall:.0%} of {kind.name}.")
-        row = each.figures.confusion[place]
+            lines.append(f"- {examination.title}: it misses {1 - kind.recall:.0%} of {kind.name}.")
+        row = examination.figures.confusion[place]
         for other, count in enumerate(row[:-1].tolist()):
             if other != place and kind.objects and count / kind.objects >= _OFTEN:
-                lines.append(f"- {each.title}: it takes {count / kind.objects:.0%} of {kind.name} for {names[other]}.")
+                lines.append(
+                    f"- {examination.title}: it takes {count / kind.objects:.0%} of {kind.name} for {names[other]}."
+                )
     return lines
 
 

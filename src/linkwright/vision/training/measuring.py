@@ -31,9 +31,9 @@ def measure(model: str | Path, names: Sequence[str], labelled: Sequence[Labelled
     """
     detector = make_detector(str(model), DetectorOptions())
     found, truth = [], []
-    for each in labelled:
-        image = read_image(each)
+    for labelled_image in labelled:
+        image = read_image(labelled_image)
         scale = np.array(image.shape[1::-1] * 2, np.float32)
-        truth.append(GroundTruth(each.boxes * scale, each.classes, each.ignored))
+        truth.append(GroundTruth(labelled_image.boxes * scale, labelled_image.classes, labelled_image.ignored))
         found.append(detector.detect(image, LIMITS))
     return evaluate(names, truth, found)

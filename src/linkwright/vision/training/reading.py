@@ -113,10 +113,10 @@ def open_dataset(folder: Path) -> Dataset:
     if isinstance(content.get("path"), str):
         base = next((place for place in (file.parent / content["path"],) if place.is_dir()), file.parent)
     splits = {
-        split: tuple(base / each for each in ([content[split]] if isinstance(content[split], str) else content[split]))
+        split: tuple(base / part for part in ([content[split]] if isinstance(content[split], str) else content[split]))
         for split in ("train", "val", "test")
         if isinstance(content.get(split), str)
-        or (isinstance(content.get(split), list) and all(isinstance(each, str) for each in content[split]))
+        or (isinstance(content.get(split), list) and all(isinstance(part, str) for part in content[split]))
     }
     if not splits:
         raise _no_dataset(file, phrase("neither 'train' nor 'val' names a folder of images"))
@@ -156,16 +156,16 @@ def _hidden(file: Path, names: tuple[str, ...]) -> dict[str, list[list[float]]]:
     """
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
-        images = {each["id"]: each for each in content["images"]}
-        numbers = {each["id"]: names.index(each["name"]) for each in content["categories"]}
+        images = {entry["id"]: entry for entry in content["images"]}
+        numbers = {entry["id"]: names.index(entry["name"]) for entry in content["categories"]}
         found: dict[str, list[list[float]]] = {}
-        for each in content["annotations"]:
-            if each["iscrowd"]:
-                image = images[each["image_id"]]
-                left, top, width, height = each["bbox"]
+        for entry in content["annotations"]:
+            if entry["iscrowd"]:
+                image = images[entry["image_id"]]
+                left, top, width, height = entry["bbox"]
                 across, down = image["width"], image["height"]
                 box = [left / across, top / down, (left + width) / across, (top + height) / down]
-                found.setdefault(image["file_name"], []).append([numbers[each["category_id"]], *box])
+                found.setdefault(image["file_name"], []).append([numbers[entry["category_id"]], *box])
     except FileNotFoundError:
         return {}
     except (OSError, ValueError, KeyError, TypeError, ZeroDivisionError) as error:

@@ -24,7 +24,7 @@ from linkwright.nodes.navigation.slam_toolbox.parameters import settings_of
 from linkwright.nodes.navigation.slam_toolbox.services import ToolboxServices
 from linkwright.nodes.navigation.slam_toolbox.toolbox import Toolbox
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_of, starting
-from linkwright.nodes.settings import tell_unknown
+from linkwright.nodes.settings import log_unknown
 
 
 class _Managed(ManagedNode):
@@ -87,7 +87,7 @@ class AsyncSlamToolbox(SingleNode):
             for name in ("use_lifecycle_manager", "autostart_node"):  # of Jazzy's
                 self._node.declare_parameter(name, False)
             self._work = self.open(self._node)
-            tell_unknown(self._node)
+            log_unknown(self._node)
         self._work[0].start()
 
     @classmethod

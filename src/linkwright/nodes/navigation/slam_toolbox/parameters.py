@@ -125,7 +125,7 @@ def settings_of(node: Node) -> Settings:
     declared = _Declared(node)
     declared.without_effect()
     declared.flag("paused_new_measurements", False)
-    _tell_replaced(node)
+    _log_replaced(node)
     resolution = declared.number("resolution", 0.05)
     if resolution <= 0.0:
         node.get_logger().warning(
@@ -162,7 +162,7 @@ def settings_of(node: Node) -> Settings:
     )
 
 
-def _tell_replaced(node: Node) -> None:
+def _log_replaced(node: Node) -> None:
     solver: str = node.get_parameter("solver_plugin").value
     node.get_logger().info(f"Using Linkwright's sparse Gauss-Newton solver in place of solver plugin {solver}")
     if node.get_parameter("enable_interactive_mode").value:

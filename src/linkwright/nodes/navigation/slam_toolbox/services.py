@@ -56,7 +56,7 @@ class ToolboxServices:
     def _refuse(self, reason: str) -> None:
         self._logger.error(reason)
 
-    def _tell(self, error: LinkwrightError) -> None:
+    def _report(self, error: LinkwrightError) -> None:
         self._refuse("\n".join(render(diagnostic) for diagnostic in error.diagnostics))
 
     def _on_get_map(self, _request: Any, response: Any) -> Any:
@@ -101,7 +101,7 @@ class ToolboxServices:
             try:
                 toolbox.load(request.filename, None if at_first else np.array((pose.x, pose.y, pose.theta)))
             except LinkwrightError as error:
-                self._tell(error)
+                self._report(error)
         return response
 
     def _on_save(self, request: Any, response: Any) -> Any:
@@ -118,7 +118,7 @@ class ToolboxServices:
             save_map(grid, SavedAs(name=name), self._logger.warning)
             response.result = response.RESULT_SUCCESS
         except LinkwrightError as error:
-            self._tell(error)
+            self._report(error)
             response.result = response.RESULT_UNDEFINED_FAILURE
         return response
 

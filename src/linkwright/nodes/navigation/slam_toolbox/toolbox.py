@@ -213,9 +213,9 @@ class Toolbox:
                 )
             return
         self._pending = None
-        self._take(message, _planar(base), laser)
+        self._queue_scan(message, _planar(base), laser)
 
-    def _take(self, message: Any, odometry: Floats, laser: Transform) -> None:
+    def _queue_scan(self, message: Any, odometry: Floats, laser: Transform) -> None:
         if self._taken is not None and self.node.get_parameter("paused_new_measurements").value:
             return
         busy = self._work is not None

@@ -206,16 +206,16 @@ class Course:
             boxes, logits = network(images)
             scores = logits.sigmoid()
             pairs = zip(boxes.cpu().numpy(), scores.cpu().numpy(), strict=True)
-            found += [self._found(each, score) for each, score in pairs]
+            found += [self._found(prediction, score) for prediction, score in pairs]
         return [_truth(objects) for objects in self._exam.objects], found
 
     def _found(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
         """The detections in one image, of boxes (cells, 4) and scores (cells, classes)."""
         cells, kinds = np.nonzero(scores >= LIMITS.threshold)
-        told: NDArray[np.float32] = scores[cells, kinds]
+        confidences: NDArray[np.float32] = scores[cells, kinds]
         classes: NDArray[np.int32] = kinds.astype(np.int32)
-        kept = suppressed(boxes[cells], told, classes, LIMITS.iou, LIMITS.most)
-        return Detections(boxes[cells[kept]], told[kept], classes[kept], self.names)
+        kept = suppressed(boxes[cells], confidences, classes, LIMITS.iou, LIMITS.most)
+        return Detections(boxes[cells[kept]], confidences[kept], classes[kept], self.names)
 
     def save(self, path: Path) -> None:
         """Write a checkpoint."""
@@ -252,13 +252,13 @@ class Course:
         """
         try:
             state: dict[str, Any] = torch.load(path, map_location=self._device, weights_only=True)
-            told = state["shape"], state["names"]
+            saved = state["shape"], state["names"]
             state["optimizer"]["momenta"]  # which those of earlier versions lack
         except (OSError, RuntimeError, pickle.UnpicklingError, KeyError, EOFError, TypeError):
             message = phrase("'{path}' is not a checkpoint of a training", path=display_path(path))
             hint = phrase("leave out --resume to start from scratch")
             raise LinkwrightError(Diagnostic("VISION306", message, hint=hint)) from None
-        if told != (asdict(self.shape), list(self.names)):
+        if saved != (asdict(self.shape), list(self.names)):
             message = phrase(
                 "'{path}' is a checkpoint of a training with other classes or sizes", path=display_path(path)
             )

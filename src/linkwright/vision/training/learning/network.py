@@ -150,11 +150,11 @@ class Network(nn.Module):
         middle = self.up_middle(torch.cat((self.halve_fine(fine), narrow), 1))
         coarse = self.up_coarse(torch.cat((self.halve_middle(middle), coarse), 1))
         levels = [head(level) for head, level in zip(self.heads, (fine, middle, coarse), strict=True)]
-        said = torch.cat(levels, 2).transpose(1, 2)
+        outputs = torch.cat(levels, 2).transpose(1, 2)
         middles, strides = cells(images.shape[3], images.shape[2], images.device)
-        sides = said[..., :4].clamp(max=_FARTHEST).exp() * strides
+        sides = outputs[..., :4].clamp(max=_FARTHEST).exp() * strides
         boxes = torch.cat((middles - sides[..., :2], middles + sides[..., 2:]), 2)
-        return boxes, said[..., 4:]
+        return boxes, outputs[..., 4:]
 
 
 def _doubled(features: Tensor) -> Tensor:

@@ -30,10 +30,10 @@ class Optimizer:
 
     def __init__(self, network: nn.Module, rate: float) -> None:
         every = list(network.parameters())
-        self._kernels = [each for each in every if each.ndim == 4 and min(each.shape[:2]) >= _LEAST]
+        self._kernels = [parameter for parameter in every if parameter.ndim == 4 and min(parameter.shape[:2]) >= _LEAST]
         self._momenta = [torch.zeros_like(kernel) for kernel in self._kernels]
         kernels = {id(kernel) for kernel in self._kernels}
-        others = [each for each in every if id(each) not in kernels]
+        others = [parameter for parameter in every if id(parameter) not in kernels]
         groups = [
             {"params": [other for other in others if other.ndim > 1], "weight_decay": _DECAY},
             {"params": [other for other in others if other.ndim <= 1], "weight_decay": 0.0},

@@ -63,19 +63,19 @@ def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
     """Read the names of the classes, and kernel and bias of each convolution in the order of the computation."""
     try:
         model = onnx.load(path, load_external_data=False)
-        stored = {each.name: numpy_helper.to_array(each) for each in model.graph.initializer}
+        stored = {tensor.name: numpy_helper.to_array(tensor) for tensor in model.graph.initializer}
     except FileNotFoundError:
         raise _unusable(path, phrase("it does not exist"), missing_file_hint(path)) from None
     except OSError as error:
         raise _unusable(path, foreign(error.strerror or error)) from None
     except Exception:  # noqa: BLE001 - protobuf and ONNX raise many kinds
         raise _unusable(path, phrase("it is not an ONNX file")) from None
-    stored.update({each.output[0]: stored[each.input[0]] for each in model.graph.node if each.input[:1]
-                   and each.op_type == "Cast" and each.input[0] in stored})  # fmt: skip
+    stored.update({step.output[0]: stored[step.input[0]] for step in model.graph.node if step.input[:1]
+                   and step.op_type == "Cast" and step.input[0] in stored})  # fmt: skip
     metadata = {metadata_prop.key: metadata_prop.value for metadata_prop in model.metadata_props}
     known = names_in_metadata(metadata.get("names", ""))
-    inputs = [each.input[1:] for each in model.graph.node if each.op_type == "Conv"]
-    if known is None or not inputs or not all(len(each) == 2 and set(each) <= stored.keys() for each in inputs):
+    inputs = [step.input[1:] for step in model.graph.node if step.op_type == "Conv"]
+    if known is None or not inputs or not all(len(pair) == 2 and set(pair) <= stored.keys() for pair in inputs):
         raise _unusable(path, phrase("it is not a network of `linkwright vision train`"))
     pairs = [(torch.tensor(stored[kernel]).float(), torch.tensor(stored[bias]).float()) for kernel, bias in inputs]
     return known, pairs
