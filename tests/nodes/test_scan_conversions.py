@@ -65,7 +65,7 @@ async def test_a_depth_image_becomes_a_scan(test):
     await send(test, "/depth", depth_image(test, np.full((3, 5), 2.0)))
     assert len(scan) == 0
     assert said(test, "ERROR") == [
-        "Could not convert depth image to laserscan: no camera_info with a focal length has come"
+        "Could not convert depth image to laserscan: no camera_info with a focal length has arrived"
     ]
     await send(test, "/depth_camera_info", camera(test))
     await send(test, "/depth", depth_image(test, np.full((3, 5), 2.0)))

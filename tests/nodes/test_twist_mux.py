@@ -132,7 +132,7 @@ async def test_what_is_not_whole_is_refused(stage, topics, named):
 
 async def test_without_topics_it_says_so_and_runs(stage, said):
     TwistMux(stage.graph, NodeOptions())
-    assert said("WARN") == ["no topics.NAME.topic is given, so nothing goes through"]
+    assert said("WARN") == ["no topics.NAME.topic is given, so nothing is forwarded"]
 
 
 async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between(traffic):

@@ -1,4 +1,4 @@
-"""``linkwright dataset``: images of a world with labels, to teach a detector with."""
+"""``linkwright dataset``: make labelled images of worlds, to train a detector."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Make the dataset; 130 when it was interrupted."""
+    """Make the dataset, and return the exit status; 130 if it was interrupted."""
     from linkwright.vision.datasets.dataset import make_dataset
     from linkwright.vision.datasets.making import Source
     from linkwright.vision.datasets.options import Options
@@ -175,7 +175,7 @@ class _Progress:
         self._began = time.monotonic()
 
     def tell(self, done: int) -> None:
-        """Show how many are done."""
+        """Show the number of finished images."""
         if self._shown:
             rate = done / max(time.monotonic() - self._began, 1e-9)
             words = localized(phrase("{done} of {count} images, {rate} a second", done=done, count=self._count,
@@ -183,7 +183,7 @@ class _Progress:
             print(f"\r{words}\x1b[K", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
-        """Leave the line."""
+        """End the line."""
         if self._shown:
             print(file=sys.stderr)
 

@@ -10,10 +10,10 @@ from linkwright.graph.loop.callback_groups import ReentrantCallbackGroup
 
 
 async def answered(node: Node, future: Any, seconds: float | None) -> bool:
-    """Wait for a future; whether it came in time.
+    """Wait for a future, and return whether it was done in time.
 
     Args:
-        node: whose clock counts, at the pace of the machine's whatever time is simulated.
+        node: the node; its timers run in real time even if its time is simulated.
         future: one of the graph's, or of asyncio.
         seconds: how long to wait; None for ever.
     """
@@ -24,7 +24,7 @@ async def answered(node: Node, future: Any, seconds: float | None) -> bool:
             over.set_result(came)
 
     clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-    group = ReentrantCallbackGroup()  # who waits may hold the group of the node
+    group = ReentrantCallbackGroup()  # the waiting callback may hold the group of the node
     timer = None
     if seconds is not None:
         timer = node.create_timer(seconds, lambda: resolve(False), callback_group=group, clock=clock)

@@ -65,7 +65,7 @@ class ComponentContainer(SingleNode):
         """Load a component; returns its number and the node.
 
         Raises:
-            LinkwrightError: NODE601, no such component; and what the node itself raises.
+            LinkwrightError: NODE601, no such component; or an error of the node itself.
         """
         factory = COMPONENTS.get((package, plugin))
         if factory is None:

@@ -1,4 +1,4 @@
-"""listener: logs what a talker says (demo_nodes_cpp, demo_nodes_py, composition)."""
+"""listener: logs the messages of a talker (demo_nodes_cpp, demo_nodes_py, composition)."""
 
 from __future__ import annotations
 

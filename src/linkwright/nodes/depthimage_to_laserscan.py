@@ -68,7 +68,7 @@ class DepthImageToLaserScan(SingleNode):
 
     def _receive(self, image: Any) -> None:
         if self._camera is None:
-            self._complain("no camera_info with a focal length has come")
+            self._complain("no camera_info with a focal length has arrived")
             return
         try:
             depths = depths_of(image)
@@ -91,10 +91,10 @@ class DepthImageToLaserScan(SingleNode):
 
 
 def depths_of(image: Any) -> NDArray[np.float64]:
-    """The depths of a sensor_msgs/msg/Image, shape (rows, columns), metres; NaN where there is none.
+    """Return the depths of a sensor_msgs/msg/Image, shape (rows, columns), metres; NaN for pixels without one.
 
     Raises:
-        ValueError: it is no depth image, or has less data than it says.
+        ValueError: it is not a depth image, or has too little data.
     """
     kinds = {"16UC1": "u2", "mono16": "u2", "32FC1": "f4"}
     kind = kinds.get(image.encoding)

@@ -15,7 +15,7 @@ class FramePoses:
 
     Args:
         node: listens to ``/tf`` and ``/tf_static``.
-        complaint: what its warning begins with where a transform cannot be had.
+        complaint: the start of its warning about a missing transform.
 
     Attributes:
         buffer: the transforms.
@@ -30,8 +30,8 @@ class FramePoses:
     def pose(self, target: str, source: str, time_ns: int) -> Transform | None:
         """The pose of a frame in another one at a time, or the latest known.
 
-        It never waits: a transform that is a little late is used as it was before. Where there is none at all, that is
-        logged now and then, and the result is None.
+        It never waits: if a transform is a little late, the previous one is used. If there is none at all, it logs that
+        now and then, and returns None.
         """
         if target == source:
             return IDENTITY

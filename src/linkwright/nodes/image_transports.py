@@ -45,7 +45,7 @@ def compressed_depth(image: Any) -> Any | None:
     """Encode a depth image for the transport ``compressedDepth``; None for other images.
 
     Raises:
-        BadImageError: it has less data than it says.
+        BadImageError: it has too little data.
         ModuleNotFoundError: Pillow is not installed.
     """
     if image.encoding not in (*_WHOLE, "32FC1"):
@@ -76,7 +76,7 @@ def plain_depth(message: Any) -> Any:
     """Decode a sensor_msgs/msg/CompressedImage of the transport ``compressedDepth`` to a sensor_msgs/msg/Image.
 
     Raises:
-        BadImageError: it is none, or its data are not in it.
+        BadImageError: it is not such an image, or has no data.
     """
     return _message(unpacked_depth(message))
 

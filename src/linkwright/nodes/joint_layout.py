@@ -148,7 +148,7 @@ def _limits(joint: Joint, settings: JointSettings, problems: list[str]) -> tuple
 
 
 def _missing_limit(joint: Joint) -> str | None:
-    """The name of a limit that is missing: urdfdom takes it for 0, and joint_state_publisher refuses it."""
+    """Return the name of a missing limit, which urdfdom reads as 0 and joint_state_publisher refuses."""
     if joint.limit is None:
         return None
     for name, value in (("lower", joint.limit.lower), ("upper", joint.limit.upper)):

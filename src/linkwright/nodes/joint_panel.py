@@ -159,7 +159,7 @@ class JointPanel:
         self.notice_positions()
 
     def notice_positions(self) -> None:
-        """Tell subscribers that joints were moved by others."""
+        """Notify subscribers that others moved joints."""
         self._positions_changed.trigger()
 
     def _free(self) -> list[JointSlider]:

@@ -22,7 +22,7 @@ class _Quantity:
         self.values = self._with_zero[:-1]
 
     def spread(self, layout: JointLayout, *, scaled: bool, shifted: bool) -> Array | None:
-        """The numbers for a message, one for each published joint; None when there are none at all.
+        """Return the numbers for a message, one for each published joint; None if there are none at all.
 
         A joint that follows one without a number has 0, as in the ROS node.
         """
@@ -101,7 +101,7 @@ class JointPositions:
             self._ahead = np.where(self._direction > 0.0, self._upper, self._lower)
 
     def set(self, name: str, position: float) -> None:
-        """Set the position of a free joint, within its limits; KeyError when there is none of that name."""
+        """Set the position of a free joint, within its limits; raise KeyError if there is no such joint."""
         row = self._rows[name]
         self._position.values[row] = min(max(position, self._lower[row]), self._upper[row])
 

@@ -28,7 +28,7 @@ class JointSettings:
 
     Attributes:
         rate: messages a second.
-        publish_default_positions: give joints that nothing was heard of their zero position.
+        publish_default_positions: whether joints without a message have their zero position.
         publish_default_velocities: give them velocity 0.
         publish_default_efforts: give them effort 0.
         use_mimic_tags: joints with a ``<mimic>`` follow their master.
@@ -36,7 +36,7 @@ class JointSettings:
         source_list: topics of joint states to take over.
         delta: how far every joint moves each time, rad or m; 0 for not at all.
         zeros: starting positions by joint, rad or m.
-        dependent_joints: joints that follow others, whatever the description says of them.
+        dependent_joints: joints that follow others, regardless of the description.
     """
 
     rate: float = 10.0
@@ -55,7 +55,7 @@ def declare_settings(node: Node) -> None:
     """Declare the parameters. Values from outside keep their types, as in the ROS node: ``rate: 2.5`` is fine.
 
     Raises:
-        LinkwrightError: a value is none that a parameter can have.
+        LinkwrightError: the value of a parameter is invalid.
     """
     node.declare_parameters_from_overrides()
     defaults = JointSettings()

@@ -3,7 +3,7 @@
 It follows the ROS 2 node of that name (2.4), with these deliberate differences:
 
 - The parameters ``dependent_joints.*`` come before ``<mimic>`` tags and stay when the description changes.
-- A new description leaves joints that were there before where they are, and the first message comes at once.
+- A new description keeps the positions of existing joints, and the first message is published at once.
 - A parameter that is changed while the node runs takes effect.
 - Descriptions are URDF; SDF and COLLADA, which the ROS node reads too, are named and left aside.
 - Infinite limits become a range that a slider can show, and a description that cannot be used leaves the last one.
@@ -38,7 +38,7 @@ _FIRST_ELEMENT = re.compile(r"<([A-Za-z]\w*)")
 
 
 class Watcher(Protocol):
-    """The interface of those who watch the joints."""
+    """The interface for observers of the joints."""
 
     def rebuild(self) -> None:
         """Handle a change of the robot or of the settings."""

@@ -76,10 +76,10 @@ class RunningNode(Protocol):
 
 @runtime_checkable
 class FinishingNode(RunningNode, Protocol):
-    """A node that ends by itself."""
+    """A node that finishes on its own."""
 
     finished: asyncio.Future[int]
-    """Gets the exit status when the node is done; it is to be closed then."""
+    """Receives the exit status when the node is done; the node must then be closed."""
 
 
 @runtime_checkable

@@ -112,7 +112,7 @@ class PointCloudToLaserScan(_Converter):
     def _receive(self, message: Any) -> None:
         points = points_of(message)
         if points is None:
-            self._node.get_logger().error("a cloud has no fields x, y and z, or less data than it says", once=True)
+            self._node.get_logger().error("a cloud has no fields x, y and z, or too little data", once=True)
             return
         placed = self._placed(points, message.header)
         if placed is None:

@@ -67,7 +67,7 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
 
 
 def default_name(package: str, executable: str) -> str | None:
-    """The default name of a node; None where only the node itself knows it."""
+    """Return the default name of a node; None if only the node itself knows it."""
     with suppress(LinkwrightError, KeyError):
         name: str | None = getattr(EXECUTABLES[package, executable], "DEFAULT_NAME", None)
         return name

@@ -159,7 +159,7 @@ class JointGroup:
     def __init__(self, rows: NDArray[np.intp]) -> None:
         self.rows = rows
         self.positions: NDArray[np.float64] | None = None
-        """A copy of those published last: a publisher may use its message again."""
+        """A copy of the transforms published last, because a publisher may reuse its message."""
 
 
 class Throttle:

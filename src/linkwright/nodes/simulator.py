@@ -172,7 +172,7 @@ class Simulator(SingleNode):
         self._reports.publish_state(paused=self.runner.paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:
-        """Log the findings on the world, and what of it is not simulated, each once."""
+        """Log the findings on the world and its parts that are not simulated, each once."""
         logger = self._node.get_logger()
         first: dict[str, Diagnostic] = {}
         for finding in findings:

@@ -63,7 +63,7 @@ class VelocityTopic:
             may_change: whether the type may become another one; not while something moves.
 
         Returns:
-            How many subscribers take what is published.
+            The number of subscribers with the published type.
         """
         own = None if self._publisher is None else self._publisher.gid
         others = [

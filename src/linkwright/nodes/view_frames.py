@@ -87,7 +87,7 @@ def frames_as_dot(frames: Mapping[str, Mapping[str, Any]], recorded_s: float) ->
     """The drawing in Graphviz's language.
 
     Args:
-        frames: what the buffer says of each frame, by name.
+        frames: the buffer's facts on each frame, by name.
         recorded_s: when, seconds since the epoch.
     """
     if not frames:

@@ -49,7 +49,7 @@ class ZenohRouter(SingleNode):
             self._telling.start()
 
     def _warn(self, reasons: str) -> None:
-        self._node.get_logger().warning(f"Not connected yet, which is tried again and again: {reasons}")
+        self._node.get_logger().warning(f"Not connected yet; retrying: {reasons}")
 
     def close(self) -> None:
         """End it."""

@@ -44,7 +44,7 @@ class EngineOptions:
     """Options of an engine.
 
     Attributes:
-        phrases: all that may be said; nothing else is to be returned as text.
+        phrases: all phrases to recognize; no other text may be returned.
         language: ``en``, ``zh`` or another of BCP 47, for engines that need to know.
         model: file or folder of the model, for engines that have one; None takes the engine's usual place.
     """
@@ -83,7 +83,7 @@ def make_engine(name: str, options: EngineOptions) -> SpeechEngine:
     """Make an engine by its name.
 
     Raises:
-        LinkwrightError: VOICE101 there is no such engine; else whatever it raises itself.
+        LinkwrightError: VOICE101 there is no such engine; else an error of the engine itself.
     """
     found = extensions(_GROUP).get(name)
     if found is None:

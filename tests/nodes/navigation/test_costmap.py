@@ -255,7 +255,7 @@ async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
         },
     )
     told = [each.text for each in log]
-    assert "there is no layer my_package::Sonar here: the costmap does without 'sonar'" in told
+    assert "there is no layer my_package::Sonar here: the costmap ignores 'sonar'" in told
     assert "costmap filters are not supported: the costmap ignores keepout_filter" in told
     assert "layers that 'plugins' does not name are ignored: obstacle_layer" in told
     assert not [each for each in told if "is not a parameter" in each or "are not read" in each]

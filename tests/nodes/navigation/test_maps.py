@@ -125,7 +125,7 @@ async def test_where_no_map_comes_it_says_so_and_fails(
     assert not saver.finished.done()
     await clock.advance(0.2)
     assert await saver.finished == 1
-    assert "no map came within 2 s; no node publishes on '/map'" in _errors(log)[0]
+    assert "no map arrived within 2 s; no node publishes on '/map'" in _errors(log)[0]
     saver.close()
 
 

@@ -132,11 +132,11 @@ def test_nothing_is_found_and_it_is_said(test):
 def test_what_is_missing_is_named(test):
     _, found, _ = start(test)
     boxes(test, BOX)
-    assert said(test) == ["detections have no place: no camera_info has come"]
+    assert said(test) == ["detections have no place: no camera_info has arrived"]
     camera(test, "/camera_info")
     test.advance(6.0)
     boxes(test, BOX)
-    assert said(test)[-1].endswith("no depth image has come that is as old as the detections")
+    assert said(test)[-1].endswith("no depth image has arrived with a stamp near that of the detections")
     depth(test, WALL, frame="elsewhere")
     test.advance(6.0)
     boxes(test, BOX)

@@ -98,7 +98,7 @@ def _known_classes(detector: Detector, wanted: list[str]) -> frozenset[str]:
 
 
 def _read(name: str) -> NDArray[np.uint8]:
-    """The pixels of a file, shape (height, width, 3)."""
+    """Return the pixels of a file, shape (height, width, 3)."""
     import numpy as np
 
     from linkwright.images import BadImageError, Picture
@@ -147,7 +147,7 @@ def _draw(image: NDArray[np.uint8], found: Detections, folder: Path, stem: str) 
 
 
 def _unused(stem: str, written: set[str]) -> str:
-    """A name for a result that none before it has."""
+    """Return an unused name for a result."""
     name, number = stem, 2
     while name in written:
         name, number = f"{stem}-{number}", number + 1

@@ -1,4 +1,4 @@
-"""``linkwright vision evaluate``: how well a detector finds what is in the images of a dataset."""
+"""``linkwright vision evaluate``: evaluate a detector on a dataset."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the figures."""
+    """Print the evaluation."""
     from linkwright.vision.training.card import confusion, table
     from linkwright.vision.training.teaching import judge
 

@@ -1,4 +1,4 @@
-"""``linkwright vision train``: a network taught with the images of a dataset."""
+"""``linkwright vision train``: train a network on the images of a dataset."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Train, and print how well the network does."""
+    """Train a network, and print its evaluation."""
     from linkwright.vision.training.card import table
     from linkwright.vision.training.options import Options
     from linkwright.vision.training.teaching import teach

@@ -117,7 +117,7 @@ class DriveStraight(Behavior):
         distance: how far, in metres; back where it is negative.
         speed: in m/s.
         allowance: see `Behavior`.
-        look_ahead: for how long the way is looked at, in seconds.
+        look_ahead: how far ahead the motion is checked, in seconds.
         start: where the robot is.
     """
 
@@ -140,7 +140,7 @@ class DriveStraight(Behavior):
 
 
 class Wait(Behavior):
-    """Stand still for a time, in seconds."""
+    """Wait in place for a time, in seconds."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__(0.0)
@@ -155,7 +155,7 @@ def slowed(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> V
 
     Args:
         pose: of the robot.
-        velocity: which is asked for.
+        velocity: the requested velocity.
         seconds: how far ahead obstacles count.
         is_free: see `IsFree`.
     """

@@ -70,12 +70,12 @@ class Rule:
     """The rule of a zone: its action and limits.
 
     Attributes:
-        action: what it asks for.
-        min_points: so many points are something.
-        slowdown_ratio: what is left of a velocity, 0 to 1.
+        action: the action of the zone.
+        min_points: the fewest points that count as an obstacle.
+        slowdown_ratio: the factor of velocities, 0 to 1.
         linear_limit: in m/s.
         angular_limit: in rad/s.
-        time_before_collision: so many seconds before the robot would meet something it begins to slow down.
+        time_before_collision: the seconds before a collision at which the robot starts to slow down.
         simulation_time_step: seconds between the places where it is looked for.
     """
 
@@ -155,8 +155,8 @@ class Verdict:
 
     Attributes:
         velocity: that the robot may have.
-        action: what has been done to it.
-        zone: the name of the zone that has done it; empty where none has.
+        action: the applied action.
+        zone: the name of the zone that applied it; empty if none did.
     """
 
     velocity: Velocity
@@ -165,11 +165,11 @@ class Verdict:
 
 
 def judged(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, Points]]) -> Verdict:
-    """Limit a velocity by all zones: the lowest that one of them asks for, and nothing after a stop.
+    """Limit a velocity by all zones: the lowest limit wins, and a stop ends the search.
 
     Args:
         velocity: that it is to have.
-        zones: name, rule and shape of each, and what its sensors see.
+        zones: the name, rule and shape of each zone, and the points of its sensors.
     """
     verdict = Verdict(velocity)
     for name, rule, shape, points in zones:

@@ -37,7 +37,7 @@ class Costmap:
         ValueError: the cells have another type, or the grid is turned.
 
     Attributes:
-        grid: the cells, which whoever owns the costmap changes.
+        grid: the cells, changed by the owner of the costmap.
     """
 
     def __init__(self, grid: Grid) -> None:

@@ -19,7 +19,7 @@ class DenoiseLayer(Layer):
     """Frees groups of lethal cells that are too small.
 
     Args:
-        minimal_group_size: so many cells a group has that stays.
+        minimal_group_size: the fewest cells of a group that is kept.
         group_connectivity_type: 8 if cells whose corners touch belong together, else 4.
     """
 
@@ -34,7 +34,7 @@ class DenoiseLayer(Layer):
         return window.padded(self._least, grid)
 
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Free small groups; those that the window cuts are judged with the cells around it."""
+        """Free small groups; for groups at the edge of the window the cells around it count, too."""
         if self._least <= 1:
             return
         around = window.padded(self._least, grid)

@@ -20,7 +20,7 @@ _LEAST_CORNERS = 3
 
 
 class BadFootprintError(ValueError):
-    """A text is not a footprint; the message says why."""
+    """A text is not a footprint; the message gives the reason."""
 
 
 def circle(radius: float) -> Footprint:

@@ -103,24 +103,24 @@ class Layer(ABC):
     is_clearable: bool = False
 
     def match(self, grid: Grid, default: int) -> None:  # noqa: B027  # most keep nothing
-        """Take over a new size or origin of the costmap; `default` is what its cells cost without layers."""
+        """Adopt a new size or origin of the costmap; `default` is the cost of its cells without layers."""
 
     @abstractmethod
     def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
-        """Take in new data, and report where it changes costs.
+        """Process new data, and return the window whose costs change.
 
         Args:
-            window: what changed in the layers below.
+            window: the window that changed in the layers below.
             moment: now.
             grid: the costmap.
 
         Returns:
-            What changes with this layer.
+            The window that changes with this layer.
         """
 
     @abstractmethod
     def write(self, grid: Grid, window: Window, moment: Moment) -> None:
-        """Write costs into the costmap, into no other cells than those of the window."""
+        """Write costs into the cells of the window."""
 
     def reset(self) -> None:  # noqa: B027  # most keep nothing
         """Reset to the state before any data."""

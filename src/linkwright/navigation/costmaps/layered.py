@@ -26,14 +26,14 @@ class LayeredCostmap:
         layers: from the bottom to the top.
         footprint: of the robot; see `Footprint`.
         rolling: whether it moves so that the robot is in the middle.
-        track_unknown: whether cells that no layer knows are unknown; else they are free.
+        track_unknown: whether cells without data are unknown; otherwise they are free.
         footprint_padding: by which the footprint is enlarged, in metres.
 
     Attributes:
         costmap: the costs, as of the last update.
         layers: see above.
         padding: by which the next footprint is enlarged, in metres.
-        changed: what the last update wrote.
+        changed: the window that the last update wrote.
     """
 
     def __init__(

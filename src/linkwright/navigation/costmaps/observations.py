@@ -21,8 +21,8 @@ class Source:
     Attributes:
         marking: whether its points are obstacles.
         clearing: whether there is nothing on the way to them.
-        obstacle_max_range: farther points are none.
-        obstacle_min_range: nearer points are none.
+        obstacle_max_range: farther points are ignored.
+        obstacle_min_range: nearer points are ignored.
         raytrace_max_range: farther cells are not cleared.
         raytrace_min_range: nearer cells are not cleared.
         min_obstacle_height: lower points do not count at all.

@@ -35,10 +35,10 @@ class ObstacleLayer(SeenLayer):
     """Marks the cells of points, and clears those on rays.
 
     Args:
-        buffers: what sensors see.
+        buffers: the observations of sensors.
         heights: of obstacles.
         combination_method: `OVERWRITE`, `MAXIMUM` or `MAXIMUM_OF_KNOWN`.
-        footprint_clearing: whether there is nothing where the robot stands.
+        footprint_clearing: whether to clear the cells below the robot.
     """
 
     def __init__(

@@ -34,7 +34,7 @@ class RangeSettings:
     """Settings of the sensor model; names and defaults are nav2's.
 
     Attributes:
-        phi: from about this distance on readings say little, in metres.
+        phi: the distance beyond which readings are uncertain, in metres.
         clear_threshold: cells that are less likely occupied are free.
         mark_threshold: cells that are more likely occupied are obstacles.
         clear_on_max_reading: whether a sensor that measures its greatest distance sees that there is nothing.
@@ -56,7 +56,7 @@ class Reading:
     Attributes:
         x, y: of the sensor in the frame of the costmap, in metres.
         yaw: where it looks, in radians.
-        distance: what it measured, in metres.
+        distance: the measured distance, in metres.
         field_of_view: its whole width, in radians.
         free: whether it saw that there is nothing up to there.
         time_ns: when.
@@ -147,7 +147,7 @@ class RangeLayer(SeenLayer):
         Args:
             distance: of cells from the sensor, in metres.
             aside: how far from the middle of its view they are, 1 at its rim.
-            reading: what it measured.
+            reading: the measurement.
             resolution: side of a cell, in metres.
         """
         if reading.free:

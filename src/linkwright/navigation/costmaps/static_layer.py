@@ -55,7 +55,7 @@ class StaticLayer(Layer):
     Args:
         interpretation: of its numbers.
         use_maximum: whether it only makes cells more expensive.
-        footprint_clearing: whether cells below the robot are free, whatever the map says.
+        footprint_clearing: whether to clear the cells below the robot.
         pose: of the costmap's frame in that of the map; None where that is not known at the moment.
 
     Attributes:

@@ -65,7 +65,7 @@ class StoppedGoalParameters(SimpleGoalParameters):
 
 
 class StoppedGoalChecker(SimpleGoalChecker):
-    """As `SimpleGoalChecker`, and the robot must stand still."""
+    """As `SimpleGoalChecker`, and the robot must have stopped."""
 
     def __init__(self, parameters: StoppedGoalParameters | None = None) -> None:
         self._still = parameters or StoppedGoalParameters()
@@ -96,7 +96,7 @@ class PoseProgressParameters(ProgressParameters):
 
 
 class ProgressChecker:
-    """Detects that a robot makes no progress: it must move so far, or turn so much, within a time."""
+    """Detects that a robot makes no progress: it must move or turn by a minimum within a time."""
 
     def __init__(self, parameters: ProgressParameters | None = None) -> None:
         self._parameters = parameters or ProgressParameters()

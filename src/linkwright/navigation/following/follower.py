@@ -41,7 +41,7 @@ class Situation:
     Attributes:
         pose: of the robot.
         velocity: which the robot has.
-        path: what is left of it, of shape (poses, 3): x, y (metres) and yaw (radians); two poses at least.
+        path: the remaining path, of shape (poses, 3): x, y (metres) and yaw (radians); two poses at least.
         costmap: around the robot.
         footprint: of the robot, in its own frame.
         period: of the cycles, in seconds.
@@ -58,7 +58,7 @@ class Situation:
 
 
 class FollowingError(Exception):
-    """No valid velocity exists; the message says why."""
+    """No valid velocity exists; the message gives the reason."""
 
 
 class Follower(ABC):
@@ -119,7 +119,7 @@ def motions(pose: Pose, velocities: NDArray[np.float64], times: NDArray[Any]) ->
     Args:
         pose: at the beginning.
         velocities: along x and y (m/s) and about z (rad/s) in the robot's frame, of shape (velocities, 3).
-        times: after so many seconds, of shape (times,).
+        times: the times in seconds, of shape (times,).
 
     Returns:
         Poses, of shape (velocities, times, 3).

@@ -195,7 +195,7 @@ def turning_speed(angle: float, now: float, period: float, highest: float, accel
     """The angular velocity in rad/s for a rotation by an angle, from which it can be stopped there.
 
     Args:
-        angle: what is left, in radians.
+        angle: the remaining angle, in radians.
         now: how fast the robot turns, in rad/s.
         period: of the cycles, in seconds.
         highest: speed, in rad/s.

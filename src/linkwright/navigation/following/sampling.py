@@ -57,9 +57,9 @@ class SamplingParameters:
         samples: how many velocities along x, along y and about z are tried.
         seconds: how far each motion is simulated.
         steps: in how many steps.
-        off_path: what a metre beside the path costs, in metres of the way.
-        off_heading: what a radian away from the path ahead costs.
-        near_obstacle: what the highest cost of the costmap costs.
+        off_path: the cost of a metre beside the path, in metres of the path.
+        off_heading: the cost of a radian away from the path ahead.
+        near_obstacle: the weight of the costmap's highest cost.
         turn_first: the robot turns on the spot while the path leads away by more than this, in radians.
     """
 

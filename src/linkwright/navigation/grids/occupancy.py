@@ -41,7 +41,7 @@ def grid_of(message: Any) -> Grid:
     """Convert a nav_msgs/OccupancyGrid to a grid with cells of its own, of type int8.
 
     Raises:
-        BadGridError: it has no cells, or not as many as it says, or they have no size.
+        BadGridError: it has no cells, or another number than its size requires, or no resolution.
     """
     info = message.info
     cells = np.array(np.frombuffer(message.data, np.int8))

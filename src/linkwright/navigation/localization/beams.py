@@ -53,8 +53,8 @@ def beams_of_scan(
         scan: the message.
         laser_in_robot: pose of the laser, which may be upside down or tilted.
         most: how many beams at most.
-        least_range: what is not longer counts as having met nothing, in metres; negative for what the scan says.
-        range_max: what is longer counts as this long, in metres; negative for what the scan says.
+        least_range: shorter ranges count as without a return, in metres; negative for the scan's own limit.
+        range_max: longer ranges count as this range, in metres; negative for the scan's own limit.
     """
     ranges = np.asarray(scan.ranges, np.float64)
     step = max(1, (len(ranges) - 1) // max(1, most - 1)) if most > 1 else max(1, len(ranges))

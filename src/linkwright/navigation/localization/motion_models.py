@@ -42,7 +42,7 @@ Pose = tuple[float, float, float]
 """x and y in metres and yaw in radians."""
 
 MotionModel = Callable[[Poses, Pose, Pose, Noise, np.random.Generator], None]
-"""Moves particles in place: particles, the pose by odometry before, and after, the noise, and what draws it."""
+"""Moves particles in place: particles, the odometry poses before and after, the noise, and the random generator."""
 
 
 def turned_by(angle: float) -> float:

@@ -143,7 +143,7 @@ class ParticleFilter:
         return covariance
 
     def _needed(self, drawn: Poses) -> int:
-        """The number of particles needed of those drawn: the first that satisfies the limit for its bins."""
+        """Return the number of drawn particles that suffices: the first that satisfies the limit for its bins."""
         _, first = np.unique(_bins(drawn)[0], return_index=True)
         new = np.zeros(len(drawn), np.int64)
         new[first] = 1

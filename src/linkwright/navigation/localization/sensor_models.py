@@ -20,7 +20,7 @@ from linkwright.navigation.localization.motion_models import Poses
 Likelihoods = NDArray[np.float64]
 MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
 _FITS = 0.15
-"""Metres from what is on the map up to which the end of a beam fits it."""
+"""The distance from obstacles of the map, in metres, up to which the end of a beam fits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ class MapLikelihoods:
         if skipping is not None:
             values = values[:, self._kept(cells, skipping)]
         exponents = values.sum(axis=1, dtype=np.float64)
-        # Relative to the best: a product of so many would be 0.
+        # Relative to the best: a product of this many factors would be 0.
         likelihoods: Likelihoods = np.exp(exponents - exponents.max())
         return likelihoods
 

@@ -35,7 +35,7 @@ class MapImage:
 
     Attributes:
         shade: how bright they are, the mean of the colours, of shape (rows, columns).
-        opacity: 1 where they are opaque, of the same shape; None where the image knows no transparency.
+        opacity: 1 where they are opaque, of the same shape; None if the image has no transparency.
     """
 
     shade: NDArray[np.float64]

@@ -1,6 +1,6 @@
 """Paths by descent on a potential, from a place to where the potential is zero.
 
-Source: nav2_navfn_planner, which goes half a cell at a time along the interpolated gradient.
+Source: nav2_navfn_planner, which steps half a cell along the interpolated gradient.
 """
 
 from __future__ import annotations

@@ -77,7 +77,7 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
     It gives way now and then, for others to work in between; the costmap must not change meanwhile.
 
     Args:
-        costmap: what places cost.
+        costmap: the costs of cells.
         start: x, y (metres) and yaw (radians) in the frame of the costmap.
         goal: likewise.
         settings: how.
@@ -140,7 +140,7 @@ def _let_escape(price: Floats, costmap: Costmap, cell: Cell, start: Pose) -> Non
     """Make the cells around a start that is too near to an obstacle passable, as far as to one that is not.
 
     Raises:
-        PlanError: there is none anywhere near.
+        PlanError: there is none nearby.
     """
     costs = costmap.grid.cells
     reach = ceil(_ESCAPE_REACH / costmap.grid.resolution)

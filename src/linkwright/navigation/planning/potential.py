@@ -54,16 +54,16 @@ def potential(
 ) -> Generator[None, None, Floats]:
     """Compute the cost of the cheapest path from a cell to each other one.
 
-    It gives way after each step of the wave, for others to work in between.
+    It yields after each step of the wave, so that other callbacks can run.
 
     Args:
-        price: of crossing cells, of shape (rows, columns); infinite where there is no way.
-        source: where ways begin; it may have any price.
-        target: where the way leads that is wanted: what is farther away is not looked at. None for all cells.
-        heuristic: whether cells count as far away, too, from which the target cannot be reached for less (A*).
+        price: the cost of crossing cells, of shape (rows, columns); infinite for obstacles.
+        source: the start of paths; it may have any price.
+        target: the goal of the requested path; costlier cells are skipped. None for all cells.
+        heuristic: whether to add the least cost to the target when cells are skipped (A*).
 
     Returns:
-        Of the same shape; 0 at the source, infinite where no way leads, or only one that is not wanted.
+        The costs, of the same shape; 0 at the source, infinite in unreachable and skipped cells.
     """
     rows, columns = price.shape
     width = columns + 2

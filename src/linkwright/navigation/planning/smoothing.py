@@ -48,7 +48,8 @@ def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = Non
         costmap: where no robot can be; None for anywhere.
 
     Returns:
-        As many points, the first and the last where they were; and whether all could go where smoothing wants them.
+        The same number of points, with the same first and last one; and whether all could move to their smoothed
+        positions.
     """
     found, complete = points, True
     rounds = 1 + (smoothing.refinement_num if smoothing.do_refinement else 0)

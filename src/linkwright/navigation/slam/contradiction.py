@@ -1,4 +1,4 @@
-"""Whether the poses of two scans contradict each other: a scan's rays cannot pass through what another one hit."""
+"""Detecting that the poses of two scans contradict each other: rays of one cannot pass through hits of the other."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _looked_through(viewer: PlanarScan, other: PlanarScan, pose: Floats) -> floa
     ranges = np.concatenate((ranges[-1:], ranges, ranges[:1]))
     wanted = np.arctan2(points[:, 1], points[:, 0])
     after = np.clip(np.searchsorted(bearings, wanted), 1, len(bearings) - 1)
-    # Both neighbours must have gone further: beside an edge one of them does.
+    # Both neighbours must be longer: beside an edge one of them is.
     close = (bearings[after] - wanted < _APART) & (wanted - bearings[after - 1] < _APART)
     further = np.minimum(ranges[after], ranges[after - 1]) > np.hypot(points[:, 0], points[:, 1]) + _BEHIND
     return float((close & further).sum() / max(int(close.sum()), _FEWEST))

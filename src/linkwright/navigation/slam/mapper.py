@@ -44,7 +44,7 @@ class Outcome:
     Attributes:
         pose: of the robot in the map, of shape (3,).
         covariance: of it, of shape (3, 3), in the frame of the robot.
-        matched: whether the scan told where the robot is; else that is odometry's.
+        matched: whether scan matching determined the pose; otherwise odometry did.
         response: of the match, 0 to 1.
         links: how many earlier passes it was linked with.
         loops: how many loops were closed.
@@ -109,7 +109,7 @@ class Mapper:
             self._in_map = self.graph.poses[0].copy()
 
     def wants(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
-        """Whether a scan at a pose of odometry is to be processed: the robot moved far enough since the last one.
+        """Return whether to process a scan at an odometry pose: whether the robot moved far enough since the last one.
 
         Args:
             odometry: the pose, of shape (3,).
@@ -168,7 +168,7 @@ class Mapper:
         return _outcome(self._in_map, information, found, links, loops)
 
     def localize(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
-        """Localize a scan, in steps; the graph stays as it is. Arguments are those of `process`."""
+        """Localize a scan, in steps, without changing the graph. Arguments are those of `process`."""
         searched = self._last is None
         guess = self.expected(odometry)
         moved = np.zeros(3) if self._last is None else between(self._last[0], odometry)

@@ -26,7 +26,7 @@ class PoseGraph:
 
     Attributes:
         poses: of the nodes, of shape (n, 3).
-        first: from which node each edge goes.
+        first: the start node of each edge.
         second: to which one.
         measured: the pose of the second node in the first, (3,) each.
         information: the inverse of its covariance in the frame of the second node, (3, 3) each.

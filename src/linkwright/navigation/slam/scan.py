@@ -37,14 +37,14 @@ def planar_scan(
 ) -> PlanarScan:
     """Convert the ranges of a laser to points.
 
-    As in Karto a range that is not measured (NaN, infinite, 0, outside of the laser's own limits) tells nothing, and
-    one longer than the mapper wants tells that the way until there is free.
+    As in Karto a range that is not measured (NaN, infinite, 0, outside of the laser's own limits) is ignored, and a
+    range beyond the mapper's maximum marks the ray up to it as free.
 
     Args:
         ranges: metres, of shape (n,).
         angles: of the rays in the frame of the laser, about its z axis, of shape (n,), radians.
         limits: the least and the most that the laser measures, metres.
-        cut_off: the least and the most that the mapper wants, metres.
+        cut_off: the mapper's least and greatest range, metres.
         laser: rotation matrix, of shape (3, 3), and position, of shape (3,), of the laser in the frame of the base; it
             may be mounted upside down.
         stamp_ns: when it was measured, nanoseconds.

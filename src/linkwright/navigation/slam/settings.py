@@ -25,7 +25,7 @@ class MapperSettings:
         loop_search_maximum_distance: how far away the robot may seem to be from where it has been before.
         loop_match_minimum_chain_size: how many scans in a row there must be for a loop to be tried.
         loop_match_maximum_variance_coarse: of a position, metres squared, beyond which a loop is not believed.
-        loop_match_minimum_response_coarse: what the search for a loop must find at least, 0 to 1.
+        loop_match_minimum_response_coarse: the least response of the search for a loop, 0 to 1.
         loop_match_minimum_response_fine: and the match that follows.
         matching: the window in which a new scan is searched.
         loop: the window in which a loop is searched.

@@ -1,7 +1,7 @@
 """Files of a graph of poses with its scans, as slam_toolbox's serialised maps.
 
-The file is a NumPy archive of plain arrays, of our own: what slam_toolbox writes is the memory of its C++ classes, as
-Boost serialises it, and cannot be read by others.
+The file is a NumPy archive of plain arrays, of our own: slam_toolbox writes the memory of its C++ classes, as Boost
+serialises it, and cannot be read by others.
 """
 
 from __future__ import annotations

@@ -1,9 +1,8 @@
 """ros2_control_node of controller_manager: runs controllers in real time.
 
 It reads, updates and writes at ``update_rate`` on the event loop, so that topics and services need not be handed over.
-Updates that come too late are left out, as ``overruns.manage`` says, or made up for.
-The description comes by the topic ``robot_description`` (Jazzy), by ``~/robot_description``, or as a parameter
-(Humble).
+Late updates are skipped or made up for, according to ``overruns.manage``. The description comes by the topic
+``robot_description`` (Jazzy), by ``~/robot_description``, or as a parameter (Humble).
 """
 
 from __future__ import annotations
@@ -54,7 +53,7 @@ class Ros2ControlNode(SingleNode):
     """The running node.
 
     Raises:
-        LinkwrightError: NODE830, its update rate is none; a name, a remapping or a ROS argument is not valid.
+        LinkwrightError: NODE830, its update rate is invalid; a name, a remapping or a ROS argument is not valid.
     """
 
     DEFAULT_NAME = "controller_manager"

@@ -17,7 +17,7 @@ _LARGEST = 256 << 20
 
 
 class AssetRefusedError(Exception):
-    """An asset is refused; the text says why."""
+    """An asset is refused; the text gives the reason."""
 
 
 class Assets:

@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 
 _APPLICATIONS = ("foxglove.dev", "lichtblick-suite.github.io")
 _SCHEMES_OF_PROGRAMS = ("file", "app", "foxglove", "lichtblick")
-"""Desktop programs that are made of web pages."""
+"""Desktop programs built from web pages."""
 
 
 def is_welcome(origin: str | None, more: Collection[str] = ()) -> bool:

@@ -20,8 +20,8 @@ class Parameters:
     """Reads and sets the parameters of other nodes.
 
     Args:
-        node: asks.
-        wanted: which parameters.
+        node: the node that asks.
+        wanted: the filter of parameter names.
     """
 
     def __init__(self, node: Node, wanted: NameFilter) -> None:

@@ -11,7 +11,7 @@ from enum import IntEnum
 from typing import Any
 
 SUBPROTOCOLS = ("foxglove.websocket.v1", "foxglove.sdk.v1")
-"""The second is what Foxglove's SDK calls the same messages."""
+"""The second is the name of the same messages in Foxglove's SDK."""
 
 ENCODING = "cdr"
 SCHEMA_ENCODING = "ros2msg"
@@ -81,7 +81,7 @@ def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
     """Parse a binary frame of a client.
 
     Raises:
-        BadFrameError: it is none.
+        BadFrameError: it is not a message of the protocol.
     """
     try:
         kind = frame[0]

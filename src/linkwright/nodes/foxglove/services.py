@@ -19,7 +19,7 @@ _PATIENCE = 10.0
 
 
 class CallFailedError(Exception):
-    """A service call failed; the text says why."""
+    """A service call failed; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class Services:
 
     Args:
         node: calls.
-        wanted: which services.
+        wanted: the filter of service names.
     """
 
     def __init__(self, node: Node, wanted: NameFilter) -> None:
@@ -65,7 +65,7 @@ class Services:
         return list(self._offered.values())
 
     def look(self) -> tuple[list[OfferedService], list[int]]:
-        """The services that came since the last call, and the numbers of those that went."""
+        """Return the services added since the last call, and the numbers of the removed ones."""
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -124,5 +124,5 @@ class Services:
         try:
             answer: Any = future.result()
             return bytes(serialize(answer))
-        except Exception as error:  # noqa: BLE001 - whatever the service's code raised
+        except Exception as error:  # noqa: BLE001 - an exception of the service's code
             raise CallFailedError(str(error)) from None

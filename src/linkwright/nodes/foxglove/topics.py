@@ -45,7 +45,7 @@ class Channels:
 
     Args:
         node: whose graph it is.
-        wanted: which topics.
+        wanted: the filter of topic names.
     """
 
     def __init__(self, node: Node, wanted: NameFilter) -> None:
@@ -64,7 +64,7 @@ class Channels:
         return next((channel for channel in self._channels.values() if channel.number == number), None)
 
     def look(self) -> tuple[list[Channel], list[int]]:
-        """The channels that came since the last call, and the numbers of those that went."""
+        """Return the channels added since the last call, and the numbers of the removed ones."""
         there = {
             (endpoint.name, endpoint.type_name)
             for endpoint in self._node.graph.endpoints()
@@ -131,10 +131,10 @@ class Publication:
 
     Args:
         node: publishes.
-        told: the channel, as the client advertises it.
+        channel: the client's advertisement of the channel.
 
     Raises:
-        LinkwrightError: the type is not known, or the topic's name is none.
+        LinkwrightError: the type is unknown, or the topic's name is invalid.
         ValueError: the encoding is not CDR.
     """
 

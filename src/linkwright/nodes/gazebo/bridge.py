@@ -1,8 +1,8 @@
 """parameter_bridge and static_bridge of ros_gz_bridge, and image_bridge of ros_gz_image.
 
 Topics of gz are topics of the graph here, with the names and types that they have after a bridge. So a bridge has work
-to do only where the two sides have different names or types: it hands messages on from one to the other. The others it
-only announces, since programs look for them before the simulation has begun or the robot has come.
+to do only where the two sides have different names or types: it forwards messages from one to the other. It only
+announces the other topics, because programs look for them before the simulation has started or the robot is spawned.
 """
 
 from __future__ import annotations

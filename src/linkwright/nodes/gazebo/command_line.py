@@ -40,7 +40,7 @@ class SimulatorCommand:
 
 
 def simulator_command(words: Sequence[str]) -> SimulatorCommand | None:
-    """Parse the command line of a program; None where it is none of Gazebo's."""
+    """Parse the command line of a program; None if it is not one of Gazebo's."""
     program, *rest = words
     name = PurePath(program).name
     if name in ("gazebo", "gzserver"):

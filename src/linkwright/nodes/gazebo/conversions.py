@@ -22,7 +22,7 @@ TYPES_OF_GZ = {
 
 
 def conversion(source: str, target: str) -> Conversion | None:
-    """The function that converts messages of one type to another; None where there is none."""
+    """Return the function that converts messages of one type to another; None if there is none."""
     if source == target:
         return lambda message: message
     inside = _WITH_HEADER.get(source)
@@ -39,7 +39,7 @@ _WITH_HEADER = {
     "geometry_msgs/msg/WrenchStamped": ("geometry_msgs/msg/Wrench", "wrench"),
     "geometry_msgs/msg/TransformStamped": ("geometry_msgs/msg/Transform", "transform"),
 }
-"""Types with a header, what each carries and in which field."""
+"""Types with a header: the type of their payload, and its field."""
 
 
 def _pose(transform: Any) -> Any:

@@ -19,8 +19,8 @@ class Create(EntitySpawner):
     """The running node: it ends with status 0 when the entity was spawned.
 
     Raises:
-        LinkwrightError: NODE812, neither its command line nor its parameters name a description, or a number is none;
-            NODE811, the file cannot be read.
+        LinkwrightError: NODE812, neither its command line nor its parameters name a description, or a number is
+            invalid; NODE811, the file cannot be read.
     """
 
     DEFAULT_NAME = "ros_gz_sim"
@@ -89,7 +89,7 @@ def _options(words: Sequence[str]) -> Iterator[tuple[str, str]]:
         option, equals, value = word.partition("=")
         name = option.lstrip("-")
         if not option.startswith("-") or name not in (*_TEXTS, *_NUMBERS, "allow_renaming"):
-            continue  # gz ignores what it does not know
+            continue  # gz ignores unknown options
         if not equals and rest and (name != "allow_renaming" or rest[0].lower() in ("true", "false")):
             value = rest.pop(0)
         yield name, value

@@ -116,7 +116,7 @@ def _read(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
     """Parse a command line that names an entity.
 
     Raises:
-        LinkwrightError: NODE812, it is none.
+        LinkwrightError: NODE812, the command line is invalid.
     """
     arguments = parser.parse_args(words)
     if not arguments.name:

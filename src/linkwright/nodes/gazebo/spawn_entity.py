@@ -17,7 +17,7 @@ class SpawnEntity(EntitySpawner):
     """The running node: it ends with status 0 when the entity was spawned.
 
     Raises:
-        LinkwrightError: NODE810, the command line is none; NODE811, the file cannot be read.
+        LinkwrightError: NODE810, the command line is invalid; NODE811, the file cannot be read.
     """
 
     DEFAULT_NAME = "spawn_entity"

@@ -161,7 +161,7 @@ def text_at(address: str, environment: Mapping[str, str]) -> str:
 
     Args:
         address: as written.
-        environment: the variables that say where files are.
+        environment: the environment variables with the paths of files.
 
     Raises:
         LinkwrightError: NODE811, there is none, or it cannot be read.

@@ -1,4 +1,4 @@
-"""A substitute for Gazebo's window: a node that says where the world can be viewed."""
+"""A substitute for Gazebo's window: a node that logs where the world can be viewed."""
 
 from __future__ import annotations
 

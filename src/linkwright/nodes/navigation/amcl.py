@@ -34,7 +34,7 @@ _SECONDS_BETWEEN_COMPLAINTS = 5.0
 _SECONDS_OF_SILENCE = 15.0
 _UNKNOWN_COVARIANCE = np.diag((0.25, 0.25, (np.pi / 12.0) ** 2))
 _FITS_LITTLE = 0.3
-"""A share of beams near what is on the map up to which a scan does not fit."""
+"""The share of beams near obstacles of the map below which a scan does not fit."""
 _MISFITS = 5
 """The number of consecutive measurements that do not match after which a warning is logged."""
 

@@ -1,7 +1,7 @@
 """behavior_server of nav2: spin, back up, drive on heading, wait and assisted teleoperation as actions.
 
 Source: nav2_behaviors, Humble and Jazzy. Obstacles are those of ``local_costmap/costmap_raw``, the footprint is that of
-``local_costmap/published_footprint``. Different on purpose: a costmap that falls silent ends a behaviour that moves.
+``local_costmap/published_footprint``. Deliberate differences: a costmap that falls silent ends a behaviour that moves.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
 _SILENT_COSTMAP = 5.0
-"""Seconds after which a costmap that was not heard counts for nothing."""
+"""The seconds after which a costmap is out of date."""
 _CODES = {Outcome.TIMEOUT: "TIMEOUT", Outcome.COLLISION: "COLLISION_AHEAD"}
 _TYPES = {
     "spin": ("nav2_behaviors/Spin", "nav2_msgs/action/Spin"),
@@ -58,7 +58,7 @@ class _AssistedTeleop(Behavior):
     Args:
         allowance: how long it may take, in seconds; 0 for ever.
         seconds: how far ahead obstacles count.
-        asked: the velocity that is asked for.
+        asked: the requested velocity.
     """
 
     def __init__(self, allowance: float, seconds: float, asked: Callable[[], Velocity]) -> None:

@@ -30,11 +30,11 @@ class Bond:
     """One side of a bond.
 
     Args:
-        node: sends and hears the heartbeats.
+        node: the node that exchanges the heartbeats.
         name: id of the bond; with nav2, the name of the managed node.
         timeout: seconds of silence after which the other side is dead.
         period: seconds between heartbeats.
-        on_formed: called once when the other side is first heard.
+        on_formed: called once at the first heartbeat of the other side.
         on_broken: called once when the other side left or fell silent; not after `end`.
     """
 
@@ -58,7 +58,7 @@ class Bond:
         self.broken = False
         self._publisher = node.create_publisher(status, TOPIC, _DEPTH)
         self._subscription = node.create_subscription(status, TOPIC, self._receive, _DEPTH)
-        self._subscription.take_together()  # the heartbeats of all bonds of a system come here
+        self._subscription.take_together()  # this topic carries the heartbeats of all bonds of a system
         self._timer = node.create_timer(period, self._tick, clock=self._clock)
         self._send(active=True)
 

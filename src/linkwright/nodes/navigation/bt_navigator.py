@@ -34,7 +34,7 @@ _COSTMAP_TOPIC = "global_costmap/costmap_raw"
 _OUTSIDE = 255
 """The cost of an unknown place, or one outside of the map."""
 _RETRIES = 6
-"""After so many recoveries a goal is given up."""
+"""The number of recoveries after which a goal is aborted."""
 _REPLANNING = {"pose": 1.0, "poses": 3.0}
 """Seconds between two paths, as nav2's trees have it."""
 _PASSED = 0.7
@@ -146,7 +146,7 @@ class NavigatorNode(StepNode):
             feedback["number_of_poses_remaining"] = len(self._poses)
         server.feedback(**feedback)
 
-    # --- what is done -------------------------------------------------------------------------------------------------
+    # --- the work -----------------------------------------------------------------------------------------------------
 
     def _navigate(self, which: str) -> Step:
         """Navigate through the poses, and recover from failures."""

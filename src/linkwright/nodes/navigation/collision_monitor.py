@@ -1,6 +1,6 @@
 """collision_monitor of nav2: forwards velocities, slowed down or stopped when sensors see something in a zone.
 
-Parameters, topics and rules are those of nav2, Humble's and Jazzy's. Different on purpose: unless
+Parameters, topics and rules are those of nav2, Humble's and Jazzy's. Deliberate differences: unless
 ``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; a sensor
 that is silent stops the robot, which in Humble it does not; and so does a driver that was lost. Sensors of the types
 ``polygon`` and ``costmap`` are not had, and ``transform_tolerance`` has no effect: what has no place yet waits.

@@ -92,7 +92,7 @@ class Source:
         return placed[:, :2]
 
     def _newest(self) -> tuple[Any, Transform] | None:
-        """The newest message with a known transform, and that; transforms often come a little later than messages."""
+        """Return the newest message with a known transform, and the transform, which often arrives later."""
         for message in reversed(self._waiting):
             pose = self._pose(message.header.frame_id, message.header.stamp.nanoseconds)
             if pose is not None:

@@ -136,7 +136,7 @@ class Zone:
         return SpeedRange(Outline(corners), (between[0], between[1]), (between[2], between[3]), direction)
 
     def _read_shape(self, kind: str) -> None:
-        """Read the shape from parameters, or the topic that it comes from."""
+        """Read the shape from parameters, or subscribe to its topic."""
         polygon = get_message(_POLYGON)
         if kind == "circle":
             radius = float(self._value("radius", 0.0))
@@ -193,7 +193,7 @@ class Zone:
     def _place(self) -> None:
         """Transform the corners of a topic to the robot's frame of now.
 
-        Footprints come placed where the robot was when they were sent, so they are taken back as of that time.
+        Footprints are published at the robot's pose, so they are transformed back with the transform of their stamp.
         """
         if self._polygon is None:
             return

@@ -1,7 +1,7 @@
 """controller_server of nav2: follows the paths of the action ``follow_path``.
 
-Parameters, topics and results are those of nav2. Different on purpose: unless ``enable_stamped_cmd_vel`` is set, Twist
-or TwistStamped is published, whichever is listened to; while the costmap is not current the robot stands still.
+Parameters, topics and results are those of nav2. Deliberate differences: unless ``enable_stamped_cmd_vel`` is set,
+Twist or TwistStamped is published, whichever is listened to; while the costmap is not current the robot stands still.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from linkwright.nodes.velocity_topic import VelocityTopic
 _DEPTH = 10
 _SECONDS_BETWEEN_COMPLAINTS = 2.0
 _LONGEST_WAIT = 3.0
-"""Seconds for which the robot stands still because something is not known, before the goal is given up."""
+"""The seconds that the robot waits for missing data before the goal is aborted."""
 _STALE_PATH_FRAME = 5.0
 """Seconds after which where the path's frame is, is not known any more."""
 
@@ -175,7 +175,7 @@ class ControllerNode(ManagedNode):
             self._fail(failure)
 
     def _wait(self, problem: _NotNowError) -> None:
-        """Stand still until what is missing is known again, or abort."""
+        """Stop the robot until the missing data arrives, or abort."""
         self._publish(STILL)
         waited = (self.now_ns() - self._good_ns) / 1e9
         if waited > max(self._value("costmap_update_timeout"), _LONGEST_WAIT):
@@ -220,7 +220,7 @@ class ControllerNode(ManagedNode):
         goals.feedback(distance_to_goal=self._path.remaining(x, y), speed=hypot(self._measured.x, self._measured.y))
 
     def _bear(self, reason: str, now_ns: int) -> None:
-        """Stand still without a valid velocity, for as long as ``failure_tolerance`` allows."""
+        """Stop the robot without a valid velocity, for as long as ``failure_tolerance`` allows."""
         tolerance = self._value("failure_tolerance")
         if not tolerance:
             raise GoalError("NO_VALID_CONTROL", reason)

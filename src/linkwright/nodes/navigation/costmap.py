@@ -1,6 +1,6 @@
 """Costmaps of nav2's servers: nodes such as ``/local_costmap/local_costmap`` in the process of a server.
 
-Source: nav2_costmap_2d ``Costmap2DROS``, Humble and Jazzy. Different on purpose: it is activated even where the place
+Source: nav2_costmap_2d ``Costmap2DROS``, Humble and Jazzy. Deliberate differences: it is activated even where the place
 of the robot is not known yet, and begins to work when it is; layers that we do not have, and filters of costs, are left
 out with a line.
 """

@@ -19,7 +19,7 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import occupancy_message
 
 _QOS = DESCRIPTION_QOS
-"""Kept for those who come later: reliable, transient local, one message."""
+"""For late subscribers: reliable, transient local, one message."""
 
 
 def _percentages() -> Costs:

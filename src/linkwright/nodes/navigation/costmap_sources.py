@@ -164,13 +164,13 @@ class RangeTopic(SensorTopic):
 
     @property
     def all_count(self) -> bool:
-        """True: probabilities are learnt from all messages."""
+        """True: every message updates the probabilities."""
         return True
 
     def _observe(self, message: Any, pose: Transform) -> None:
         least, most, distance = message.min_range, message.max_range, message.range
         free = self._layer.settings.clear_on_max_reading
-        if least == most:  # of a sensor that tells only whether there is something
+        if least == most:  # of a sensor that only detects presence
             if not np.isinf(distance) or (distance > 0.0 and not free):
                 return
             free, distance = distance > 0.0, least

@@ -1,6 +1,6 @@
 """The plugins of nav2's controller_server: our classes under nav2's names, with nav2's parameters.
 
-Different on purpose: DWB and MPPI are one follower of our own, which has the parameters of both that are limits and
+Deliberate differences: DWB and MPPI are one follower of our own, which has the parameters of both that are limits and
 times; which of the others were given is said in a line.
 """
 

@@ -12,7 +12,7 @@ from linkwright.nodes.navigation.managed import ManagedNode
 
 
 class GoalError(Exception):
-    """A goal cannot be reached; the text says why.
+    """A goal cannot be reached; the text gives the reason.
 
     Attributes:
         code: name of nav2's error code.

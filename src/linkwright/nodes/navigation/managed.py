@@ -151,7 +151,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         return super().on_error(state)
 
     def leave(self) -> None:
-        """Stop working and tell its manager; called before it is destroyed."""
+        """Stop working and notify the manager; called before the node is destroyed."""
         if self.is_active:
             self.deactivate()
         self._end_bond()
@@ -178,7 +178,7 @@ class ManagedServer(SingleNode):
     """The running node of one of nav2's servers.
 
     Attributes:
-        NODE: what it is on the graph.
+        NODE: the class of the node.
     """
 
     NODE: ClassVar[type[ManagedNode]]
@@ -191,7 +191,7 @@ class ManagedServer(SingleNode):
             node.start_itself()
 
     def prepare(self, graph: Graph, options: NodeOptions) -> None:
-        """Give the node what it needs before it starts; here nothing."""
+        """Prepare the node before it starts; does nothing by default."""
 
     def close(self) -> None:
         """Close the node and notify its manager."""

@@ -100,7 +100,7 @@ class _Saving:
         return None
 
     async def _map_of(self, topic: str) -> Any:
-        """The next message; None, with a log line, if none comes in time."""
+        """Return the next message; None, with a log line, if none arrives in time."""
         node = self._node
         come: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
 
@@ -121,7 +121,7 @@ class _Saving:
                     else f"{senders} publish on '{subscription.name}', but no map with a compatible QoS arrived"
                 )
                 node.get_logger().error(
-                    f"Failed to spin map subscription: no map came within {self._timeout:g} s; {why}"
+                    f"Failed to spin map subscription: no map arrived within {self._timeout:g} s; {why}"
                 )
                 return None
             return come.result()
@@ -219,7 +219,7 @@ class MapSaverNode(ManagedNode):
 
 
 def _decimal(value: float) -> float:
-    """The decimal number of a float32: 0.65 comes over the wire as 0.649999976."""
+    """Return the decimal number of a float32: 0.65 arrives as 0.649999976."""
     return round(value, 6)
 
 

@@ -16,7 +16,7 @@ from linkwright.navigation.maps.map_files import load_map
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 
 MAP_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""The profile of a map, which is published once, also for subscriptions that come later."""
+"""The QoS profile of a map, which is published once, also for late subscriptions."""
 
 
 class MapServerNode(ManagedNode):

@@ -39,7 +39,7 @@ _OTHERS: Final = {
     "nav2_smac_planner/SmacPlannerHybrid": Settings(tolerance=0.25),
     "nav2_smac_planner/SmacPlannerLattice": Settings(tolerance=0.25),
 }
-"""Types whose work NavFn's method does, with what they have for parameters that are not given."""
+"""The types whose work NavFn's method does, with their default parameters."""
 
 Poses = NDArray[np.float64]
 Work = Generator[str | None, None, Any]
@@ -72,7 +72,7 @@ class PlannerNode(ManagedNode):
         self.get_logger().info(f"Planner Server has {' '.join(self._planners)}  planners available.")
         if self.get_parameter("expected_planner_frequency").value <= 0.0:
             self.get_logger().warning(
-                "The expected planner frequency parameter is 0 Hz or less: it is not told when plans take too long"
+                "The expected planner frequency parameter is 0 Hz or less: slow plans cause no warning"
             )
         self.costmap.trigger_configure()
         self._plans = self.register(self.create_publisher(get_message("nav_msgs/msg/Path"), "plan", 1))

@@ -88,7 +88,7 @@ class StepNode(ManagedNode):
         """Wait for a response.
 
         Raises:
-            StepError: it does not come.
+            StepError: it does not arrive.
         """
         limit_ns = self.now_ns() + round(_SERVER_SECONDS * 1e9)
         while not is_done():

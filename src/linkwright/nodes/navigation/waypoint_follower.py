@@ -1,6 +1,6 @@
 """waypoint_follower of nav2: navigates to poses one after the other and waits at each (``follow_waypoints``).
 
-Different on purpose: of the tasks at waypoints there is the waiting; others are left out with a line.
+Deliberate differences: of the tasks at waypoints there is the waiting; others are left out with a line.
 """
 
 from __future__ import annotations

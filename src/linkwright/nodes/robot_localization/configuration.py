@@ -46,7 +46,7 @@ class SensorSettings:
     Attributes:
         name: such as ``odom0``.
         kind: one of `KINDS`.
-        topic: where its messages come from.
+        topic: the topic of its messages.
         used: which of the 15 values of the state it gives.
         differential: whether its pose counts as a velocity.
         relative: whether its poses count from the first one.
@@ -214,7 +214,7 @@ def _sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings:
 
 
 _CONTROL_TIMEOUT = 0.2
-"""Seconds, as its documentation says; the code of robot_localization has 0, with which no command ever counts."""
+"""Seconds, as documented; the code of robot_localization has 0, which ignores every command."""
 _THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
 
 

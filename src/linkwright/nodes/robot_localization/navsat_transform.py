@@ -1,9 +1,9 @@
 """navsat_transform_node of robot_localization: fixes of a satellite receiver to odometry, and odometry to fixes.
 
 It follows robot_localization 3.5 (ROS 2 Humble). The origin of the map on the earth, and how it is turned, come from
-the first fix with the first odometry and the heading of an IMU (0 in the east), or from a datum. Different on purpose:
-the place of the receiver on the robot is taken away with the orientation of the odometry and not by a lookup; ``delay``
-does not block.
+the first fix with the first odometry and the heading of an IMU (0 in the east), or from a datum. Deliberate
+differences: the place of the receiver on the robot is taken away with the orientation of the odometry and not by a
+lookup; ``delay`` does not block.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ class NavsatTransformNode(SingleNode):
             self._first_fix = place
 
     def _receive_imu(self, message: Any) -> None:
-        if self._map is not None or self._odometry is None:  # the frame of the body comes with the odometry
+        if self._map is not None or self._odometry is None:  # the odometry carries the frame of the body
             return
         mounting = self._poses.pose(
             self._base_frame, message.header.frame_id or self._base_frame, message.header.stamp.nanoseconds

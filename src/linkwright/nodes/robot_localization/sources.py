@@ -46,7 +46,7 @@ class Surroundings:
     Args:
         node: of the filter.
         configuration: its parameters.
-        estimator: takes what they measure.
+        estimator: receives their measurements.
         jumped_back: called when a message is older than the one before it.
     """
 

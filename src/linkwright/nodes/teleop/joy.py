@@ -80,7 +80,7 @@ class JoyNode(SingleNode):
             self._start()
 
     def close(self) -> None:
-        """Let go of the joystick."""
+        """Close the joystick."""
         if self._device is not None:
             self._device.close()
         super().close()

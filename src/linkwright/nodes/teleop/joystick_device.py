@@ -32,7 +32,7 @@ class JoystickEvent(NamedTuple):
         is_axis: whether it is an axis, else a button.
         number: which of them, from 0.
         value: of an axis -32767 to 32767, right and backwards positive; of a button 1 while it is pressed.
-        initial: whether it tells how things were when the device was opened.
+        initial: whether it is a state at the opening of the device.
     """
 
     is_axis: bool
@@ -46,7 +46,7 @@ class JoystickDevice:
 
     Args:
         path: the device.
-        on_events: called with what changed.
+        on_events: called with the changes.
         on_end: called once when the device is gone.
 
     Raises:

@@ -1,9 +1,9 @@
 """teleop_twist_keyboard: publishes velocities for keys pressed in a terminal.
 
 Keys, parameters and the line about speeds are those of the ROS node; ``repeat_rate`` and ``key_timeout`` are those of
-its ROS 1 form. Different on purpose: unless ``stamped`` is set it publishes what the topic's subscribers take; whatever
-ends it, it publishes a stop; and a key that sends several characters, such as an arrow, stops, where the ROS node takes
-its last character for a key.
+its ROS 1 form. Deliberate differences: unless ``stamped`` is set it publishes what the topic's subscribers take;
+whatever ends it, it publishes a stop; and a key that sends several characters, such as an arrow, stops, where the ROS
+node takes its last character for a key.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class TeleopTwistKeyboard(SingleNode):
             self._terminal = KeyTerminal(terminal, self._typed, self._ended)
         except OSError as error:
             raise _no_terminal() from error
-        # A stop may not wait for simulated time, which may stand still.
+        # A stop must not wait for simulated time, which may be paused.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         node.create_timer(_REVIEW_SECONDS, self._review, clock=clock)
         if repeat_rate > 0.0:

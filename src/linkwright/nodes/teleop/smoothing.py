@@ -29,7 +29,7 @@ class Limits:
         return min(max(velocity, self.least), self.most)
 
     def change(self, now: float, wanted: float, seconds: float) -> float:
-        """The change of the velocity in a cycle, towards the wanted one.
+        """The change of the velocity in a cycle, towards the requested one.
 
         It accelerates where it gets faster in the direction that it has, else it decelerates.
         """
@@ -49,7 +49,7 @@ def smoothed(
     Args:
         limits: of each axis.
         now: the velocities of the moment.
-        wanted: those that are asked for.
+        wanted: the requested velocities.
         seconds: until the next ones.
         scaled: whether all axes are slowed down as much as the one that needs it most, so that the direction stays.
     """

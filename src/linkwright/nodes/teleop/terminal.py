@@ -1,4 +1,4 @@
-"""A terminal that gives each key as it is pressed, and is restored afterwards."""
+"""A terminal that reports each key as it is pressed, and is restored afterwards."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class KeyTerminal:
 
         def undo() -> None:
             loop.remove_reader(descriptor)
-            with contextlib.suppress(termios.error):  # it may be gone
+            with contextlib.suppress(termios.error):  # the terminal may be closed
                 termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
 
         loop.add_reader(descriptor, read)

@@ -42,14 +42,14 @@ class _Source:
         self._heard_ns = now_ns
 
     def expired(self, now_ns: int) -> bool:
-        """Whether its last message is too old, or none came yet; never without a time-out."""
+        """Whether its last message is too old, or missing; never without a time-out."""
         if self.timeout == 0.0:
             return False
         return self._heard_ns is None or (now_ns - self._heard_ns) / _NANOSECONDS > self.timeout
 
     @property
     def silent(self) -> bool:
-        """Whether no message came yet."""
+        """Whether no message has arrived yet."""
         return self._heard_ns is None
 
     def described(self, state: str) -> str:
@@ -64,7 +64,7 @@ class TwistMux(SingleNode):
     255), and ``use_stamped`` for TwistStamped in and out.
 
     Raises:
-        LinkwrightError: NODE904 what is said of a topic or a lock is not whole or not right.
+        LinkwrightError: NODE904 the parameters of a topic or a lock are incomplete or invalid.
     """
 
     DEFAULT_NAME = "twist_mux"
@@ -82,7 +82,7 @@ class TwistMux(SingleNode):
         kind = TWIST_STAMPED if node.get_parameter("use_stamped").value else TWIST
         self._topics, self._locks = _sources(node, "topics"), _sources(node, "locks")
         if not self._topics:
-            node.get_logger().warning(localized(phrase("no topics.NAME.topic is given, so nothing goes through")))
+            node.get_logger().warning(localized(phrase("no topics.NAME.topic is given, so nothing is forwarded")))
         self._publisher: Publisher[Any] = node.create_publisher(kind, "cmd_vel_out", _DEPTH)
         self._commander = Commander(partial(send_stop, node, self._publisher))
         for source in self._topics:

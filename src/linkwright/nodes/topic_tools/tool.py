@@ -74,7 +74,7 @@ class TopicTool(SingleNode, ABC):
             self._publisher.publish(message)
 
     def _look(self) -> None:
-        """Make the publisher and the subscription for the graph as it is now."""
+        """Create the publisher and the subscription for the current graph."""
         sources = self._sources()
         if not sources:
             self._stop()

@@ -113,7 +113,7 @@ class Detect3DNode(SingleNode):
         """The positions of detections, in the optical frame of their image."""
         camera = self._cameras.get("colour") or self._cameras.get("depth")
         if camera is None:
-            self._complain("no camera_info has come")
+            self._complain("no camera_info has arrived")
             return [None] * len(message.detections)
         depths, ground = self._depths_at(message), self._ground_below(message)
         places: list[Place | None] = []
@@ -132,7 +132,7 @@ class Detect3DNode(SingleNode):
         image = min(self._depths, key=lambda depth: abs(depth.header.stamp.nanoseconds - time_ns), default=None)
         if image is None or abs(image.header.stamp.nanoseconds - time_ns) > _SLOP_NS:
             if not self._ground:
-                self._complain("no depth image has come that is as old as the detections")
+                self._complain("no depth image has arrived with a stamp near that of the detections")
             return None
         if image.header.frame_id != message.header.frame_id:
             self._complain(

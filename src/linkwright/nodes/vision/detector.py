@@ -78,12 +78,12 @@ _SETTINGS = ("dictionary", "least_area", "part", "colour")
 _COLOURS = "colours"
 _CLASSES = "classes"
 _RATE_SLACK = 0.9
-"""The part of a period after which an image is taken, so that one that comes a little early is not skipped."""
+"""The share of a period after which an image is accepted, so that a slightly early one is not skipped."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Task:
-    """An image for the detector, its limits, and whether boxes are to be drawn."""
+    """An image for the detector, its limits, and whether to draw boxes."""
 
     message: Any
     limits: Limits
@@ -208,7 +208,7 @@ class DetectorNode(SingleNode):
             known: the classes of the detector; None while it is loaded, when all count.
 
         Raises:
-            LinkwrightError: NODE433, `max_det` is less than 1, or a class is none that the detector knows.
+            LinkwrightError: NODE433, `max_det` is less than 1, or the detector has no such class.
         """
         dialect = self.DIALECT
         threshold, iou, most, classes = (

@@ -110,7 +110,7 @@ class ObjectSeeker(SingleNode):
         return self._node.get_clock().now().nanoseconds
 
     def _begin(self, language: str | None, follow: bool, message: Any) -> None:
-        """Seek what a message names; answers are in that language, or, where it is None, in that of the message."""
+        """Seek the object that a message names. Answers are in a language, or for None in the message's."""
         request = requested(message.data)
         if request is None:
             self._node.get_logger().warning(f"'{message.data}' names nothing to go to; say 'ball' or 'red ball'")

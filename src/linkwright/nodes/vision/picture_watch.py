@@ -34,12 +34,12 @@ class ImageWatch:
         self._is_waiting, self._topic_parameter = is_waiting, topic_parameter
         self._came = self._has_warned = False
         self._quiet, self._patience = 0, 1  # periods
-        # Silence may not wait for simulated time, which may stand still.
+        # Not simulated time, which may be paused.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         node.create_timer(_SECONDS, self._look, clock=clock)
 
     def came(self) -> None:
-        """Note that an image came."""
+        """Note that an image has arrived."""
         self._came = True
 
     def _look(self) -> None:
@@ -62,7 +62,7 @@ class ImageWatch:
             logger.warning(localized(hint))
 
     def _reason(self) -> tuple[Phrase, Phrase | None]:
-        """The reason why no images come, and a hint."""
+        """Return the reason why no images arrive, and a hint."""
         topic, wanted = self._source.topic, self._source.message_type
         publishers = self._node.get_publishers_info_by_topic(topic)
         if not publishers:

@@ -26,10 +26,10 @@ class SeenObject:
 
     Attributes:
         name: its class.
-        id: that of a tracker; empty where there is none.
-        colour: in a word, if known.
-        x, y: of its middle in the fixed frame, metres.
-        radius: half of its width, metres.
+        id: the id of a tracker; empty if there is none.
+        colour: the colour as a word, if known.
+        x, y: the position of its centre in the fixed frame, metres.
+        radius: half its width, metres.
         shape: its width by its height.
         score: of its detection.
         seen_ns: the time of the image, nanoseconds.
@@ -58,7 +58,7 @@ class SeenObjects:
 
     Attributes:
         objects: those of the latest image.
-        heard_ns: when it came, by the node's clock; None before the first.
+        heard_ns: when that image arrived, by the node's clock; None before the first.
     """
 
     def __init__(self, node: Node, poses: FramePoses, fixed_frame: str) -> None:

@@ -1,7 +1,7 @@
 """audio_capture: publishes sound of a WAV file or of the microphone on audio_common's topics.
 
 Topics and parameters are those of the node of ros-drivers' audio_common: ``audio``, ``audio_stamped`` and, latched,
-``audio_info``. Different on purpose: what is published is always 16 kHz, mono, S16LE, which is that node's default,
+``audio_info``. Deliberate differences: what is published is always 16 kHz, mono, S16LE, which is that node's default,
 and never MP3.
 """
 
@@ -23,7 +23,7 @@ from linkwright.speech.sound.samples import BLOCK, RATE, Samples
 from linkwright.speech.sound.wav import read_wav
 
 _PUBLISHED = {"channels": 1, "depth": 16, "sample_rate": RATE, "sample_format": "S16LE", "format": "wave"}
-"""Parameters of audio_capture that tell the form, with the only values that are obeyed."""
+"""The format parameters of audio_capture, with their only supported values."""
 
 _MOST_CHUNK = 10 * RATE
 

@@ -41,7 +41,7 @@ class AudioForm:
     """The format of AudioData's bytes, as an AudioInfo declares it.
 
     Attributes:
-        channels: whose samples come in turn.
+        channels: the number of channels, whose samples are interleaved.
         rate: samples a second of each.
         sample_format: GStreamer's name, such as ``S16LE``, ``U8`` or ``F32LE``.
     """

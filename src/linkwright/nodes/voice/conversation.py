@@ -70,7 +70,7 @@ class Conversation:
         return self._driver.is_moving or self._requests.is_active
 
     def handle(self, text: str) -> bool:
-        """Carry out the command of a text, or ask back; whether it was understood."""
+        """Execute the command of a text, or ask back; return whether it was understood."""
         answer = self._commands.answer(text) if self._asked is not None else None
         if self._asked is not None and answer is not None:
             understood, asked_for = self._asked

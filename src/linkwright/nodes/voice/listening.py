@@ -14,7 +14,7 @@ from linkwright.speech.engine import Heard, SpeechEngine
 from linkwright.speech.sound.samples import RATE, Samples
 
 _MOST_WAITING = 100
-"""Blocks: an engine that is 10 s behind hears nothing new until it has caught up."""
+"""Blocks: an engine that is 10 s behind gets no new sound until it has caught up."""
 
 _Found: TypeAlias = Heard | Diagnostic | LinkwrightError | None
 """Results of the thread; None: all sound up to the end of the utterance was processed."""

@@ -21,7 +21,7 @@ from linkwright.speech.commands.command_set import Place
 NAVIGATE = "nav2_msgs/action/NavigateToPose"
 _DEPTH = 10
 _GRACE = 5.0
-"""s for a launch to end by itself."""
+"""s for a launch to end on its own."""
 
 
 class Goals:
@@ -63,7 +63,7 @@ class Goals:
         self.is_active = False
 
     def cancel_all(self) -> None:
-        """Cancel all goals of the action, whoever sent them."""
+        """Cancel all goals of the action, including those of other clients."""
         self.leave()
         if self._cancel_all.service_is_ready():
             self._cancel_all.call_async(self._cancel_all.srv_type.Request())
@@ -103,9 +103,9 @@ class Requests:
     """Clients and publishers for all requests of commands.
 
     Args:
-        node: asks.
+        node: the node that sends requests.
         ended: called when a goal is over; see `Goals`.
-        said: called with the ``message`` of a service's answer.
+        say: called with the ``message`` of a service's response.
     """
 
     def __init__(self, node: Node, ended: Callable[[bool, str], None], say: Callable[[str], None]) -> None:
@@ -183,7 +183,7 @@ class Requests:
         self._end_launch()
 
     def cancel_all(self) -> None:
-        """End our launch file, and cancel all goals of the actions that commands use, whoever sent them."""
+        """End our launch file, and cancel all goals of the actions of commands, including those of other clients."""
         for goals in self._goals.values():
             goals.cancel_all()
         self._end_launch()

@@ -13,10 +13,10 @@ _MOST_BEHIND = 10 * _SECOND
 """A suspended source publishes its backlog late; one that is later than this has restarted."""
 
 _MOST_AHEAD = _SECOND
-_DRIFT = 0.01  # of a block: how much the stamps come nearer to the clock with each
+_DRIFT = 0.01  # the share of a block by which stamps approach the clock with each block
 
 _STEADY = 5 * 10**6
-_STEADY_BLOCKS = 3  # that follow each other without a jump: then who publishes counts samples
+_STEADY_BLOCKS = 3  # that follow each other without a jump: then the publisher counts samples
 _JUMP = 50 * 10**6
 
 
@@ -35,7 +35,7 @@ class SampleStamps:
 
         Args:
             samples: how many it has.
-            now: the time, when its last sample was heard or some time later.
+            now: the time when its last sample was recorded, or later.
             lost: seconds that are missing in it or before it: the stamp jumps over them, but over no more than a second
                 that has not passed.
         """
@@ -73,7 +73,7 @@ class SoundGaps:
         jump = 0 if self._next is None else stamp - self._next
         self._next = stamp + length
         if jump <= _STEADY:
-            # Only who stamps blocks as they come is ever early after it was late.
+            # Only a publisher that stamps blocks on arrival is ever early after it was late.
             self._steady, self._small = (self._steady + 1, self._small) if jump >= -_STEADY else (0, 0)
             return 0.0
         if self._steady < _STEADY_BLOCKS:

@@ -1,7 +1,7 @@
 """voice_commander of my_robot_voice: turns spoken commands into velocities, goals, services and messages.
 
-Sound comes as ``audio/audio_stamped``, is recognised by an engine of `linkwright.speech`, and means what the file of
-commands says. It counts while ``voice/listen`` says that a button is held, or always with ``open_listening``.
+An engine of `linkwright.speech` recognises the sound on ``audio/audio_stamped``, and the file of commands defines its
+meaning. Sound counts while ``voice/listen`` reports a held button, or always with ``open_listening``.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ class VoiceCommander(SingleNode):
         )
         self._commands = commands
         self._listen_to_texts()
-        # Silence may not wait for simulated time, which may stand still.
+        # Not simulated time, which may be paused.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self._silence = node.create_timer(silence, self._silent, clock=clock, autostart=False)
         # Pages write enrolled words to the default file. A node that always listens ignores what is not a command.
@@ -135,7 +135,7 @@ class VoiceCommander(SingleNode):
         self._proposal: Publisher[Any] = node.create_publisher(_BOOL, "voice/propose_enrolling", _DEPTH)
         if engine:
             where = words if engine == "enrolled" and words else model
-            # Who enrols words may say them in any language.
+            # Enrolled words may be in any language.
             languages = [language, *commands.languages] if engine == "enrolled" else [language]
             phrases = tuple(dict.fromkeys(text for language in languages for text in commands.phrases(language)))
             given = EngineOptions(phrases, language, Path(where) if where else None)
@@ -225,7 +225,7 @@ class VoiceCommander(SingleNode):
             self._presses.note_unknown(heard)
 
     def _is_done_or_answered(self, heard: Heard) -> bool:
-        """Carry out a recognised text, or ask for it again; False where neither applies."""
+        """Execute a recognised text, or ask to repeat it; return False if neither applies."""
         lost = 0.0 if self._listener is None else self._listener.lost_in(heard)
         is_certain = heard.confidence >= self._confidence
         if is_certain and lost <= _MOST_LOST and self._execute(heard.text, by_voice=True):
@@ -255,7 +255,7 @@ class VoiceCommander(SingleNode):
 
     @property
     def _is_addressed(self) -> bool:
-        """Whether a result was said to the robot; its end comes after the button was let go."""
+        """Whether a result was addressed to the robot; it arrives after the button is released."""
         return self._held or not self._open
 
     def _stop_early(self, text: str) -> None:
@@ -289,7 +289,7 @@ class VoiceCommander(SingleNode):
     def _goal_ended(self, reached: bool, reason: str) -> None:
         self._conversation.goal_ended(reached, reason)
 
-    # --- what is said --------------------------------------------------------------------------------------------
+    # --- recognized text -----------------------------------------------------------------------------------------
 
     def _execute(self, text: str, *, by_voice: bool) -> bool:
         """Carry out the command of a text; whether it was understood."""
@@ -309,7 +309,7 @@ class VoiceCommander(SingleNode):
             self._conversation.rest(phrase("I hear nothing, so I stop"))
 
     def _look(self) -> None:
-        """Stop when the source of sound was lost while its commands had the robot drive on."""
+        """Stop when the audio source is lost while the robot executes its commands."""
         if self._spoken and self._driver.is_endless and not self._audio.get_publisher_count():
             self._deaf()
 

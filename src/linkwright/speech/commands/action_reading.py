@@ -59,7 +59,8 @@ class ActionReader:
         """Read the action.
 
         Raises:
-            LinkwrightError: VOICE302 there is not one action, or it is none; VOICE305 it does not fit its type.
+            LinkwrightError: VOICE302 there is not exactly one action, or it is invalid; VOICE305 it does not fit its
+                type.
         """
         given = [kind for kind in self.KINDS if self._keys.node(kind) is not None]
         if len(given) != 1:

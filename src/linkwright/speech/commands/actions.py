@@ -14,7 +14,7 @@ Values: TypeAlias = Mapping[str, Value]
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """A placeholder for the value that is said in a slot."""
+    """A placeholder for the spoken value of a slot."""
 
     name: str
 
@@ -48,7 +48,7 @@ class ScaleSpeed:
     """Multiply the speed from now on.
 
     Attributes:
-        factor: what the speeds are multiplied by.
+        factor: the factor of the speeds.
     """
 
     factor: float
@@ -95,7 +95,7 @@ class SendGoal:
 
 @dataclass(frozen=True, slots=True)
 class CallService:
-    """Call a service; a ``message`` in its response is said.
+    """Call a service; a ``message`` in its response is spoken.
 
     Attributes:
         name: of the service.

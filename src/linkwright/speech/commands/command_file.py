@@ -29,7 +29,7 @@ DEFAULT_FILE = Path(__file__).with_name("default.yaml")
 """The commands of a robot that was given none."""
 
 MOST_PHRASES = 5000
-"""Engines get all that can be said, one by one."""
+"""Engines get all phrases, one by one."""
 
 _TOP = ("places", "objects", "said", "yes", "no", "commands")
 _PLACE = ("x", "y", "yaw", "frame", "names")
@@ -40,8 +40,8 @@ def read_command_file(path: str | Path) -> CommandSet:
 
     Raises:
         LinkwrightError: VOICE301 it cannot be read; VOICE302 something in it is wrong; VOICE303 a phrase is;
-            VOICE304 two commands are said alike; VOICE305 a message is none of its type; VOICE306 more can be said
-            than engines take.
+            VOICE304 two commands share a phrase; VOICE305 a message does not fit its type; VOICE306 there are more
+            phrases than engines take.
     """
     return parse_commands(read_source(Path(path), phrase("file of commands"), "VOICE301"))
 

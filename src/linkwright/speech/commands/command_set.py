@@ -39,10 +39,10 @@ class Command:
 
     Attributes:
         intent: its name.
-        phrases: language -> how it is said.
-        action: what it does.
-        question: language -> what is asked before it is done; empty where it is done at once.
-        response: language -> what is answered; empty for the usual.
+        phrases: language -> its phrases.
+        action: the action.
+        question: language -> the question before it is executed; empty to execute it at once.
+        response: language -> the answer; empty for the default.
         moves: whether it takes the place of another motion.
     """
 
@@ -75,10 +75,10 @@ class CommandSet:
 
     Attributes:
         commands: in the order of the file.
-        names: slot of names -> how each is said -> the name.
-        said: slot -> language -> what can be said in it.
+        names: slot of names -> spoken form -> the name.
+        said: slot -> language -> its possible values.
         places: name -> where it is.
-        answers: ``yes`` and ``no`` -> language -> how it is said.
+        answers: ``yes`` and ``no`` -> language -> its spoken forms.
     """
 
     commands: tuple[Command, ...]
@@ -90,7 +90,7 @@ class CommandSet:
     def understand(self, text: str) -> Understood | None:
         """Find the command that a text is, in any language; None for none.
 
-        Of several the one with the most words that are said as they are written, and of these the first of the file.
+        Of several commands, the one with the most literal words, and of these the first in the file.
         """
         words = words_of(text)
         best: tuple[int, Understood] | None = None
@@ -141,7 +141,7 @@ class CommandSet:
         return sum(prod(len(values[slot]) for slot in template.slots) for template in self._templates(language))
 
     def _slot_values(self, language: str) -> dict[str, tuple[str, ...]]:
-        """The values of each slot, as they are said."""
+        """Return the spoken values of each slot."""
         return {
             slot: tuple(text for name in (language, ANY) for text in texts.get(name, ()))
             for slot, texts in {**SAYABLE, **self.said}.items()
@@ -153,7 +153,7 @@ class CommandSet:
 
 
 def chosen(texts: ByLanguage, language: str) -> str:
-    """The text in a language, else in English, else any; empty where there is none."""
+    """Return the text in a language, else in English, else any; empty if there is none."""
     for name in (language, ANY, "en"):
         if name in texts:
             return texts[name]

@@ -49,7 +49,7 @@ def number(words: Words) -> float | None:
 
 
 def has_number(words: Words) -> bool:
-    """Whether any of the words is a number; the articles "a" and "an" are none here."""
+    """Return whether any of the words is a number; the articles "a" and "an" do not count."""
     return any(word not in _ONE and number((word,)) is not None for word in words)
 
 

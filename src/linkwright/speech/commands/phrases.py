@@ -18,7 +18,7 @@ Value = float | str
 """The value of a slot: a quantity in metres, radians, seconds or metres a second, or a name of the file."""
 
 Names = Mapping[str, Mapping[Words, str]]
-"""Slot of names -> how each may be said -> the name."""
+"""Slot of names -> spoken form -> the name."""
 
 _OPTIONAL = re.compile(r"\[([^\[\]{}]*)\]")
 _SLOT = re.compile(r"\{(\w*)\}")
@@ -34,8 +34,8 @@ class Template:
     """A phrase whose brackets are expanded.
 
     Attributes:
-        text: as it is written.
-        pieces: what is said as it is written, and between two of them a slot of `slots`; one more than slots.
+        text: the text in the file.
+        pieces: the literal words between the slots of `slots`; one more than slots.
         slots: in their order.
     """
 
@@ -86,11 +86,11 @@ def templates(text: str, slots: Sequence[str]) -> list[Template]:
     """Expand the brackets of a phrase.
 
     Args:
-        text: the phrase as it is written.
+        text: the phrase in the file.
         slots: those that there are besides the ones of quantities.
 
     Raises:
-        TemplateError: a bracket is open, a slot is there twice or unknown, or nothing is left to be said.
+        TemplateError: a bracket is not closed, a slot occurs twice or is unknown, or no literal word is left.
     """
     if len(_OPTIONAL.findall(text)) > _MANY_OPTIONAL:
         raise TemplateError(phrase("it has more than {most} parts in brackets", most=_MANY_OPTIONAL))

@@ -19,12 +19,12 @@ class Keys:
 
     Args:
         document: it is in.
-        node: what should be the mapping.
-        what: what it is, for messages.
+        node: the mapping.
+        what: a description for messages.
         known: the keys that there are; None for any.
 
     Raises:
-        LinkwrightError: it is no mapping, a key is unknown, or there twice.
+        LinkwrightError: it is not a mapping, or a key is unknown or occurs twice.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class Keys:
         return [(name, inner._values[name]) for name in inner.names()]
 
     def text(self, key: str, *, needed: bool = False) -> str:
-        """The text under a key; empty where there is none and none is required."""
+        """Return the text under a key; empty if there is none and none is required."""
         node = self.node(key)
         if node is None and not needed:
             return ""
@@ -82,7 +82,7 @@ class Keys:
         return str(node.value)
 
     def number(self, key: str, *, needed: bool = False) -> float:
-        """The number under a key; 0 where there is none and none is required."""
+        """Return the number under a key; 0 if there is none and none is required."""
         node = self.node(key)
         if node is None and not needed:
             return 0.0

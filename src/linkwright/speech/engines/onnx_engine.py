@@ -36,7 +36,7 @@ class OnnxEngine(SpeechEngine):
     """The engine ``onnx``; its model is the option ``model``.
 
     Raises:
-        LinkwrightError: VOICE102 onnxruntime is not installed; VOICE104 the file is none of such a network.
+        LinkwrightError: VOICE102 onnxruntime is not installed; VOICE104 the file is not such a network.
     """
 
     def __init__(self, options: EngineOptions) -> None:

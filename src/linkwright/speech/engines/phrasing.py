@@ -19,7 +19,7 @@ class Phrasing:
     """Phrases in the vocabulary of an engine.
 
     Attributes:
-        phrases: the words that the engine hears -> the phrase as the user wrote it.
+        phrases: the words of the engine -> the phrase as the user wrote it.
     """
 
     phrases: Mapping[Words, str]
@@ -29,12 +29,12 @@ class Phrasing:
         """Convert phrases to an engine's vocabulary.
 
         A word that the engine does not know is tried in small letters and, where it is written without spaces, as
-        Chinese is, divided into the fewest words that it knows.
+        Chinese is, divided into the fewest known words.
 
         Args:
             phrases: as the user wrote them.
-            knows: whether a word is in the engine's vocabulary.
-            model: what has the vocabulary, for errors.
+            knows: returns whether a word is in the engine's vocabulary.
+            model: the name of the model, for errors.
 
         Raises:
             LinkwrightError: VOICE103 it does not know some words.

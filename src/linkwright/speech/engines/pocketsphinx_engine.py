@@ -86,7 +86,7 @@ class PocketsphinxEngine(SpeechEngine):
         self._end()
 
     def _decode(self, speech: bytes | None) -> list[Heard]:
-        """Decode the part that the endpointer takes for speech."""
+        """Decode the part that the endpointer detects as speech."""
         if speech is None:
             return []
         if not self._speaking:

@@ -1,4 +1,4 @@
-"""The engine ``enrolled``: words that the user said three times each, in any language, without a model."""
+"""The engine ``enrolled``: words that the user recorded three times each, in any language, without a model."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ _OF_A_NUMBER = 0.7
 class EnrolledEngine(SpeechEngine):
     """Compares each utterance with the enrolled words.
 
-    The file may come, change and go while it listens: it is looked at with each block.
+    The file may appear, change and disappear at run time: it is checked with each block.
 
     Args:
-        options: `model` is the file of words, `words_path` where it is None. Of its words those of the phrases count;
-            others only tell what is none of them. Case and outer spaces make no difference.
+        options: `model` is the file of words, `words_path` if it is None. Only its words among the phrases are
+            recognized; the others help to reject. Case and outer spaces are ignored.
 
     Raises:
         LinkwrightError: the file is there and cannot be read, see `Words.read`.
@@ -68,7 +68,7 @@ class EnrolledEngine(SpeechEngine):
         return self._problem
 
     def hear(self, samples: Samples) -> Sequence[Heard]:
-        """See `SpeechEngine.hear`; a word is a partial result with the block in which it ends."""
+        """See `SpeechEngine.hear`; a word is reported as a partial result with the block in which it ends."""
         self._follow_file()
         heard: list[Heard] = []
         for frame in self._frames.feed(samples):

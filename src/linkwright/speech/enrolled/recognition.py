@@ -24,7 +24,7 @@ from linkwright.speech.enrolled.words import Take, Words
 from linkwright.speech.sound.spectra import Powers
 
 ACCEPTED = 0.5
-"""Confidence from which a word counts as said."""
+"""The confidence from which a word counts."""
 
 _LEAST = 1e-3
 _NEVER = np.float32(1e9)
@@ -37,7 +37,7 @@ class Guess:
 
     Attributes:
         name: of the word.
-        confidence: how likely it is that this word was said and nothing else, 0 to 1.
+        confidence: the probability that this word was spoken and nothing else, 0 to 1.
         first: the frame of the sound with which it begins.
         last: the frame with which it ends.
     """
@@ -97,7 +97,7 @@ class Recogniser:
         return dict(zip(self.names, costs, strict=True)), self._nonsense(match)
 
     def prepare(self) -> None:
-        """Compute in advance what the first recognition of a word would take longer for."""
+        """Compute in advance, so that the first recognition of a word does not take longer."""
         for word in range(len(self.names)):
             self._own_worst(word)
 
@@ -135,11 +135,11 @@ def _backwards(takes: tuple[Take, ...]) -> Take:
     return Take(take.powers[::-1], take.noise)
 
 
-_USUAL_WORST = 15.0  # of a word that was said once
+_USUAL_WORST = 15.0  # of a word with a single take
 _CLEAR = 30.0  # dB above the noise: more makes no difference
 _WEIGHTS = np.array([-5.29, -4.40, -3.06, 0.12])  # fitted to 16 synthetic voices of five languages, clean and in noise
 _OFFSET = -9.5
-_OFFSET_FAR = -11.5  # reverberation blurs what sets words apart: of a take in a room more is asked
+_OFFSET_FAR = -11.5  # reverberation blurs the differences between words: a take in a room needs more
 
 
 def _confidence(figures: NDArray[np.float64], *, is_far: bool) -> float:

@@ -26,14 +26,14 @@ _SMOOTHED = 3  # frames
 _TO_BEGIN = 4  # frames in a row
 _WATCHED = 80  # frames in which the minimum is searched
 _OVER_THE_LEAST = 1.4  # the mean of noise over its least, of sums of three frames
-_UP, _DOWN = 0.05, 0.08  # shares by which the floor comes nearer with each frame
+_UP, _DOWN = 0.05, 0.08  # shares by which the floor approaches the level with each frame
 
 _LOUDEST = 12  # frames
 _SOFTER = 7.0  # dB below the loudest: other sounds are softer by this than a speaker at the microphone
 _SOFT_BEGINNING = 8  # frames by which a word may begin before it is that loud
 _ENOUGH = 15  # the fewest frames that determine the noise
 _UNSTEADY = 1.2  # dB, deviation of the level: 1 for steady noise, 2 and more for babble
-_OVER_STEADY = 5.0  # dB, in the middle, above what it would be, were it steady: up to 4 if so, from 8 on in babble
+_OVER_STEADY = 5.0  # dB, the median above that of steady noise: up to 4 for steady noise, 8 and more for babble
 _DEVIATIONS = 1.5  # by which noise that swells is above its mean
 
 
@@ -41,8 +41,8 @@ class VoiceActivity:
     """Detects speech in a stream, frame by frame.
 
     Attributes:
-        speaking: whether the frame that came last belongs to an utterance, its hangover included.
-        quiet_frames: how many frames came since the last with speech.
+        speaking: whether the last frame belongs to an utterance, including its hangover.
+        quiet_frames: the number of frames since the last with speech.
         floor: power of the noise, shape ``(BANDS,)``.
     """
 
@@ -76,7 +76,7 @@ class VoiceActivity:
         return self.speaking
 
     def end(self) -> None:
-        """End the utterance, whatever comes next."""
+        """End the utterance, even if speech follows."""
         self.speaking = False
         self._loud = 0
 

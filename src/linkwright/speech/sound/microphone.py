@@ -22,7 +22,7 @@ class Microphone:
     Args:
         device: number or part of the name, as ``python -m sounddevice`` lists them; empty for the system's default.
         block: samples that are delivered at once, about.
-        heard: takes each block, in a thread of PortAudio's.
+        heard: called with each block, in a thread of PortAudio.
 
     Raises:
         LinkwrightError: VOICE412 there is no PortAudio; VOICE413 the device is not there or cannot be opened.

@@ -19,7 +19,7 @@ HIGHEST_RATE = 384_000
 _PASSED = 0.92
 _KAISER = 7.0
 _ZEROS = 32  # of the sinc, on each side
-_AT_ONCE = 8_192  # samples that come out of one multiplication
+_AT_ONCE = 8_192  # output samples of one multiplication
 
 
 class Resampler:
@@ -47,7 +47,7 @@ class Resampler:
     def feed(self, values: NDArray[np.floating]) -> Samples:
         """Process the next block, shape ``(n,)``, full scale at 1; returns the samples that follow from it.
 
-        They come late by the half of the filter: 2 ms and less at usual rates; `flush` gives the rest.
+        They are delayed by half the filter, 2 ms or less at usual rates; `flush` returns the rest.
         """
         self._buffer = np.concatenate((self._buffer, np.asarray(values, dtype=np.float64)))
         taps = self._table.shape[1]

@@ -57,7 +57,7 @@ def parse_wav(data: bytes, name: str) -> Samples:
 
     Args:
         data: all of the file.
-        name: what it is called in errors.
+        name: its name in errors.
 
     Raises:
         LinkwrightError: VOICE402.

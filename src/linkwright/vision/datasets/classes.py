@@ -106,7 +106,7 @@ def usual_class(name: str) -> str:
 def usual_rules(simulations: list[Simulation]) -> ClassRules:
     """The default classes of worlds, sorted by name: all models but surroundings.
 
-    A model that was included is named by the file that it came from.
+    An included model is named by its file.
     """
     patterns: dict[str, set[str]] = {}
     for simulation in simulations:
@@ -143,7 +143,7 @@ def objects_of(simulation: Simulation, rules: ClassRules) -> list[SceneObject]:
 
 
 def own_name(model: Model) -> str:
-    """The name of a model in its file, whatever it is called where it is included."""
+    """Return the name of a model in its own file, even if it is included under another name."""
     return (model.element.attributes.get("name") if model.element is not None else None) or model.name
 
 

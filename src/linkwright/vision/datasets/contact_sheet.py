@@ -1,4 +1,4 @@
-"""A contact sheet: small images with their boxes, for people to look at."""
+"""A contact sheet: small images with their boxes."""
 
 from __future__ import annotations
 

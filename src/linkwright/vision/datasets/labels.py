@@ -16,7 +16,7 @@ from linkwright.vision.datasets.arranging import Shot
 from linkwright.vision.datasets.stage import Prop, Stage
 
 Box = tuple[int, int, int, int]
-"""Left, top, right, bottom in pixels: what is in it has left <= column < right."""
+"""Left, top, right, bottom in pixels; it contains the columns left <= column < right."""
 
 _BEYOND = 1.0
 """The margin around an image in which an object is searched, in widths of the image."""

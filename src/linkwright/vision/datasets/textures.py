@@ -14,7 +14,7 @@ def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
     """A random square pattern.
 
     Args:
-        generator: where chance comes from.
+        generator: the random generator.
         size: in pixels.
         soft: whether it is light grey all over, so that what it covers keeps its colour; else it has two colours.
 

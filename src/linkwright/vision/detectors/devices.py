@@ -18,7 +18,7 @@ def gpu_of(device: str) -> str | None:
         device: ``cpu``, ``cuda``, ``cuda:0``, ``0``.
 
     Raises:
-        LinkwrightError: VISION109, it is none of them.
+        LinkwrightError: VISION109, there is no such device.
     """
     if device.lower() in ("", "cpu"):
         return None

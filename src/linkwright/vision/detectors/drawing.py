@@ -35,8 +35,8 @@ def drawn(image: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
     """The image with a box, a name and a score for each detection.
 
     Args:
-        image: shape ``(height, width, 3)``, red, green, blue; it is left as it is.
-        found: what is in it.
+        image: shape ``(height, width, 3)``, red, green, blue; it is not changed.
+        found: the detections.
     """
     cv2 = load_opencv()
     canvas = np.array(image, order="C")

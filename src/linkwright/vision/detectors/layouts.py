@@ -7,7 +7,7 @@ one number more, how likely there is an object at all. Networks that were export
 the scores, and pose estimation key points.
 
 Others have shapes like these and mean something else: YOLOX has one row for each place, not decoded, and RT-DETR 300
-rows of shares of the image. Rows that are not three for each place are no boxes that are known here.
+rows of shares of the image. Other numbers of rows than three for each place are not supported.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.vision.detectors.metadata import Metadata
 
 _HEADS = ((8, 16, 32), (8, 16, 32, 64), (8, 16, 32, 64, 128), (4, 8, 16, 32), (8, 16), (16, 32))
-"""Strides of the grids that networks look at."""
+"""The strides of the networks' grids."""
 _SHAPES = 3
 """Boxes that the classic YOLOv5 has for each place of a grid."""
 _BOXES = {"": "", "detect": "", "segment": "masks", "pose": "key points"}

@@ -21,8 +21,8 @@ class Metadata:
     """The metadata of a network; defaults where the file has none.
 
     Attributes:
-        names: of its classes; None when the file does not say.
-        task: ``detect``, ``segment``, ``pose``, ``obb``, ``classify``; empty when the file does not say.
+        names: the names of its classes; None if the file has none.
+        task: ``detect``, ``segment``, ``pose``, ``obb``, ``classify``; empty if the file has none.
         stride: the sides of its input are multiples of it.
         size: height and width of its input in training.
         suppressed: whether its boxes are final: no two of them are of the same object.

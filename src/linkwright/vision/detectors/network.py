@@ -35,7 +35,7 @@ class NetworkDetector(Detector):
 
     Raises:
         LinkwrightError: VISION101 onnxruntime or OpenCV is missing, VISION103 the file cannot be loaded, VISION105 its
-            input is no image, VISION106 and VISION107 see `find_layout`, VISION108 the labels cannot be read,
+            input is not an image, VISION106 and VISION107 see `find_layout`, VISION108 the labels cannot be read,
             VISION109 there is no such device, or no input of that size.
     """
 
@@ -72,14 +72,14 @@ class NetworkDetector(Detector):
 
     @property
     def notes(self) -> tuple[Phrase, ...]:
-        """Remarks: ignored outputs, and the device if it is not the wanted one."""
+        """Remarks: ignored outputs, and the device if it is not the requested one."""
         return tuple(self._notes)
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Detect objects in an image.
 
         Raises:
-            LinkwrightError: VISION105 the network fails, VISION106 what it gives are not numbers.
+            LinkwrightError: VISION105 the network fails, VISION106 its outputs are not numbers.
         """
         if not image.size:
             return Detections.none(self._names)

@@ -15,7 +15,7 @@ class DetectorOptions:
     """Options of a detector; each takes those that it has a use for.
 
     Attributes:
-        labels: a file with the names of the classes, instead of those that a network has in itself.
+        labels: a file with the names of the classes, instead of those in the network.
         device: where a network runs: ``cpu``, ``cuda``, ``cuda:0``, ``0``.
         size: height and width of a network's input, for those that take any; None for that of its training.
         settings: by name, those of the detectors that need no network.

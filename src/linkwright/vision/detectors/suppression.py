@@ -35,6 +35,6 @@ def suppressed(
         height = np.minimum(boxes[first, 3], others[:, 3]) - np.maximum(boxes[first, 1], others[:, 1])
         common = np.maximum(width, 0) * np.maximum(height, 0)
         union = areas[first] + areas[left] - common
-        same = (union > 0) & (common > iou * union)  # no area: a network that learnt nothing has such boxes, too
+        same = (union > 0) & (common > iou * union)  # no area: an untrained network has such boxes, too
         left = left[~(same & (classes[left] == classes[first]))]
     return np.asarray(kept, np.intp)

@@ -29,7 +29,7 @@ class CameraModel:
     Attributes:
         width, height: of its images, pixels.
         fx, fy: focal lengths, pixels.
-        cx, cy: where the optical axis goes through the image, pixels.
+        cx, cy: the principal point, pixels.
         distortion: k1, k2, p1, p2, k3, k4, k5, k6 of the lens; fewer, or none, for a simpler one.
     """
 

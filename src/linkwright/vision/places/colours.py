@@ -21,7 +21,7 @@ _LEAST_SHARE = 0.35
 """The least part of the middle of a box that has a colour, so that the object is called so."""
 _MIDDLE = 0.7
 _MOST_PIXELS = 24
-"""Along a side: of larger boxes only so many pixels are looked at."""
+"""The most pixels used along a side; larger boxes are subsampled."""
 
 
 def colour_of(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:

@@ -1,4 +1,4 @@
-"""Positions of detected objects in metres, by a depth image or by the ground on which they stand."""
+"""Positions of detected objects in metres, from a depth image or from the ground below them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from linkwright.vision.places.camera import CameraModel, Floats
 
 _INNER = 0.6
-"""The share of a box's width and height, in its middle, that most likely shows the object and not what is behind it."""
+"""The central share of a box's width and height that most likely shows the object and not the background."""
 _LEAST_SHARE = 0.25
 """The least part of the depths in the middle of a box that the object's surface has."""
 _LEAST_DEPTHS = 4

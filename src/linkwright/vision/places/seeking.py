@@ -60,7 +60,7 @@ class View:
         surface: the distance from the robot's centre to the object's nearest side, metres; infinite if it was never
             seen.
         seen_ago: seconds since the object was seen; infinite for never.
-        silence: seconds since a detector said anything.
+        silence: the seconds since the last message of a detector.
         free: metres from the robot's middle to the nearest obstacle in its way.
     """
 

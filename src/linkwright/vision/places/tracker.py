@@ -29,8 +29,8 @@ class TrackerSettings:
     """Settings of tracking. Names and defaults are those of ByteTrack's file, where it has them.
 
     Attributes:
-        high: detections with at least this score begin tracks, and are looked at first (``track_high_thresh``).
-        low: those below are not looked at (``track_low_thresh``).
+        high: detections with at least this score start tracks, and are matched first (``track_high_thresh``).
+        low: detections with a lower score are ignored (``track_low_thresh``).
         new: the least score that begins a track (``new_track_thresh``).
         match: how little boxes may overlap and belong together: 1 - IoU is at most this (``match_thresh``).
         patience: how long a track without a detection is kept, seconds (``track_buffer``, 30 images at 30 Hz).

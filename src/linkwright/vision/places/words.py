@@ -1,4 +1,4 @@
-"""Objects in words: understanding requests, and sentences about what is seen, in English and Chinese."""
+"""Objects in words: parsing requests, and describing visible objects, in English and Chinese."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _ALIKE = (
     ("cat", "猫"),
     ("car", "汽车", "车"),
 )  # fmt: skip
-"""Names of the same object, English ones first; the first Chinese one is said."""
+"""Names of the same object, English ones first; answers use the first Chinese one."""
 _FIRST = {name: group[0] for group in _ALIKE for name in group}
 _CHINESE = {group[0]: next(name for name in group if not name.isascii()) for group in _ALIKE}
 _PLURALS = {"people": "person", "children": "child", "boxes": "box", "persons": "person"}
@@ -151,7 +151,7 @@ def object_name(name: str) -> str:
 
 
 def requested(text: str) -> ObjectRequest | None:
-    """Parse a request: ``ball``, ``go to the red ball``, ``去红色的球那里``; None for nothing."""
+    """Parse a request: ``ball``, ``go to the red ball``, ``去红色的球那里``; None if it names no object."""
     plain = text.strip().strip(".,!?。，！？").lower()
     if plain.isascii():
         plain = _VERBS.sub("", f"{' '.join(plain.split())} ", count=1) if _VERBS.match(plain) else plain
@@ -191,7 +191,7 @@ def named(name: str, colour: str | None, language: str) -> str:
 
 
 def answer(event: Answer, request: ObjectRequest, language: str) -> str:
-    """The answer to a request; it names the object as it was asked for, or as it is called there."""
+    """Return the answer to a request. It names the object as in the request, or translated."""
     name = request.text if request.language == language else named(request.noun, request.colour, language)
     return _ANSWERS[event][language].format(it=name)
 

@@ -20,7 +20,7 @@ class Examination:
     Attributes:
         title: the description of the images.
         figures: how well it does on them.
-        origin: what they were made of; empty where that is not known.
+        origin: the worlds and options of their dataset; empty if unknown.
     """
 
     title: str

@@ -11,7 +11,7 @@ def need_pytorch() -> None:
     """Check that PyTorch is installed.
 
     Raises:
-        LinkwrightError: VISION301 it is not installed, or what its networks are exported by is not.
+        LinkwrightError: VISION301 it is not installed, or its ONNX exporter is not.
     """
     try:
         for name in ("torch", "onnx"):

@@ -15,7 +15,7 @@ from linkwright.vision.training.pictures import read_image
 from linkwright.vision.training.reading import Labelled
 
 LIMITS = Limits(threshold=0.01, iou=0.6, most=MOST)
-"""Which detections count: also those that are far from certain, because average precision asks how they are ordered."""
+"""The limits of evaluated detections: uncertain ones count too, because average precision rates their order."""
 
 
 def measure(model: str | Path, names: Sequence[str], labelled: Sequence[Labelled]) -> Evaluation:

@@ -128,7 +128,7 @@ def changed(
     across, down = scale * aspect, scale / aspect
     middle = chance.uniform(0, 1, 2) * (width, height)
     asked = objects[objects[:, 0] >= 0]
-    if len(asked) and chance.random() < 0.7:  # something is to be seen
+    if len(asked) and chance.random() < 0.7:  # the part shows an object
         some = asked[int(chance.integers(len(asked)))]
         middle = (some[1:3] + some[3:5]) / 2 + chance.uniform(-0.4, 0.4, 2) * size / np.array((across, down))
     # The part is within the image; a smaller image is padded with grey.
@@ -164,7 +164,7 @@ def _in_other_light(image: NDArray[np.uint8], chance: np.random.Generator) -> ND
 
 
 def _moved(objects: NDArray[np.float32], turn: NDArray[np.float32], width: int, height: int) -> NDArray[np.float32]:
-    """The boxes in the moved image; those that are mostly outside are to be ignored."""
+    """Return the boxes in the moved image; boxes that are mostly outside are marked as ignored."""
     x = objects[:, 1::2] * turn[0, 0] + turn[0, 2]
     y = objects[:, 2::2] * turn[1, 1] + turn[1, 2]
     whole = np.stack((x.min(1), y.min(1), x.max(1), y.max(1)), 1) if len(objects) else np.zeros((0, 4), np.float32)

@@ -97,7 +97,7 @@ def open_dataset(folder: Path) -> Dataset:
         folder: the folder, or its YAML file.
 
     Raises:
-        LinkwrightError: VISION302, it is none.
+        LinkwrightError: VISION302, it is not a dataset.
     """
     file = folder if folder.suffix in {".yaml", ".yml"} else _description(folder)
     try:
@@ -178,7 +178,7 @@ def _labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> Labell
     """Read the labels of an image, with its ignored regions.
 
     Raises:
-        LinkwrightError: VISION304, the text is none of labels.
+        LinkwrightError: VISION304, the text has an invalid label.
     """
     text = labels_of(path)
     try:

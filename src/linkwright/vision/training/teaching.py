@@ -29,7 +29,7 @@ class Taught:
     Attributes:
         network: the ONNX file.
         card: its card.
-        examinations: how well it does: on the split ``val`` of the dataset that taught, then on each that was held out.
+        examinations: the evaluations: on the split ``val`` of the training dataset, then on each held-out dataset.
         interrupted: whether it ended before its last epoch; the network is the best until then.
     """
 

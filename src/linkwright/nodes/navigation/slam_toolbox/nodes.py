@@ -118,6 +118,6 @@ class LocalizationSlamToolbox(AsyncSlamToolbox):
 
 
 class MapAndLocalizationSlamToolbox(AsyncSlamToolbox):
-    """The running node, which maps until a service tells it to localise."""
+    """The running node, which maps until a service switches it to localization."""
 
     SWITCHES = True

@@ -166,7 +166,7 @@ def _log_replaced(node: Node) -> None:
     solver: str = node.get_parameter("solver_plugin").value
     node.get_logger().info(f"Using Linkwright's sparse Gauss-Newton solver in place of solver plugin {solver}")
     if node.get_parameter("enable_interactive_mode").value:
-        node.get_logger().info("enable_interactive_mode is not had: scans cannot be moved by hand")
+        node.get_logger().info("enable_interactive_mode is not supported: scans cannot be moved by hand")
 
 
 def _start(node: Node) -> Floats | None:

@@ -136,7 +136,7 @@ class Toolbox:
         occupancy = OccupancyMap(settings.resolution, settings.min_pass_through, settings.occupancy_threshold)
         return Mapper(settings.mapper, occupancy)
 
-    # --- what services and topics ask for ----------------------------------------------------------------------------
+    # --- requests of services and topics ------------------------------------------------------------------------------
 
     def reset(self) -> None:
         """Start a new map; when localizing, restart in the same map."""
@@ -172,7 +172,7 @@ class Toolbox:
         self.mapper.begin_session(pose)
 
     def grid(self) -> Grid | None:
-        """The map now; None if there is none."""
+        """The current map; None if there is none."""
         return self.mapper.occupancy.grid()
 
     def map_message(self) -> Any | None:
@@ -309,7 +309,7 @@ class Toolbox:
         if not self._published:
             self.publish_map()
 
-    # --- what is published again and again ---------------------------------------------------------------------------
+    # --- periodic publishing ------------------------------------------------------------------------------------------
 
     def publish_map(self) -> None:
         """Publish the map, its metadata, and the graph, if there is a map."""

@@ -33,7 +33,7 @@ _WARM_UP = 100  # steps in which the rate grows to its highest
 _LEAST_RATE = 0.02  # of the highest, at the end
 _STEEPEST = 10.0  # the norm that gradients are cut to
 _MEASURED = 128  # images that the statistics of weights from a file are measured with
-_SMOOTHING = 0.998  # of the copy that is judged, a step, once it has seen enough
+_SMOOTHING = 0.998  # of the moving average, a step, once it is warmed up
 
 
 @dataclass(frozen=True, slots=True)

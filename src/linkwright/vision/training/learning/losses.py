@@ -61,7 +61,7 @@ def assign(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> A
     """Assign cells to each object.
 
     Args:
-        boxes: what the network says, shape (batch, cells, 4).
+        boxes: the boxes of the network, shape (batch, cells, 4).
         logits: the same, shape (batch, cells, classes).
         middles: of the cells, shape (cells, 2).
         objects: shape (batch, most, 5): class, left, top, right, bottom; class -1 where an image has fewer, and
@@ -80,7 +80,7 @@ def assign(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> A
     fit = (fit + _SMALL * iou) * near
     best = fit.topk(min(_CELLS_PER_OBJECT, cells), 2).indices
     chosen = torch.zeros_like(near).scatter_(2, best, value=True) & near & (fit > 0)
-    # A cell that several objects want answers for that which its box overlaps most.
+    # A cell that several objects claim is assigned to the one that its box overlaps most.
     wanted = torch.where(chosen, iou, torch.full_like(iou, -1.0))
     most, owner = wanted.max(1)
     taken = most >= 0
@@ -98,7 +98,7 @@ def loss(boxes: Tensor, logits: Tensor, middles: Tensor, objects: Tensor) -> tup
     """The loss of a batch; the arguments are those of `assign`.
 
     Returns:
-        What is to be made small, and its parts: those of the boxes and of the scores, shape (2,), without gradients.
+        The loss, and its parts for boxes and scores, shape (2,), without gradients.
     """
     wanted = assign(boxes, logits, middles, objects)
     whole = wanted.scores.sum().clamp(1.0)

@@ -30,7 +30,7 @@ class Shape:
     """The dimensions of a network; a checkpoint holds them.
 
     Attributes:
-        classes: how many it tells apart.
+        classes: the number of classes.
         channels: of the first convolution; the other layers have multiples of it.
     """
 
