@@ -156,7 +156,7 @@ async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between
     assert not told()
     await drive(tablet, joystick, other)
     (text,) = told()
-    assert "'/joy', '/pad' command by '/joy_vel'" in text
+    assert "'/joy', '/pad' send commands on '/joy_vel'" in text
 
 
 async def test_a_stop_goes_out_when_who_sent_the_last_velocity_is_lost(traffic):

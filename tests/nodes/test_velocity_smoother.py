@@ -105,7 +105,10 @@ async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, said
     assert one.speeds()[3] == 0.25
     assert one.speeds()[-1] == 0.0
     assert said("WARN") == [
-        "'/driver', which commanded by '/cmd_vel', was lost (killed, crashed or out of reach): the robot is stopped"
+        (
+            "'/driver', which sent the commands on '/cmd_vel', was lost (killed, crashed or out of reach): "
+            "the robot is stopped"
+        )
     ]
 
 

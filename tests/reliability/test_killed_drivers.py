@@ -51,7 +51,7 @@ def test_a_robot_stops_whose_driver_is_killed_and_goes_on_after_one_that_has_lef
     audience.wait_for("moves")
     driver.kill()
     audience.wait_for("stands", times=2)
-    launch.wait_for("'/driver', which commanded by '/cmd_vel', was lost")
+    launch.wait_for("'/driver', which sent the commands on '/cmd_vel', was lost")
     machine.verb("topic", "pub", "--once", "/cmd_vel", "geometry_msgs/msg/Twist", "{linear: {x: 0.3}}")
     audience.wait_for("moves", times=2)
     audience.wait_for("way", times=audience.count("way") + 3)

@@ -25,7 +25,7 @@ SKID = (
     "<rightRearJoint>right_joint</rightRearJoint><wheelSeparation>0.38</wheelSeparation>"
     "<wheelDiameter>0.12</wheelDiameter></plugin>"
 )
-LOST = "'/driver', which commanded by '/cmd_vel', was lost (killed, crashed or out of reach)"
+LOST = "'/driver', which sent the commands on '/cmd_vel', was lost (killed, crashed or out of reach)"
 DRIVES = {
     "classic diff drive": robot(classic()),
     "gz diff drive": robot(gz()),
@@ -73,7 +73,7 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(model: str) 
                 driver.send(forward(wanted))
                 await advance(server, graph, 0.1)
         (told,) = warnings(log)
-        assert told.startswith("two drivers at once: '/keys', '/planner' command by '/cmd_vel', and each message")
+        assert told.startswith("two drivers at once: '/keys', '/planner' send commands on '/cmd_vel', and each message")
 
 
 async def test_a_drive_goes_on_whose_last_command_is_that_of_another() -> None:

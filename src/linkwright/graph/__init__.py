@@ -190,4 +190,4 @@ __getattr__ = deferred(
         "transforms.listener": ("TransformListener",),
     },
 )
-"""What most nodes do without; transforms are made of numpy's arrays, whose import takes longer than all else here."""
+"""Names that most nodes do not use; transforms need numpy, whose import takes longer than everything else here."""

@@ -8,7 +8,7 @@ class RclError(RuntimeError):
 
 
 class InvalidHandleError(RuntimeError):
-    """Something is used that was destroyed (rclpy ``InvalidHandle``)."""
+    """A destroyed object is used (rclpy ``InvalidHandle``)."""
 
     def __init__(self, text: str = "cannot use Destroyable because destruction was requested") -> None:
         super().__init__(text)
@@ -31,7 +31,7 @@ class NodeNotFoundError(RclError):
 
 
 class NotInitializedError(Exception):
-    """Something needs a context, which is not initialised, or was shut down; name and text are rclpy's."""
+    """A call needs a context, which is not initialised, or was shut down; name and text are rclpy's."""
 
     def __init__(self, message: str | None = None) -> None:
         text = "rclpy.init() has not been called."

@@ -34,17 +34,17 @@ from linkwright.graph.time.timebase import SystemClock, Timebase
 class LocalGraph(GraphQueries):
     """The graph as nodes know it; `Graph` makes the nodes.
 
-    All methods may be called from any thread but for `settle` and `close`, which are the loop's.
+    All methods may be called from any thread except `settle` and `close`, which belong to the thread of the loop.
 
     Args:
-        clock: what stamps messages and wakes timers; the system's when left out.
-        on_log: what takes log records; standard error in ROS 2's console format when left out.
+        clock: stamps messages and wakes timers; the system's when left out.
+        on_log: receives log records; standard error in ROS 2's console format when left out.
         threads: whether callbacks are not for the running event loop.
         levels: the levels of the graph's loggers; new ones when left out.
-        on_namesakes: what is told which nodes have namesakes in other processes; a warning is logged when left out.
+        on_namesakes: receives the nodes that have namesakes in other processes; a warning is logged when left out.
 
     Attributes:
-        makers: who made nodes that other nodes made, such as those of controllers: by the names of their loggers.
+        makers: the nodes that made other nodes, such as those of controllers: by the names of their loggers.
     """
 
     def __init__(
@@ -81,12 +81,12 @@ class LocalGraph(GraphQueries):
 
     @property
     def dispatcher(self) -> LoopDispatcher | None:
-        """The default dispatcher of callbacks; None without an event loop."""
+        """The default dispatcher of callbacks; None if there is no event loop."""
         return self._dispatcher
 
     @property
     def transport(self) -> Transport | None:
-        """The transport to other processes; None without one."""
+        """The transport to other processes; None if there is none."""
         return self._transport
 
     @property
@@ -107,8 +107,8 @@ class LocalGraph(GraphQueries):
         Args:
             identity: its name.
             remappings: its rules for names of topics and services.
-            copies_messages: whether what it sends is copied, for its sender to change it then.
-            stays_inside: whether other processes see neither it nor anything of it.
+            copies_messages: whether its messages are copied, so that their sender may change them afterwards.
+            stays_inside: whether it is hidden, with all its endpoints, from other processes.
 
         Raises:
             InvalidHandleError: the graph is closed.
@@ -140,7 +140,7 @@ class LocalGraph(GraphQueries):
         return node
 
     def get_logger(self, name: str) -> Logger:
-        """A new logger of any name, for what speaks outside of a node."""
+        """A new logger of any name, for code outside of a node."""
         return Logger(name, self._sink, self.timebase.now_ns, self.levels, self.timebase.steady_ns)
 
     def nodes(self) -> tuple[NodeHandle, ...]:
@@ -150,7 +150,7 @@ class LocalGraph(GraphQueries):
     # --- the transport -----------------------------------------------------------------------------------------------
 
     def attach(self, transport: Transport) -> None:
-        """Attach a transport, which mirrors the graph outside of the process: what there is now, and what comes.
+        """Attach a transport, which mirrors the present and future endpoints of the graph outside of the process.
 
         Raises:
             RuntimeError: the graph has one already, or is closed.
@@ -171,7 +171,7 @@ class LocalGraph(GraphQueries):
         self._outside_changed()
 
     def detach(self) -> None:
-        """Close the transport, if there is one; the graph goes on inside the process."""
+        """Close the transport, if there is one; the graph continues inside the process."""
         with self._lock:
             transport, self._transport = self._transport, None
         if transport is not None:
@@ -197,7 +197,7 @@ class LocalGraph(GraphQueries):
         self.notify_change()
 
     def watch_lost(self) -> None:
-        """Tell subscriptions from now on of publishers of their topics that are lost (`Subscription.watch_lost`)."""
+        """Notify subscriptions from now on of publishers of their topics that are lost (`Subscription.watch_lost`)."""
         with self._lock:
             if not self._watches_lost:
                 self._watches_lost = True
@@ -225,7 +225,7 @@ class LocalGraph(GraphQueries):
             await self._dispatcher.settle()
 
     async def close(self) -> None:
-        """Destroy every node and forget what was not delivered yet. Nothing of the graph runs after this."""
+        """Destroy every node and drop undelivered messages. Nothing of the graph runs after this."""
         transport = self._end()
         if transport is not None:
             left: Future[None] = Future()

@@ -51,5 +51,5 @@ class LoggerServices:
         try:
             self._levels.set(name, LogLevel(level))
         except ValueError:
-            return f"{level} is no log level; they are {', '.join(str(int(log_level)) for log_level in LogLevel)}"
+            return f"{level} is not a log level; they are {', '.join(str(int(log_level)) for log_level in LogLevel)}"
         return ""

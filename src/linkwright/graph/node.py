@@ -51,26 +51,26 @@ class Node(NodeParameters, NodeQueries):
     """A node of a graph.
 
     Its callbacks are run by its dispatcher: in a graph on an event loop that is the loop, where one callback runs
-    after another. One that raises is logged there; the others go on. Everything of a node may be made and used from
-    any thread.
+    after another. An exception of a callback is logged there; the others continue. Everything of a node may be made and
+    used from any thread.
 
-    rclpy's nodes derive from this class, and users' nodes from those. So what is here has the names of rclpy, or
-    mangled ones; for all else there is the `handle`. Nothing here reads `graph`, which a user's may have for itself.
+    rclpy's nodes derive from this class, and users' nodes from those. So names here are those of rclpy, or mangled
+    ones; for everything else there is the `handle`. Nothing here reads `graph`, which a user's node may define itself.
 
     Args:
         graph: where it lives.
         node_name: the name its code gives it.
         namespace: where in the graph it lives; a missing leading slash is added.
-        parameters: values that take the place of declared defaults; nested mappings stand for dotted names.
+        parameters: values that take the place of declared defaults; nested mappings represent dotted names.
         remappings: rules ``(from, to)`` for topics, services, ``__node`` and ``__ns``; see `Remappings`.
         enclave: its security enclave.
         start_parameter_services: whether others can ask for its parameters.
-        enable_rosout: whether what it logs goes to ``/rosout`` too.
+        enable_rosout: whether its log goes to ``/rosout`` too.
         rosout_qos_profile: the quality of service of that; a number is a depth.
         allow_undeclared_parameters: whether parameters can be set that were not declared.
         automatically_declare_parameters_from_overrides: whether `parameters` are declared at once.
-        copies_messages: whether what it sends is copied, for its sender to change it then.
-        stays_inside: whether other processes see neither it nor anything of it.
+        copies_messages: whether its messages are copied, so that their sender may change them afterwards.
+        stays_inside: whether it is hidden, with all its endpoints, from other processes.
 
     Raises:
         InvalidNodeNameError: the name is not valid.
@@ -134,7 +134,7 @@ class Node(NodeParameters, NodeQueries):
             raise
 
     def __describes_types(self, store: ParameterStore) -> bool:
-        """Whether others can ask for its types: as is usual where it runs, unless its parameter says otherwise."""
+        """Whether others can ask for its types: as the distribution does, unless its parameter sets it."""
         if TYPE_DESCRIPTIONS not in store.overrides and not is_usual():
             return False
         return self.__own(TYPE_DESCRIPTIONS, True, "Start the ~/get_type_description service for this node.")
@@ -196,7 +196,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.logger
 
     def get_clock(self) -> ROSClock:
-        """The node's clock: ROS time, which follows ``/clock`` when the parameter ``use_sim_time`` says so."""
+        """The node's clock: ROS time, which follows ``/clock`` while the parameter ``use_sim_time`` is true."""
         return self.__clock
 
     # --- making ------------------------------------------------------------------------------------------------------
@@ -217,16 +217,16 @@ class Node(NodeParameters, NodeQueries):
         Args:
             msg_type: the message class, or the name of the type, whose class is then made when it is needed.
             topic: relative, absolute or private (``~/``) name.
-            qos_profile: what is offered; a number is a depth.
+            qos_profile: the QoS that it offers; a number is a depth.
             callback_group: for the event callbacks.
-            event_callbacks: what is called for events of the quality of service.
+            event_callbacks: callbacks for events of the quality of service.
             qos_overriding_options: which of its policies parameters may override.
-            publisher_class: the class of what is made.
+            publisher_class: the class of the publisher.
 
         Raises:
             InvalidTopicNameError: the topic's name is not valid.
-            AttributeError: the type is no class of an interface.
-            RuntimeError: it is that of a service.
+            AttributeError: the type is not a class of an interface.
+            RuntimeError: it is the class of a service.
             InvalidHandleError: the node was destroyed.
         """
         name = self.__handle.resolve_topic_name(topic)
@@ -258,18 +258,18 @@ class Node(NodeParameters, NodeQueries):
             topic: relative, absolute or private (``~/``) name.
             callback: called with each message, which it must not change, and, when it takes two arguments, with a
                 `MessageInfo`. It may be a coroutine function.
-            qos_profile: what is asked for; a number is a depth.
+            qos_profile: the QoS that it requests; a number is a depth.
             callback_group: which entities may run beside it.
-            event_callbacks: what is called for events of the quality of service.
+            event_callbacks: callbacks for events of the quality of service.
             qos_overriding_options: which of its policies parameters may override.
             raw: whether the callback gets CDR bytes with their header instead of messages.
-            content_filter_options: which messages are wanted.
+            content_filter_options: a condition for the messages.
 
         Raises:
             InvalidTopicNameError: the topic's name is not valid.
             ContentFilterError: the content filter cannot be understood.
-            AttributeError: the type is no class of an interface.
-            RuntimeError: it is that of a service.
+            AttributeError: the type is not a class of an interface.
+            RuntimeError: it is the class of a service.
         """
         name = self.__handle.resolve_topic_name(topic)
         qos = override_qos(self, "subscription", name, QoSProfile.of(qos_profile), qos_overriding_options)
@@ -305,8 +305,8 @@ class Node(NodeParameters, NodeQueries):
 
         Raises:
             InvalidServiceNameError: the name is not valid.
-            AttributeError: the type is no class of an interface.
-            RuntimeError: it is that of a message.
+            AttributeError: the type is not a class of an interface.
+            RuntimeError: it is the class of a message.
         """
         name = self.__handle.resolve_service_name(srv_name)
         service: Service[Any, Any] = Service(
@@ -332,8 +332,8 @@ class Node(NodeParameters, NodeQueries):
 
         Raises:
             InvalidServiceNameError: the name is not valid.
-            AttributeError: the type is no class of an interface.
-            RuntimeError: it is that of a message.
+            AttributeError: the type is not a class of an interface.
+            RuntimeError: it is the class of a message.
         """
         name = self.__handle.resolve_service_name(srv_name)
         qos = QoSProfile.of(qos_profile)
@@ -354,7 +354,7 @@ class Node(NodeParameters, NodeQueries):
             timer_period_sec: the period in seconds.
             callback: called without arguments, or with a `TimerInfo` when it takes one.
             callback_group: which entities may run beside it.
-            clock: what the period is counted on; the node's clock when left out, which follows simulated time.
+            clock: the clock that counts the period; the node's when left out, which follows simulated time.
             autostart: whether it runs from the start.
 
         Raises:
@@ -369,7 +369,7 @@ class Node(NodeParameters, NodeQueries):
 
         Args:
             frequency: turns a second.
-            clock: what time is counted on; the node's clock when left out.
+            clock: the clock that counts time; the node's when left out.
 
         Raises:
             ValueError: the frequency is not positive.
@@ -384,7 +384,7 @@ class Node(NodeParameters, NodeQueries):
         """A callback for the node to set off itself: many triggers in a row call it once."""
         return self.__handle.add(GuardCondition(self.__handle, callback, callback_group))
 
-    # --- what was made -----------------------------------------------------------------------------------------------
+    # --- publishers, subscriptions and the rest -----------------------------------------------------------------------
 
     @property
     def publishers(self) -> Iterator[Publisher[Any]]:
@@ -423,11 +423,11 @@ class Node(NodeParameters, NodeQueries):
     # --- destroying --------------------------------------------------------------------------------------------------
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
-        """Take a publisher away; what it sent is still delivered. Whether it was this node's."""
+        """Remove a publisher; its messages are still delivered. Whether it was this node's."""
         return self.__handle.remove(publisher)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
-        """Take a subscription away; its callback is not called again. Whether it was this node's."""
+        """Remove a subscription; its callback is not called again. Whether it was this node's."""
         return self.__handle.remove(subscription)
 
     def destroy_service(self, service: Service[Any, Any]) -> bool:
@@ -435,7 +435,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.remove(service)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
-        """Take a client away; its pending futures stay as they are. Whether it was this node's."""
+        """Remove a client; its pending futures stay as they are. Whether it was this node's."""
         return self.__handle.remove(client)
 
     def destroy_timer(self, timer: Timer) -> bool:
@@ -447,7 +447,7 @@ class Node(NodeParameters, NodeQueries):
         return self.__handle.remove(guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
-        """End a rate; who sleeps by it is woken. Whether it was this node's."""
+        """End a rate; threads that sleep by it wake. Whether it was this node's."""
         return rate.destroy()
 
     def destroy_node(self) -> None:
@@ -468,5 +468,5 @@ def _by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapping[str
 
 
 def _profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
-    """Those of the endpoints of a topic, in this process and outside; nobody is asked before the first is wanted."""
+    """The profiles of the endpoints of a topic, in this process and outside; the graph is asked when one is needed."""
     yield from (endpoint.qos_profile for endpoint in ask(topic, True))

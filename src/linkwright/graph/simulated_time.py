@@ -21,7 +21,7 @@ class SimulatedTime:
     """Keeps a node's clock by ``/clock`` while its parameter ``use_sim_time`` is true (rclpy ``TimeSource``).
 
     The clock is moved in the thread in which a message of ``/clock`` arrives, not in a callback of the node: so time
-    goes on while the node's own thread sleeps.
+    passes while the node's own thread sleeps.
 
     Args:
         handle: subscribes.

@@ -53,7 +53,7 @@ async def test_a_drive_stops_before_its_time_out(stand):
     await stand.step(controller)
     assert [command.value for command in stand.commands.values()] == [0.0, 0.0]
     (told,) = [each.text for each in stand.log if "was lost" in each.text]
-    assert told.startswith("'/driver', which commanded by '/base/cmd_vel', was lost")
+    assert told.startswith("'/driver', which sent the commands on '/base/cmd_vel', was lost")
 
 
 async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(stand, clock):
@@ -72,7 +72,7 @@ async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(stand, clock
         await clock.advance(0.1)
     await stand.step(controller)
     (told,) = [each.text for each in stand.log if each.level >= LogLevel.WARN]
-    assert told.startswith("two drivers at once: '/keys', '/planner' command by '/base/cmd_vel'")
+    assert told.startswith("two drivers at once: '/keys', '/planner' send commands on '/base/cmd_vel'")
 
 
 async def test_nothing_is_said_of_a_command_that_has_ended(stand):

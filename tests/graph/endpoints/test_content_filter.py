@@ -66,7 +66,7 @@ def test_truth_values_and_texts_that_look_like_numbers():
         ("position[0] BETWEEN 1 OR 2", "'AND' is missing before 'OR'"),
         ("position[0] > 1 1", "'1' is one too many"),
         ("position[0] ! 1", "'! 1' cannot be understood"),
-        ("name[0] MATCH '('", "'\\(' is no regular expression"),
+        ("name[0] MATCH '('", "'\\(' is not a regular expression"),
     ],
 )
 def test_mistakes(expression, problem):

@@ -134,8 +134,8 @@ def warned(graph: Known, message_type: type = Twist) -> list[str]:
 def test_the_warning_names_the_nodes_and_says_what_to_do(message_type):
     (text,) = warned(Known({b"1": "keys", b"2": "planner", b"3": "keys"}), message_type)
     assert text == (
-        "two drivers at once: '/keys', '/planner' command by '/cmd_vel', and each message is obeyed in turn: what "
-        "moves jerks between them. End one of them, remap its topic (-r /cmd_vel:=...), or let twist_mux choose by "
+        "two drivers at once: '/keys', '/planner' send commands on '/cmd_vel', and each message takes effect in turn: "
+        "the robot jerks between them. End one of them, remap its topic (-r /cmd_vel:=...), or let twist_mux choose by "
         "priority"
     )
 
@@ -143,7 +143,7 @@ def test_the_warning_names_the_nodes_and_says_what_to_do(message_type):
 def test_two_nodes_of_one_name_are_two_and_two_publishers_of_one_node_are_one():
     assert warned(Known({b"1": "keys", b"2": "keys"})) == []
     (text,) = warned(Known({b"1": "keys", b"2": "keys"}, twice="keys"))
-    assert text.startswith("two drivers at once: '/keys', '/keys' command by")
+    assert text.startswith("two drivers at once: '/keys', '/keys' send commands on")
 
 
 def test_nothing_is_said_of_publishers_that_nobody_knows():

@@ -151,7 +151,7 @@ def test_files_may_say_nothing(text):
             "node:\n  ros__parameters:\n    a: [1, 2.5]",
             "3:12",
             "the list of parameter 'a' begins with a value of type integer and has one of type double",
-            "write 1.0 in front, or whole numbers only",
+            "write 1.0 as the first value, or integers only",
         ),
         (
             "node:\n  ros__parameters:\n    a: [1.5, 2]",
@@ -194,7 +194,7 @@ def test_files_may_say_nothing(text):
             "my-node:\n  ros__parameters:\n    a: 1",
             "1:1",
             "'my-node' is not a node name",
-            "names have letters, digits and '_', and do not begin with a digit; * and ** stand for any",
+            "names have letters, digits and '_', and do not begin with a digit; * and ** match any",
         ),
         (
             "node:\n  ros__parameters:\n    a: &x 1\n    b: *x",

@@ -26,7 +26,7 @@ class ClientGoalHandle:
         goal_id: its id (unique_identifier_msgs/msg/UUID).
         accepted: whether the server took it.
         stamp: when (builtin_interfaces/msg/Time).
-        status: its state as last heard of.
+        status: its latest known state.
     """
 
     __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
@@ -56,7 +56,7 @@ class ClientGoalHandle:
         return self._action_client.cancel(self)
 
     def get_result(self, timeout_sec: float | None = None) -> Any:
-        """Ask for the result, and block until it is there; see `Client.call`."""
+        """Ask for the result, and block until it arrives; see `Client.call`."""
         return _waited_for(self.get_result_async(), timeout_sec)
 
     def get_result_async(self) -> Future[Any]:
@@ -127,18 +127,18 @@ class ActionClient(ActionEndpoint):
         self._handle.add_cleanup(self.destroy)
 
     def server_is_ready(self) -> bool:
-        """Whether a server of the action is there, with all its services and topics."""
+        """Whether a server of the action is available, with all its services and topics."""
         clients = (self._goal_client, self._cancel_client, self._result_client)
         return all(client.service_is_ready() for client in clients) and all(
             subscription.get_publisher_count() for subscription in (self._feedback, self._status)
         )
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a server is there; see `Client.wait_for_service`."""
+        """Block the calling thread until a server is available; see `Client.wait_for_service`."""
         return self._handle.graph.wait_until(self.server_is_ready, timeout_sec)
 
     def send_goal(self, goal: Any, timeout_sec: float | None = None, **options: Any) -> Any:
-        """Send a goal, and block the calling thread until its result is there. Another thread must run callbacks.
+        """Send a goal, and block the calling thread until its result arrives. Another thread must run callbacks.
 
         Args:
             goal: the goal message.

@@ -91,7 +91,7 @@ class ServerGoalHandle:
     Attributes:
         request: the goal message.
         goal_info: its id and when it was accepted (action_msgs/msg/GoalInfo).
-        ended_ns: when it came to an end, by the server's clock; None before.
+        ended_ns: when it ended, by the server's clock; None before.
     """
 
     __class_getitem__: Any = classmethod(GenericAlias)  # annotations name the type of the action, as in rclpy
@@ -105,7 +105,7 @@ class ServerGoalHandle:
         self.goal_info = goal_info
         self.ended_ns: int | None = None
         self.result: Future[Any] = Future()
-        """The response to those who ask for the result."""
+        """The response to clients that ask for the result."""
 
     def __eq__(self, other: object) -> bool:
         return bytes(self.goal_id.uuid) == bytes(other.goal_id.uuid) if isinstance(other, ServerGoalHandle) else False
@@ -172,7 +172,7 @@ class ServerGoalHandle:
         self._end(GoalEvent.CANCELED, response)
 
     def update(self, event: GoalEvent) -> None:
-        """Take the goal to another state, and tell it on the status topic. Nothing happens to a destroyed handle.
+        """Move the goal to another state, and publish it on the status topic. Nothing happens to a destroyed handle.
 
         Raises:
             RuntimeError: the event cannot happen in the goal's state.
@@ -199,7 +199,7 @@ class ServerGoalHandle:
         self._destroyed = True
 
     def set_result(self, result: Any) -> None:
-        """Answer those who ask for the result, unless they were answered."""
+        """Answer the clients that ask for the result, unless they were answered."""
         if not self.result.ended():
             response = self._server.action_type.Impl.GetResultService.Response()
             response.status = int(self._status)

@@ -28,7 +28,7 @@ from linkwright.graph.qos.profile import ACTION_STATUS_QOS, DEFAULT_QOS, SERVICE
 from linkwright.graph.time.values import NANOSECONDS_PER_SECOND, Time
 
 ERROR_NONE, ERROR_REJECTED, ERROR_UNKNOWN_GOAL_ID, ERROR_GOAL_TERMINATED = range(4)
-"""What a request to cancel is answered with (action_msgs/srv/CancelGoal)."""
+"""The return codes of a cancel request (action_msgs/srv/CancelGoal)."""
 
 
 def default_goal_callback(goal_request: Any) -> GoalResponse:  # noqa: ARG001  # a callback's signature
@@ -47,7 +47,7 @@ def default_cancel_callback(cancel_request: ServerGoalHandle) -> CancelResponse:
 
 
 async def outcome_of(value: Any) -> Any:
-    """What a callback returned; the result of the coroutine where it returned one."""
+    """The return value of a callback; the result of its coroutine where it returned one."""
     return await value if isawaitable(value) else value
 
 
@@ -144,7 +144,7 @@ class ActionServer(ActionEndpoint):
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
     def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
-        """Set the callback that decides what may be canceled; None refuses all."""
+        """Set the callback that decides which goals may be canceled; None refuses all."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def destroy(self) -> None:
@@ -277,7 +277,7 @@ class ActionServer(ActionEndpoint):
         result = None
         try:
             result = await outcome_of(callback(goal))
-        except Exception as error:  # noqa: BLE001  # whoever asked for the goal is to be told that it failed
+        except Exception as error:  # noqa: BLE001  # the client of the goal must learn that it failed
             self._executions.report(error)
         kind = self._action_type.Result
         if self._destroyed:
@@ -363,7 +363,7 @@ class _Executions(Entity):
         self.announce()
 
     def has_work(self) -> bool:
-        """Whether something waits."""
+        """Whether a request waits."""
         return bool(self._waiting)
 
     def take(self) -> Callable[[], object] | None:

@@ -17,9 +17,9 @@ class Logging:
     """The logging of a process.
 
     Attributes:
-        sink: what its graph gives records to.
+        sink: receives the records of its graph.
         levels: the levels of its loggers.
-        rosout: whether nodes publish what they log.
+        rosout: whether nodes publish their log.
         file: its log file; None where there is none.
     """
 
@@ -29,13 +29,13 @@ class Logging:
     file: LogFile | None = None
 
     def close(self) -> None:
-        """Write out what is buffered."""
+        """Write out buffered records."""
         if self.file is not None:
             self.file.close()
 
 
 def set_levels(levels: LogLevels, arguments: RosArguments) -> None:
-    """Give loggers the levels that ``--log-level`` says."""
+    """Give loggers the levels of ``--log-level``."""
     if arguments.log_level is not None:
         levels.set("", arguments.log_level)
     for name, level in arguments.log_levels.items():
@@ -48,7 +48,7 @@ def set_up(arguments: RosArguments, executable: str, levels: LogLevels | None = 
     Args:
         arguments: its ROS arguments.
         executable: the program's name, after which its log file is named.
-        levels: what takes the levels; new ones when left out.
+        levels: receives the levels; new ones when left out.
     """
     levels = levels or LogLevels()
     set_levels(levels, arguments)

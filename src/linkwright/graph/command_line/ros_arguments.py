@@ -1,4 +1,4 @@
-"""ROS arguments: what stands between ``--ros-args`` and ``--`` on a command line, in the forms of rcl."""
+"""ROS arguments: the words between ``--ros-args`` and ``--`` on a command line, in the forms of rcl."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class RemapRule:
 
     Attributes:
         node: the node that it is for; None for every node.
-        source: what is renamed: a name (``rostopic://`` or ``rosservice://`` before it tells its kind), ``__node``
+        source: the name to replace (``rostopic://`` or ``rosservice://`` before it limits its kind), ``__node``
             (or ``__name``), or ``__ns``.
-        target: what it is named instead.
+        target: the new name.
     """
 
     node: str | None
@@ -43,9 +43,9 @@ class RosArguments:
         log_level: the least severity to log; None when it is not given.
         log_levels: the same for loggers by name.
         log_config_file: the file that configures the log files, as it is given.
-        rosout_logs: whether what is logged goes to ``/rosout``; None when it is not said.
-        stdout_logs: whether it goes to the console; None when it is not said.
-        external_lib_logs: whether it goes to a log file; None when it is not said.
+        rosout_logs: whether the log goes to ``/rosout``; None when it is not given.
+        stdout_logs: whether it goes to the console; None when it is not given.
+        external_lib_logs: whether it goes to a log file; None when it is not given.
         enclave: the security enclave.
         others: the arguments that are not ROS arguments.
     """
@@ -82,8 +82,8 @@ def parse(arguments: Sequence[str]) -> RosArguments:
     """Read a command line, without the program's name.
 
     Raises:
-        LinkwrightError: GRAPH221, a ROS argument is unknown, lacks its value or has a malformed one; what is wrong
-            with a parameter file.
+        LinkwrightError: GRAPH221, a ROS argument is unknown, lacks its value or has a malformed one; or the code of a
+            mistake in a parameter file.
     """
     ros = RosArguments()
     inside = False
@@ -111,7 +111,7 @@ def parse(arguments: Sequence[str]) -> RosArguments:
 
 
 def remove_ros_arguments(arguments: Sequence[str]) -> list[str]:
-    """The arguments of a command line that are not ROS arguments, whatever those say."""
+    """The arguments of a command line that are not ROS arguments."""
     others: list[str] = []
     inside = False
     for argument in arguments:

@@ -24,7 +24,7 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
 def check_for_type_support(interface: Any) -> None:
-    """Check that something is an interface class made by Linkwright (rclpy ``check_for_type_support``).
+    """Check that an object is an interface class made by Linkwright (rclpy ``check_for_type_support``).
 
     Raises:
         AttributeError: it is not.
@@ -41,11 +41,11 @@ def check_for_type_support(interface: Any) -> None:
 
 
 def check_is_valid_msg_type(msg_type: Any) -> None:
-    """Check that something is the class of a message.
+    """Check that an object is the class of a message.
 
     Raises:
-        AttributeError: it is no class of an interface.
-        RuntimeError: it is one of a service or action.
+        AttributeError: it is not a class of an interface.
+        RuntimeError: it is the class of a service or action.
     """
     check_for_type_support(msg_type)
     if "/msg/" not in msg_type.TYPE_NAME and hasattr(msg_type, "Request"):
@@ -53,11 +53,11 @@ def check_is_valid_msg_type(msg_type: Any) -> None:
 
 
 def check_is_valid_srv_type(srv_type: Any) -> None:
-    """Check that something is the class of a service.
+    """Check that an object is the class of a service.
 
     Raises:
-        AttributeError: it is no class of an interface.
-        RuntimeError: it is one of a message or action.
+        AttributeError: it is not a class of an interface.
+        RuntimeError: it is the class of a message or action.
     """
     check_for_type_support(srv_type)
     if not (hasattr(srv_type, "Request") and hasattr(srv_type, "Response")):
@@ -77,10 +77,10 @@ class Endpoint(Part):
         name: the absolute name of the topic or service.
         type_name: such as ``sensor_msgs/msg/JointState``.
         qos_profile: the QoS that it offers or requests.
-        type_hash: of the type (``RIHS01_...``) as others have told it, which goes before that of the type that is known
-            here; empty where nobody has.
-        is_listed: whether others are to see it in the graph; a transport that carries nothing unseen shows it anyhow.
-        raw: whether what goes over it is bytes alone, CDR with its header, so that the type need not be known here.
+        type_hash: the hash of the type (``RIHS01_...``) as other nodes announce it, which takes precedence over the
+            hash of the local definition; empty where none announces one.
+        is_listed: whether other processes see it in the graph; a transport that cannot hide endpoints shows it anyhow.
+        raw: whether its payloads are bytes, CDR with its header, so that the type need not be known here.
     """
 
     kind: EndpointKind

@@ -1,6 +1,6 @@
 """The in-process bus: connects the publishers, subscriptions, services and clients of one process.
 
-A publisher and a subscription whose QoS is incompatible are not connected, and both nodes are told why.
+A publisher and a subscription whose QoS is incompatible are not connected, and both nodes are notified of the reason.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class Bus:
             match(publisher, subscription)
 
     def remove(self, endpoint: Endpoint) -> None:
-        """Remove an endpoint. What a publisher sent is still delivered; the queue of a subscription is dropped."""
+        """Remove an endpoint. Messages of a publisher are still delivered; the queue of a subscription is dropped."""
         with self._lock:
             if isinstance(endpoint, Publisher):
                 self._publishers.remove(endpoint)
@@ -141,7 +141,7 @@ def report_to_subscription(subscription: Subscription[Any], policy: str, sides: 
     Args:
         subscription: the subscription.
         policy: the name of the policy.
-        sides: what each of the two offers or requests; see `describe_mismatch`.
+        sides: the values that each of the two offers or requests; see `describe_mismatch`.
     """
     if subscription.events is not None and subscription.events.incompatible(policy):
         return

@@ -117,14 +117,14 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return future
 
     def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
-        """Send a request, and block until the response is there. Another thread must run the node's callbacks.
+        """Send a request, and block until the response arrives. Another thread must run the node's callbacks.
 
         Args:
             request: the request.
             timeout_sec: seconds to wait at most; None for any time.
 
         Returns:
-            The response; None, as in Jazzy, if none came in time.
+            The response; None, as in Jazzy, if none arrives in time.
 
         Raises:
             TypeError: the request is not of the service's type.
@@ -194,7 +194,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
                 future, request = self._unsent.popleft()
             try:
                 was_sent = self._send(future, request)
-            except LinkwrightError as error:  # who asked has gone on
+            except LinkwrightError as error:  # the caller has returned
                 self._end(future, partial(future.fail, error, self.dispatcher))
                 continue
             if not was_sent:
@@ -221,7 +221,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._end(future, partial(self._hand_over, future, request_id, response))
 
     def _end(self, future: Future[Response], end: Callable[[], None]) -> None:
-        """Schedule the end of a future as a callback, unless the request was given up."""
+        """Schedule the end of a future as a callback, unless the request was cancelled."""
         if self._pending.pop(future, None) is not None:
             self._endings.append(end)
             self.announce()

@@ -1,4 +1,4 @@
-"""Tracks the publisher of the last command, so that a drive, say, can stop when that publisher is lost."""
+"""Tracks the publisher of the last command, so that a drive, for example, can stop when that publisher is lost."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ if TYPE_CHECKING:
 class Commander:
     """Tracks the publisher of the command in force, and revokes the command when that publisher is lost.
 
-    A publisher that leaves has ended, and its last command holds. One that is lost was killed, has crashed or is out of
-    reach: nobody is there who could give another command. What others command holds whatever becomes of it.
+    A publisher that leaves has ended, and its last command stays in force. A publisher that is lost was killed, has
+    crashed or is out of reach, so it cannot replace its command. Its loss does not affect commands of other publishers.
 
     Args:
         take_back: called with the publisher that is lost, after the last of its commands, as callbacks of its
             subscription are.
-        drivers: is told each command of `taking`, to warn of several who command at once; None for nobody.
+        drivers: receives each command of `taking`, to warn of several publishers that command at once; None for no
+            warning.
     """
 
     def __init__(self, take_back: Callable[[EndpointInfo], object], drivers: DriverWatch | None = None) -> None:
@@ -36,7 +37,7 @@ class Commander:
         return partial(self._taken, take)
 
     def obey(self, info: MessageInfo) -> None:
-        """Note the publisher of a command that came by another callback than those of `taking`."""
+        """Note the publisher of a command that arrived by another callback than those of `taking`."""
         self._gid = info.publisher_gid
 
     def watch(self, subscription: Subscription[Any]) -> None:
@@ -59,9 +60,12 @@ def who_was_lost(publisher: EndpointInfo) -> Any:
     """A publisher that was lost, for the log: its node, and its topic."""
     node = publisher.node.full_name if publisher.node is not None else ""
     if not node:
-        return phrase("who commanded by '{topic}' was lost (killed, crashed or out of reach)", topic=publisher.name)
+        return phrase(
+            "the publisher of the commands on '{topic}' was lost (killed, crashed or out of reach)",
+            topic=publisher.name,
+        )
     return phrase(
-        "'{node}', which commanded by '{topic}', was lost (killed, crashed or out of reach)",
+        "'{node}', which sent the commands on '{topic}', was lost (killed, crashed or out of reach)",
         node=node,
         topic=publisher.name,
     )

@@ -85,7 +85,7 @@ class _Token:
 
     @property
     def word(self) -> str:
-        """A key word, in capitals; empty for anything else."""
+        """A key word, in capitals; empty for any other token."""
         return self.text.upper() if self.kind == "name" and self.text.upper() in _WORDS else ""
 
 
@@ -194,7 +194,7 @@ class _Parser:
         try:
             wanted = re.compile(pattern if regular else "".join(_WILD.get(each, re.escape(each)) for each in pattern))
         except re.error as error:
-            raise self._error(f"'{pattern}' is no regular expression: {error}") from error
+            raise self._error(f"'{pattern}' is not a regular expression: {error}") from error
         return lambda message: isinstance(text := value(message), str) and wanted.fullmatch(text) is not None
 
     def _value(self) -> _Value:
@@ -248,7 +248,7 @@ def _constant(value: Any) -> _Value:
 
 
 def _literal(text: str) -> Any:
-    """The value of a number, a text in quotes or without, or a truth value."""
+    """The value of a number, a text with or without quotes, or a truth value."""
     text = text.strip()
     if len(text) > 1 and text[0] in "'`" and text[-1] == "'":
         return text[1:-1]

@@ -1,4 +1,4 @@
-"""Detects several publishers that command one thing at the same time, and warns of them in the log."""
+"""Detects several publishers that command one robot at the same time, and warns of them in the log."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.time.clock import Clock
 
 _GAP_S = 2.5
-"""A dispute is over when nobody has taken over for so long: of two that send once a second each does twice in that."""
+"""A dispute is over after this long without a takeover: of two that send once a second each takes over twice in it."""
 _QUIET_S = 10.0
-"""Who disputed is told again after so long without."""
+"""A dispute of the same parties is reported again after this long without one."""
 _NANOSECONDS = 1e9
 
 
 class Dispute:
     """Detects publishers whose commands replace each other again and again.
 
-    A command takes over when it differs from the one before, which somebody else sent. It is a dispute when several
-    have taken over again and again for a while. So a handover is none, nor is a stop that somebody sends at the end,
-    nor the second for which nav2's velocity smoother goes on when another server begins to drive.
+    A command takes over when it differs from the one before, which another publisher sent. It is a dispute when several
+    publishers take over repeatedly for a while. These are not disputes: a handover, a stop that another publisher sends
+    at the end, and the second for which nav2's velocity smoother continues when another server begins to drive.
 
     Args:
-        lasting_s: for how long they must have contradicted each other, in seconds.
-        times: how often each must have taken over; who began counts once for that.
+        lasting_s: how long the parties must contradict each other, in seconds.
+        times: how often each party must take over; the party in command at the start counts once for that.
 
     Attributes:
-        parties: who disputes, or did last.
+        parties: the parties of the current dispute, or of the last one.
     """
 
     def __init__(self, lasting_s: float = 3.0, times: int = 3) -> None:
@@ -42,19 +42,19 @@ class Dispute:
         self._took: Counter[Hashable] = Counter()
         self.parties: frozenset[Hashable] = frozenset()
 
-    def hear(self, who: Hashable, command: object, now_s: float) -> bool:
+    def hear(self, publisher: Hashable, command: object, now_s: float) -> bool:
         """Note a command.
 
         Args:
-            who: who sent it.
-            command: what it says; equal where two say the same.
-            now_s: when it came, in seconds.
+            publisher: its publisher.
+            command: its content; equal where two commands demand the same.
+            now_s: when it arrived, in seconds.
 
         Returns:
-            Whether there is a dispute that was not there before, or has a new party.
+            Whether a dispute begins, or has a new party.
         """
-        before, self._last = self._last, (who, command, now_s)
-        if before is None or before[0] == who or before[1] == command:
+        before, self._last = self._last, (publisher, command, now_s)
+        if before is None or before[0] == publisher or before[1] == command:
             return False
         gap = now_s - self._taken_over
         if not 0.0 <= gap <= _GAP_S:
@@ -63,7 +63,7 @@ class Dispute:
             if not 0.0 <= gap <= _QUIET_S:
                 self.parties = frozenset()
         self._taken_over = now_s
-        self._took[who] += 1
+        self._took[publisher] += 1
         if now_s - self._since < self._lasting_s:
             return False
         parties = frozenset(each for each, times in self._took.items() if times >= self._times)
@@ -98,14 +98,14 @@ class CommandedNode(Protocol):
 
 
 class DriverWatch:
-    """Warns, once for each change, where several nodes command one thing at the same time, and names them.
+    """Warns, once for each change, where several nodes command the same robot at the same time, and names them.
 
-    Each of their messages is obeyed as it comes, as ROS and Gazebo do: it is told of and not prevented.
+    Each message takes effect as it arrives, as in ROS and Gazebo: a dispute is reported and not prevented.
 
     Args:
-        logger: which warns.
-        graph: tells whose publishers are.
-        now_ns: the time that the commands go by, in nanoseconds.
+        logger: logs the warnings.
+        graph: knows which node a publisher belongs to.
+        now_ns: the time that the commands follow, in nanoseconds.
     """
 
     def __init__(self, logger: Logger, graph: KnownEndpoints, now_ns: Callable[[], int]) -> None:
@@ -120,21 +120,21 @@ class DriverWatch:
         return cls(node.get_logger(), node.graph, node.get_clock().now_ns)
 
     def hear(self, message: Any, info: MessageInfo) -> None:
-        """Note a message; of one with a header what counts is its twist."""
+        """Note a message; of a message with a header the twist counts."""
         command = getattr(message, "twist", message)
         if self._dispute.hear(info.publisher_gid, command, self._now_ns() / _NANOSECONDS):
             self._tell()
 
     def _tell(self) -> None:
-        """Warn, unless it is not known of two of them who they are."""
+        """Warn, if the nodes of at least two parties are known."""
         publishers = publishers_of(self._graph, self._dispute.parties)
         drivers = drivers_of(self._graph, publishers)
         if len(drivers) > 1:
             topics = sorted({publisher.name for publisher in publishers})
             told = phrase(
-                "two drivers at once: {drivers} command by {topics}, and each message is obeyed in turn: what moves "
-                "jerks between them. End one of them, remap its topic (-r {topic}:=...), or let twist_mux choose by "
-                "priority",
+                "two drivers at once: {drivers} send commands on {topics}, and each message takes effect in "
+                "turn: the robot jerks between them. End one of them, remap its topic (-r {topic}:=...), or "
+                "let twist_mux choose by priority",
                 drivers=quoted_names(drivers),
                 topics=quoted_names(topics),
                 topic=topics[0],

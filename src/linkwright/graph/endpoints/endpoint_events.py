@@ -172,7 +172,7 @@ class SubscriptionEvents(EndpointEvents):
         self._outside = (0, 0)
 
     def received(self) -> None:
-        """A message came, from this process or another."""
+        """A message arrived, from this process or another."""
         if self._deadline is not None:
             self._deadline.sign()
 
@@ -186,7 +186,7 @@ class SubscriptionEvents(EndpointEvents):
         self.liveliness(alive - alive_before, not_alive - not_alive_before)
 
     def liveliness(self, alive_change: int, not_alive_change: int) -> None:
-        """Publishers came or went, became alive, or lost their liveliness."""
+        """Publishers appeared or left, became alive, or lost their liveliness."""
         if not alive_change and not not_alive_change:
             return
         self._alive += alive_change

@@ -17,7 +17,7 @@ EventCallback = Callable[[Any], object]
 
 @dataclass(frozen=True, slots=True)
 class EventCount:
-    """How often something happened.
+    """How often an event happened.
 
     Attributes:
         total_count: since the beginning.
@@ -110,7 +110,7 @@ class EventHandler(NamedTuple):
 
     Attributes:
         event_type: the kind.
-        callback: what is called; None where the event is only logged.
+        callback: the callback; None where the event is only logged.
     """
 
     event_type: QoSPublisherEventType | QoSSubscriptionEventType

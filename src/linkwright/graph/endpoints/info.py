@@ -33,7 +33,7 @@ class EndpointInfo:
         gid: its globally unique identifier, 16 bytes.
         type_hash: ``RIHS01_...``; empty where it is not known (Humble does not send it).
         local: whether it belongs to this process.
-        host: the machine that it is on; empty where it is not told.
+        host: the machine that it is on; empty where it is not known.
     """
 
     kind: EndpointKind
@@ -55,7 +55,7 @@ class MessageInfo(Mapping[str, Any]):
         source_timestamp: when it was published, nanoseconds since the epoch.
         received_timestamp: when it was received, nanoseconds since the epoch.
         publisher_gid: the GID of the publisher, 16 bytes.
-        from_outside: whether it came from another process.
+        from_outside: whether it comes from another process.
         publication_sequence_number: counted by the publisher; None where it does not send it.
         reception_sequence_number: counted by the subscription; None where it does not count.
     """

@@ -8,16 +8,16 @@ from linkwright.graph.loop.node_handle import NodeHandle
 
 
 class Presence(Endpoint):
-    """A subscription or a client that other processes see, and that receives and asks nothing.
+    """A subscription or a client that other processes see, and that receives no messages and sends no requests.
 
-    For who hears a topic, or calls a service, in another network, where a bridge brings it what there is to hear.
+    A bridge uses it for a subscription or client in another network, and forwards messages and responses to that one.
 
     Args:
-        node: whose it is.
-        info: what it is: a subscription or a client.
+        node: its node.
+        info: a subscription or a client.
 
     Raises:
-        ValueError: it is something else.
+        ValueError: `info` is of another kind.
     """
 
     raw = True

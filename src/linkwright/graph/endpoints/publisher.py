@@ -102,7 +102,7 @@ class Publisher(TopicEndpoint[M]):
         return (self.event_callbacks or PublisherEventCallbacks()).handlers()
 
     def get_subscription_count(self) -> int:
-        """How many subscriptions receive what is published, inside the process and outside."""
+        """How many subscriptions receive the messages, inside the process and outside."""
         return len(self._matched) + self._outside_count
 
     def assert_liveliness(self) -> None:
@@ -118,15 +118,15 @@ class Publisher(TopicEndpoint[M]):
             self.assert_outside()
 
     def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
-        """Block until all reliable subscriptions have acknowledged what was published.
+        """Block until all reliable subscriptions have acknowledged the published messages.
 
-        Those of this process have it at once.
+        Subscriptions of this process receive them at once.
 
         Args:
-            timeout: how long at most; negative or None for as long as it takes.
+            timeout: the longest wait; negative or None for no limit.
 
         Returns:
-            Whether all have acknowledged; False when the time is over.
+            Whether all have acknowledged; False at the timeout.
         """
         seconds = None if timeout is None or timeout.nanoseconds < 0 else timeout.nanoseconds / 1e9
         if self._held and not self._sent(seconds):
@@ -136,7 +136,7 @@ class Publisher(TopicEndpoint[M]):
     # --- for the bus and the transport ----------------------------------------------------------------------------
 
     def connect(self, subscription: Subscription[Any]) -> None:
-        """Connect a subscription of this process; a transient local one first gets what was kept for late joiners."""
+        """Connect a subscription of this process; a transient local one first gets the messages for late joiners."""
         receive = subscription.receiver(self, self.lifespan_ns)
         with self._lock:
             if self._kept and subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
@@ -175,7 +175,7 @@ class Publisher(TopicEndpoint[M]):
         self.outside = None
 
     def matched(self) -> tuple[Subscription[Any], ...]:
-        """The subscriptions of this process that receive what is published."""
+        """The subscriptions of this process that receive the messages."""
         return tuple(self._matched)
 
     def hold_for_outside(self, sent: Callable[[float | None], bool]) -> None:
@@ -213,8 +213,8 @@ class Publisher(TopicEndpoint[M]):
             held, self._held = self._held, None
             if send is not None and (self.outside is None or held is not None):
                 for message in self._still_valid() if held is None else held:
-                    what = f"sending what topic '{self.name}' has said"
-                    run_logged(self.node.logger, what, partial(send, message))  # who published it has gone on
+                    what = f"sending the messages of topic '{self.name}'"
+                    run_logged(self.node.logger, what, partial(send, message))  # the caller of `publish` has returned
             self.outside = send
             self._acknowledged = acknowledged if send is not None else None
 

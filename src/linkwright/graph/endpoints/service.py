@@ -91,7 +91,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
         Args:
             response: the response.
-            header: what came with the request, in the place of rclpy's request header.
+            header: the reply callable that came with the request, in the place of rclpy's request header.
 
         Raises:
             TypeError: the response is not of the service's type.

@@ -13,7 +13,7 @@ from linkwright.graph.time.clock import Clock
 from linkwright.messages import get_message
 
 EVENT_TOPIC_SUFFIX = "/_service_event"
-"""What the name of a service is followed by in the name of its event topic."""
+"""The suffix that makes the name of a service the name of its event topic."""
 
 
 class ServiceIntrospectionState(IntEnum):
@@ -49,11 +49,11 @@ NO_REQUEST_ID = RequestId(bytes(16), 0)
 
 
 class ServiceEvents:
-    """Publishes what happens to the requests of one client or service.
+    """Publishes the events of the requests of one client or service.
 
     Args:
         endpoint: the client or service; the publisher becomes its node's.
-        clock: what the events are stamped with.
+        clock: stamps the events.
         qos_profile: how they are published.
         contents: whether requests and responses are published too.
     """
@@ -99,11 +99,11 @@ class IntrospectedEndpoint(ServiceEndpoint):
     def configure_introspection(
         self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Publish what happens to requests on ``SERVICE/_service_event``, or stop that.
+        """Publish the events of requests on ``SERVICE/_service_event``, or stop that.
 
         Args:
-            clock: what the events are stamped with.
-            service_event_qos_profile: how they are published; while they are already published, it stays as it is.
+            clock: stamps the events.
+            service_event_qos_profile: the QoS of the publisher; one that exists already keeps its own.
             introspection_state: whether they are published, and whether with the requests and responses.
 
         Raises:

@@ -33,7 +33,7 @@ class Detailed:
 
     Attributes:
         message: the message, or its CDR bytes.
-        info: where and when it came from.
+        info: the source and time of the message.
         expires_ns: the steady time at which its lifespan ends, nanoseconds; None for no lifespan.
     """
 
@@ -101,7 +101,7 @@ class Subscription(TopicEndpoint[M], Entity):
         """The callback; it is called with the message, and with a `MessageInfo` if it takes two arguments.
 
         Raises:
-            RuntimeError: what is assigned takes neither one argument nor two.
+            RuntimeError: the callback takes neither one argument nor two.
         """
         return self._callback
 
@@ -153,7 +153,7 @@ class Subscription(TopicEndpoint[M], Entity):
             expression_parameters: the values of ``%0``, ``%1``, ... in it.
 
         Raises:
-            ContentFilterError: the condition cannot be parsed, or a field or parameter is not there.
+            ContentFilterError: the condition cannot be parsed, or a field or parameter of it does not exist.
         """
         from linkwright.graph.endpoints.content_filter import ContentFilter, ContentFilterOptions
 
@@ -161,9 +161,9 @@ class Subscription(TopicEndpoint[M], Entity):
         self._filter = ContentFilter(options, self.msg_type) if filter_expression.strip() else None
 
     def watch_lost(self, lost: Callable[[EndpointInfo], object]) -> None:
-        """Register a callback for publishers outside that are lost; it is called with each as the callback is.
+        """Register a callback for lost publishers of other processes; it runs as the subscription's callback does.
 
-        Its process was killed or has crashed, or it is out of reach; what it had sent is given to the callback before.
+        The publisher's process was killed or has crashed, or is out of reach. Its messages are delivered before.
         """
         self._on_lost = lost
         self.node.graph.watch_lost()
@@ -204,7 +204,7 @@ class Subscription(TopicEndpoint[M], Entity):
             self.enqueue(message, info)
 
     def enqueue(self, message: M | bytes | Detailed, info: MessageInfo | None = None) -> None:
-        """Queue a message for the callback, whatever the node's `intake` says; see `receive`."""
+        """Queue a message for the callback, whatever the node's `intake` returns; see `receive`."""
         if self._filter is not None and not self._is_wanted(message, self._filter):
             return
         if self.events is not None:

@@ -1,7 +1,7 @@
 """The interface of transports, which carry the traffic of a graph to other processes.
 
 In the process a message is handed over as an object. A transport mirrors the endpoints of the process on a network; it
-is called only for what somebody outside listens to. Transports are in the room `linkwright.wire`.
+is called only for topics and services that other processes use. Transports are in the room `linkwright.wire`.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from linkwright.graph.names.identity import NodeIdentity
 class Transport(Protocol):
     """Mirrors the endpoints of one graph outside of the process.
 
-    ``open_*`` is called for each endpoint when it is made, ``close_*`` when it is destroyed; neither may block. What
-    comes in is given to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply, request_id)``,
-    from any thread. What goes out is asked for with ``Publisher.set_outside`` and ``Client.set_outside`` while somebody
-    outside matches, and no longer when nobody does; a transient local publisher's is set from the start, so that who
-    comes late is served. How many match is told with ``set_outside_count``, and how many publishers among them are
-    alive with ``Subscription.set_outside_liveliness``.
+    ``open_*`` is called for each endpoint when it is made, ``close_*`` when it is destroyed; neither may block.
+    Incoming traffic goes to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply,
+    request_id)``, from any thread. For outgoing traffic the transport calls ``Publisher.set_outside`` and
+    ``Client.set_outside`` while an endpoint outside matches, and again when none does; for a transient local publisher
+    from the start, so that late joiners are served. It reports the number of matches with ``set_outside_count``, and
+    the number of live publishers among them with ``Subscription.set_outside_liveliness``.
     """
 
     def open_node(self, node: NodeIdentity) -> None:
@@ -39,7 +39,7 @@ class Transport(Protocol):
         """Mirror a publisher."""
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
-        """Stop mirroring a publisher once what it sent reliably is acknowledged, or no reader is there to do so."""
+        """Stop mirroring a publisher once its reliable messages are acknowledged, or no reader is left to do so."""
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
         """Mirror a subscription."""
@@ -66,16 +66,16 @@ class Transport(Protocol):
         """Show it no longer."""
 
     def look_around(self) -> None:
-        """Find out what there is outside; called by who is about to ask.
+        """Discover the nodes and endpoints outside; called before each query of them.
 
-        A transport need not know before. It may block the first time, for a few seconds at most; from then on it
-        discovers all there is.
+        A transport need not discover earlier. It may block the first time, for a few seconds at most; from then on it
+        discovers everything.
         """
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
         """The nodes of other processes, as far as discovery has come.
 
-        Those that share a name with a node of this process are among them, whoever asked before.
+        Nodes that share a name with a node of this process are among them, whoever asked before.
         """
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:

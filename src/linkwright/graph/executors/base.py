@@ -36,10 +36,10 @@ _POSTPONED_AT_MOST = 2
 
 
 class Context(Protocol):
-    """The context that tells executors whether the program goes on (rclpy ``Context``)."""
+    """The context that tells executors whether the program continues (rclpy ``Context``)."""
 
     def ok(self) -> bool:
-        """Whether the program is to go on."""
+        """Whether the program is to continue."""
 
     def on_shutdown(self, callback: Callable[[], None]) -> None:
         """Register a callback for the shutdown."""
@@ -63,8 +63,8 @@ def deadline_after(timeout_sec: float | None) -> int | None:
 class Executor:
     """Runs the callbacks of nodes in the threads of its choice; a base class for users' own executors.
 
-    A user's own defines `spin_once`, and gets its work from `wait_for_ready_callbacks`. As in rclpy it is no abstract
-    class, and may be made without.
+    A user's own defines `spin_once`, and gets its work from `wait_for_ready_callbacks`. As in rclpy the class is not
+    abstract, and may be instantiated.
 
     Args:
         context: when this is no longer ok, spinning ends; None for an executor without one.
@@ -107,7 +107,7 @@ class Executor:
         return True
 
     def remove_node(self, node: SpunNode) -> None:
-        """Run the callbacks of a node no longer; what is due by then waits for its next executor."""
+        """Run the callbacks of a node no longer; callbacks that are due by then wait for its next executor."""
         with self._nodes_lock:
             if self._nodes.pop(node.handle, None) is None:
                 return
@@ -120,7 +120,7 @@ class Executor:
             return list(self._nodes.values())
 
     def wake(self) -> None:
-        """End the wait for work, to look at everything anew."""
+        """End the wait for work, so that everything is checked again."""
         self._release_blocked()
         self._work.wake()
 
@@ -134,7 +134,7 @@ class Executor:
     def create_task(self, callback: Coroutine[Any, Any, T], *args: Any, **kwargs: Any) -> Task[T]: ...
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
-        """Run a callable or a coroutine while the executor spins, after what is ready by now.
+        """Run a callable or a coroutine while the executor spins, after the work that is ready by now.
 
         Args:
             callback: a callable, a coroutine function or a coroutine.
@@ -201,7 +201,7 @@ class Executor:
         return True
 
     def can_execute(self, entity: Any) -> bool:
-        """Whether the callback group of something lets it run now."""
+        """Whether the callback group of an entity lets it run now."""
         return bool(entity.unblockable or entity.callback_group.can_execute(entity))
 
     def wait_for_ready_callbacks(
@@ -210,7 +210,7 @@ class Executor:
         nodes: Sequence[SpunNode] | None = None,
         condition: Callable[[], bool] | None = None,
     ) -> tuple[Task[Any], Any, Any]:
-        """Wait for something to do.
+        """Wait for work.
 
         Args:
             timeout_sec: the longest wait, in seconds; none at 0, no limit when None or negative.
@@ -218,11 +218,11 @@ class Executor:
             condition: ends the wait when it gives True after a `wake`.
 
         Returns:
-            A task to be called, whose ``exception()`` tells of a fault then; what it is of (None for a task that was
+            A task to be called, whose ``exception()`` gives the error afterwards; its entity (None for a task that was
             made by `create_task`); and its node.
 
         Raises:
-            TimeoutException: nothing came in time.
+            TimeoutException: no work was ready in time.
             ShutdownException: the executor was shut down.
             ExternalShutdownException: the context was shut down.
             ConditionReachedException: the condition has come true.
@@ -258,7 +258,7 @@ class Executor:
         nodes: Sequence[SpunNode] | None = None,
         condition: Callable[[], bool] | None = None,
     ) -> Iterator[tuple[Task[Any], Any, Any]]:
-        """Give one thing to do after another; see `wait_for_ready_callbacks`."""
+        """Give one piece of work after another; see `wait_for_ready_callbacks`."""
         wanted = None if nodes is None else {node.handle for node in nodes}
         while True:
             deadline_ns = deadline_after(timeout_sec)
@@ -276,7 +276,7 @@ class Executor:
                 yield self._handler(item), item, self._nodes.get(item.node)
 
     def _next(self, deadline_ns: int | None, condition: Callable[[], bool] | None, *, begin: bool = True) -> Any:
-        """The next task to run, or entity whose group lets it run and, if `begin`, was told that it does.
+        """The next task to run, or entity whose group lets it run and, if `begin`, was notified that it begins.
 
         Raises as `wait_for_ready_callbacks` does.
         """
@@ -296,7 +296,7 @@ class Executor:
                 return item
 
     def _admit(self, item: Any, *, begin: bool = True) -> bool:
-        """Whether something that was taken out of the queue can run now; an entity that may not yet is put aside."""
+        """Whether work that was taken out of the queue can run now; an entity that may not yet is put aside."""
         if isinstance(item, Task):
             return not item.ended()
         if item.dispatcher is not self:
@@ -310,10 +310,10 @@ class Executor:
         return False
 
     def _postpone(self, answer: Entity) -> bool:
-        """Put the answer that a client got behind what else is ready, and behind what that makes ready.
+        """Put the answer that a client got behind other ready work, and behind the work that it makes ready.
 
-        rclpy runs tasks and messages first: whoever waits for an action's answer to a goal has its feedback by then,
-        if the goal was executed meanwhile.
+        rclpy runs tasks and messages first: a client that waits for an action's answer to a goal has its feedback by
+        then, if the goal was executed meanwhile.
         """
         if answer.postponed >= _POSTPONED_AT_MOST or not self._work.has_ready():
             answer.postponed = 0
@@ -412,7 +412,7 @@ def _raise_fault(task: Task[Any]) -> None:
 
 
 class SpinningExecutor(Executor):
-    """An executor whose spinning is a loop; subclasses say what one turn of it does."""
+    """An executor whose spinning is a loop; subclasses define one turn of it."""
 
     def spin(self) -> None:
         """Run callbacks until the executor or the context is shut down."""

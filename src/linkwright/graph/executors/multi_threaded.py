@@ -27,8 +27,8 @@ class MultiThreadedExecutor(SpinningExecutor):
     """Runs callbacks in a pool of threads, as far as their groups allow (rclpy ``MultiThreadedExecutor``).
 
     The thread that spins gives out the work, at most as much as there are threads; the rest waits with its entities,
-    by their quality of service. `spin_once` does not wait for the end of what it gave out. What a callback raises
-    leaves ``spin`` in the thread that spins.
+    by their quality of service. `spin_once` does not wait for the end of the work that it gave out. The exception of a
+    callback leaves ``spin`` in the thread that spins.
 
     Args:
         num_threads: how many threads; as many as the process has processors when None.
@@ -99,7 +99,7 @@ class MultiThreadedExecutor(SpinningExecutor):
             raise self._faults.popleft()
 
     def _run(self, item: Any) -> None:
-        """Run something and, while the executor spins on, what is ready after it, which spares a change of threads."""
+        """Run a task and, while the executor spins, the work that is ready after it, which spares a thread switch."""
         while item is not None:
             try:
                 self._execute(item)
@@ -124,7 +124,7 @@ class Workers:
 
     Args:
         limit: how many at most.
-        name: what the threads' names begin with.
+        name: the prefix of the threads' names.
         freed: called when a job has ended and its thread has time for the next.
     """
 

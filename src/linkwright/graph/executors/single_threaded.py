@@ -12,7 +12,7 @@ from linkwright.graph.faults import ConditionReachedException, ShutdownException
 class SingleThreadedExecutor(SpinningExecutor):
     """Runs callbacks one after another in the thread that spins (rclpy ``SingleThreadedExecutor``).
 
-    What a callback raises leaves ``spin``. When the context is shut down from outside during the wait,
+    The exception of a callback leaves ``spin``. When the context is shut down from outside during the wait,
     ``ExternalShutdownException`` does.
     """
 

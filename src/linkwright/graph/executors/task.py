@@ -16,7 +16,7 @@ class TaskRunner(Protocol):
     """An executor, as its tasks know it."""
 
     def create_task(self, callback: Callable[..., Any], *args: Any) -> Any:
-        """Run a callable after what is ready by now."""
+        """Run a callable after the work that is ready by now."""
 
     def run_again(self, task: Task[Any]) -> None:
         """Give a task its next turn."""
@@ -25,14 +25,14 @@ class TaskRunner(Protocol):
 class Task(Future[T]):
     """The future result of a callable or a coroutine.
 
-    Calling the task runs the callable, or the coroutine up to the next thing that it awaits. With an executor the task
-    asks it for its next turn as soon as that thing is there.
+    Calling the task runs the callable, or the coroutine up to its next ``await``. With an executor the task asks it for
+    its next turn as soon as the awaited future is done.
 
     Args:
         handler: a callable, a coroutine function or a coroutine.
         args: positional arguments for it.
         kwargs: keyword arguments for it.
-        executor: what runs the task and its done callbacks.
+        executor: the executor that runs the task and its done callbacks.
         ended: called once when there is nothing left to run, whether it ended, failed or was cancelled.
     """
 

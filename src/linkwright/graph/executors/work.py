@@ -1,4 +1,4 @@
-"""The work of an executor: a queue of what is ready, alarms, and the wait for either."""
+"""The work of an executor: a queue of ready entities, alarms, and the wait for either."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from contextlib import suppress
 from typing import Any
 
 _LONGEST_WAIT_S = 0.1 if os.name == "nt" else 3600.0
-"""Where a wait does not end by itself when a signal comes (Windows), it is cut into pieces."""
+"""Where a signal does not end a wait by itself (Windows), the wait is cut into pieces."""
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 _MANY_CANCELLED = 64
@@ -40,9 +40,9 @@ class ScheduledCall:
 
 
 class WorkQueue:
-    """A queue that any thread may add to. Whoever takes from it also sets off the alarms that are due.
+    """A queue that any thread may add to. A thread that takes from it also sets off the alarms that are due.
 
-    Adding to it takes no lock while nobody waits, so that a message handed to the own thread costs next to nothing.
+    Adding to it takes no lock while no thread waits, so that a message handed to the own thread costs next to nothing.
     Nor does waiting hold one: Ctrl-C may raise KeyboardInterrupt at any point of it, and a ``threading.Condition``
     would be left with a lock that its thread does not hold (RuntimeError: cannot release un-acquired lock).
     """
@@ -57,22 +57,22 @@ class WorkQueue:
         self._woken = False
 
     def add(self, item: Any) -> None:
-        """Put something at the end."""
+        """Put an item at the end."""
         self._ready.append(item)
         if self._sleepers:
             self._rouse()
 
     def add_first(self, items: list[Any]) -> None:
-        """Put things back at the beginning, in their order."""
+        """Put items back at the beginning, in their order."""
         self._ready.extendleft(reversed(items))
         self._rouse()
 
     def has_ready(self) -> bool:
-        """Whether something is ready."""
+        """Whether an item is ready."""
         return bool(self._ready)
 
     def take(self) -> Any:
-        """The first thing that is ready, after the alarms that are due have made theirs so; None without any."""
+        """The first ready entity, after the alarms that are due have added theirs; None if there is none."""
         if self._alarms and self._alarms[0].steady_ns <= time.monotonic_ns():
             self._call_due()
         try:
@@ -81,23 +81,23 @@ class WorkQueue:
             return None
 
     def wait(self, deadline_ns: int | None) -> None:
-        """Wait until something may be ready, an alarm is due, somebody calls `wake`, or `deadline_ns` has come.
+        """Wait until an entity may be ready, an alarm is due, `wake` is called, or `deadline_ns` has come.
 
         It may also return for no reason.
         """
         self._sleep(deadline_ns, until_wake=False)
 
     def wait_for_wake(self, deadline_ns: int | None) -> None:
-        """Wait until somebody calls `wake`, or `deadline_ns` has come; what is ready stays."""
+        """Wait until `wake` is called, or `deadline_ns` has come; ready entities stay."""
         self._sleep(deadline_ns, until_wake=True)
 
     def wake(self) -> None:
-        """End the wait of whoever waits, or the next one."""
+        """End the wait of the threads that wait, or the next one."""
         self._woken = True
         self._rouse()
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
-        """Schedule a callback for a count of ``time.monotonic_ns``; whoever takes from the queue makes the call."""
+        """Schedule a callback for a count of ``time.monotonic_ns``; a thread that takes from the queue calls it."""
         with self._alarms_lock:
             self._numbers += 1
             call = ScheduledCall(self, steady_ns, self._numbers, callback)
@@ -139,7 +139,7 @@ class WorkQueue:
     def _sleep(self, deadline_ns: int | None, *, until_wake: bool) -> None:
         sleeper = threading.Lock()
         sleeper.acquire()
-        self._sleepers.append(sleeper)  # before the look at what is there: whoever adds after that look rouses it
+        self._sleepers.append(sleeper)  # before the check of the queue: a thread that adds after the check rouses it
         try:
             if self._woken or (self._ready and not until_wake):
                 return

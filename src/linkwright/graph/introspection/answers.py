@@ -38,10 +38,10 @@ class TopicEndpointInfo:
         node_namespace: that node's namespace.
         topic_type: the name of the message type.
         topic_type_hash: ``RIHS01_...``; empty where it is not known.
-        endpoint_type: what it is.
+        endpoint_type: its kind.
         endpoint_gid: its identity.
-        qos_profile: what it offers or asks for.
-        host: the machine that it is on, which rclpy does not tell; empty for this process, and where it is not known.
+        qos_profile: the QoS that it offers or requests.
+        host: the machine that it is on, which rclpy does not give; empty for this process, and where it is not known.
     """
 
     node_name: str = ""
@@ -97,7 +97,7 @@ def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> 
 
 
 def action_names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
-    """The names and types of the actions whose feedback topic is among endpoints of some kinds, as rcl_action tells.
+    """The names and types of the actions whose feedback topic is among endpoints of some kinds, as rcl_action gives.
 
     A server publishes feedback, a client subscribes to it.
     """

@@ -161,12 +161,12 @@ class GraphQueries:
         with self._changed:
             self._changed.notify_all()
         for changed in tuple(self._watchers):
-            run_logged(self._logger, "what watches the graph", changed)
+            run_logged(self._logger, "a callback for changes of the graph", changed)
 
     def watch(self, changed: Callable[[], object]) -> None:
         """Register a callback for changes of nodes and endpoints; it is called in the thread where they happen.
 
-        What it raises is logged.
+        Its exceptions are logged.
         """
         self._watchers[changed] = None
 
@@ -175,10 +175,10 @@ class GraphQueries:
         self._watchers.pop(changed, None)
 
     def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until something of the graph holds.
+        """Block the calling thread until a condition of the graph holds.
 
         Args:
-            holds: what is asked whenever nodes or endpoints come or go.
+            holds: the condition, checked whenever nodes or endpoints appear or leave.
             timeout_sec: seconds to wait at most; None or a negative number for any time.
 
         Returns:
@@ -192,11 +192,11 @@ class GraphQueries:
             if self._closed or (left is not None and left <= 0):
                 return False
             with self._changed:
-                # Discovery may tell of a change between the question and the wait, so none is long.
+                # Discovery may report a change between the check and the wait, so no wait is long.
                 self._changed.wait(_LONGEST_WAIT_S if left is None else min(left, _LONGEST_WAIT_S))
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float | None = None) -> bool:
-        """Block the calling thread until a node is there; whether it is.
+        """Block the calling thread until a node exists; return whether it does.
 
         Args:
             fully_qualified_node_name: its name, with or without the slash in front.

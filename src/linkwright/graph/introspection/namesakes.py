@@ -16,7 +16,7 @@ class Namesakes:
     """Tracks names of our nodes that nodes of other processes share, and reports changes.
 
     Args:
-        tell: what is told. When left out, each name is logged once by its node, as long as it is shared.
+        tell: receives the changes. When left out, each name is logged once by its node, as long as it is shared.
     """
 
     def __init__(self, tell: OnNamesakes | None = None) -> None:

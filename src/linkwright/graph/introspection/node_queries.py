@@ -98,10 +98,10 @@ class NodeQueries:
 
 
 def _resolved(resolve: Callable[[str], str], name: str) -> str:
-    """The absolute name that is asked about; what is none is refused in rclpy's words.
+    """The absolute name of a query; a name that is not valid is refused in rclpy's words.
 
     Raises:
-        TypeError: the name is no text.
+        TypeError: the name is not a text.
         ValueError: the name is not valid.
     """
     if not isinstance(name, str):

@@ -19,7 +19,7 @@ class Traffic:
         least_size: that of the smallest.
         most_size: that of the largest.
         count: over how many messages this is.
-        age_ns: how long ago the first of them came, nanoseconds.
+        age_ns: the age of the first of them, nanoseconds.
     """
 
     messages_per_second: float
@@ -32,7 +32,7 @@ class Traffic:
 
 
 class TrafficWindow:
-    """The sizes of the last messages of a topic, and when they came.
+    """The sizes of the last messages of a topic, and their times of arrival.
 
     Args:
         size: how many are kept at most.

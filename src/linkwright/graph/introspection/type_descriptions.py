@@ -12,7 +12,7 @@ from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.messages import InterfaceNotFoundError, definition_text, get_message, is_before_iron
 
 PARAMETER = "start_type_description_service"
-"""The parameter that says whether a node has the service."""
+"""The parameter that decides whether a node has the service."""
 
 _TYPE = "type_description_interfaces/srv/GetTypeDescription"
 _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
@@ -86,7 +86,7 @@ def _individual(described: Mapping[str, Any]) -> Any:
 
 
 def _source(name: str) -> Any:
-    """The text of an interface file. A type that stands in none by itself, such as a request, is ``implicit``."""
+    """The text of an interface file. A type without a file of its own, such as a request, is ``implicit``."""
     _, encoding, own_name = name.split("/")
     if "_" in own_name:
         return _interface("TypeSource")(type_name=name, encoding="implicit")

@@ -11,7 +11,7 @@ from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallback
 
 
 class ManagedEntity:
-    """Is notified of the transitions of its node; what it returns decides how they continue."""
+    """Is notified of the transitions of its node; its return values decide how they continue."""
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """The node is configured, coming from a state."""
@@ -39,7 +39,7 @@ class ManagedEntity:
 
 
 class SimpleManagedEntity(ManagedEntity):
-    """Something that is enabled while its node is active."""
+    """An entity that is enabled while its node is active."""
 
     def __init__(self) -> None:
         self._enabled = False

@@ -59,7 +59,7 @@ class LifecycleNodeMixin(ManagedEntity):
     they ask the managed entities in turn.
 
     Args:
-        enable_communication_interface: whether others can drive the node, through services, and hear of it.
+        enable_communication_interface: whether other nodes can drive the node, through services, and see its events.
         callback_group: that of the services.
     """
 
@@ -161,7 +161,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._ask_entities(lambda entity: entity.on_deactivate(state))
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """A transition went wrong: success leads back to the beginning, anything else ends the node's life."""
+        """A transition failed: SUCCESS leads back to the beginning, any other return value ends the node's life."""
         return self._ask_entities(lambda entity: entity.on_error(state))
 
     def _ask_entities(self, ask: Callable[[ManagedEntity], TransitionCallbackReturn]) -> TransitionCallbackReturn:

@@ -36,7 +36,7 @@ def console_line(record: LogRecord) -> str:
 
 @lru_cache(maxsize=8)
 def _parts(format_text: str) -> tuple[Part, ...]:
-    """What puts a line together: fixed texts, and what stands for the tokens. Unknown tokens stay as they are."""
+    """The parts of a line: fixed texts, and functions for the tokens. Unknown tokens stay as they are."""
     text = _ESCAPE.sub(lambda match: _ESCAPES[match[1]], format_text[:_MAX_FORMAT_LENGTH])
     parts: list[Part] = []
     end = 0
@@ -92,9 +92,9 @@ _COLOURS = {
 def print_to_console(record: LogRecord) -> None:
     """Write a record to standard error, or to standard output where RCUTILS_LOGGING_USE_STDOUT is 1.
 
-    Terminals get colours; RCUTILS_COLORIZED_OUTPUT, 0 or 1, decides otherwise, and NO_COLOR where that says nothing.
+    Terminals get colours; RCUTILS_COLORIZED_OUTPUT, 0 or 1, decides otherwise, and NO_COLOR where that is not set.
     Each record is written out at once, whatever RCUTILS_LOGGING_BUFFERED_STREAM says, so that none is lost with the
-    process; a stream that nobody reads any more is passed over.
+    process; a stream without a reader is passed over.
     """
     stream: TextIO | None = sys.stdout if os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1" else sys.stderr
     if stream is None:  # of a program without a console
@@ -106,7 +106,7 @@ def print_to_console(record: LogRecord) -> None:
         stream.write(f"{line}\n")
         stream.flush()
     except (OSError, ValueError):
-        # The reader has gone, the disk is full or the stream closed: a log line is no reason to end.
+        # The reader has gone, the disk is full or the stream is closed: a log line is not a reason to end.
         return
 
 

@@ -27,7 +27,7 @@ def log_folder(environment: Mapping[str, str] | None = None) -> Path:
 class LogFile:
     """The log file of this process: ``EXECUTABLE_PID_MILLISECONDS.log``, made with the first record.
 
-    Where the folder cannot be written there is no file, and the process goes on.
+    Where the folder cannot be written there is no file, and the process continues.
 
     Args:
         executable: name of the program.
@@ -53,7 +53,7 @@ class LogFile:
             self.close()
 
     def close(self) -> None:
-        """Write out what is buffered, and end."""
+        """Write out buffered records, and end."""
         if self._file is not None:
             with suppress(OSError):
                 self._file.close()

@@ -17,7 +17,7 @@ class LogLevel(IntEnum):
 
 
 def level_named(name: str) -> LogLevel | None:
-    """The severity of a name, in upper or lower case; None when there is no such severity."""
+    """The severity of a name, in upper or lower case; None for an unknown name."""
     return LogLevel.__members__.get(name.upper())
 
 
@@ -37,7 +37,7 @@ class LogLevels:
         self.revision = 0
 
     def set(self, name: str, level: LogLevel) -> None:
-        """Set the level of a logger; UNSET removes it. The empty name stands for the default level."""
+        """Set the level of a logger; UNSET removes it. The empty name sets the default level."""
         if not name:
             self._default = level or LogLevel.INFO
         else:

@@ -25,12 +25,12 @@ class Logger:
         name: the name in its records.
         sink: receives the records.
         now_ns: the clock that stamps them, nanoseconds since the epoch.
-        levels: the tree of levels that it belongs to; one of its own when left out.
+        levels: the tree of levels that it belongs to; a separate one when left out.
         steady_ns: the steady time that throttles use, nanoseconds.
 
     Attributes:
         name: the name in its records.
-        rosout: receives the records too, for ``/rosout``; None for nobody. Children inherit it.
+        rosout: receives the records too, for ``/rosout``; None for no topic. Children inherit it.
     """
 
     __slots__ = ("_calls", "_effective", "_levels", "_now_ns", "_revision", "_sink", "_steady_ns", "name", "rosout")
@@ -153,7 +153,7 @@ def _caller() -> FrameType:
 
 
 def log_failure(logger: Logger, what: str, error: BaseException) -> None:
-    """Log that something failed: a mistake in the user's input by its own words, anything else with its traceback."""
+    """Log a failure: a mistake in the user's input by its own words, any other exception with its traceback."""
     if isinstance(error, LinkwrightError):
         problem = f" {error}"
     else:
@@ -183,7 +183,7 @@ class CallFilter:
         steady_ns: the steady time that is used where no time source is given, nanoseconds.
 
     Raises:
-        TypeError: an option is not known, or goes only with another.
+        TypeError: an option is not known, or requires another one.
         ValueError: the time source is neither a clock nor rcutils' steady time.
     """
 
@@ -228,7 +228,7 @@ class CallFilter:
         """Whether this call is logged; counts it."""
         if self._duration_s:
             now_s = self._now_s()
-            # A clock that jumped back begins anew.
+            # A clock that jumped back starts again.
             if self._last_s is not None and self._last_s <= now_s < self._last_s + self._duration_s:
                 return False
             self._last_s = now_s

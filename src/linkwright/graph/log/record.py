@@ -32,4 +32,4 @@ class LogRecord:
 
 
 LogSink = Callable[[LogRecord], None]
-"""What takes records: the console, a file, ``/rosout``."""
+"""Receives records: the console, a file, ``/rosout``."""

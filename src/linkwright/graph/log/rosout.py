@@ -40,7 +40,7 @@ class Rosout:
         logger.rosout = self.publish
 
     def publish(self, record: LogRecord) -> None:
-        """Publish one record. What publishing it logs in turn is not published."""
+        """Publish one record. Records that this logs in turn are not published."""
         if self._publishing:
             return
         self._publishing = True

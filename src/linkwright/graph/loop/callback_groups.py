@@ -9,10 +9,10 @@ from typing import Any
 class CallbackGroup:
     """Decides which of its entities may run; a base class for users' own groups.
 
-    An executor asks `can_execute`, then says `beginning_execution`, which may still refuse, and `ending_execution`. It
-    asks again when something that ran has ended.
+    An executor asks `can_execute`, then calls `beginning_execution`, which may still refuse, and `ending_execution`. It
+    asks again when a callback has ended.
 
-    It is no abstract class: as in rclpy, programs may make one, and what they do not override is not implemented.
+    The class is not abstract: as in rclpy, programs may instantiate it, and a method without an override raises.
     """
 
     def __init__(self) -> None:
@@ -21,11 +21,11 @@ class CallbackGroup:
         self._forget = self.entities.discard
 
     def add_entity(self, entity: Any) -> None:
-        """Make something of a node a member; its callbacks then run as the group says."""
+        """Make an entity of a node a member; its callbacks then run as the group allows."""
         self.entities.add(weakref.ref(entity, self._forget))
 
     def has_entity(self, entity: Any) -> bool:
-        """Whether something is a member."""
+        """Whether an entity is a member."""
         return weakref.ref(entity) in self.entities
 
     def can_execute(self, entity: Any) -> bool:
@@ -57,12 +57,12 @@ class ReentrantCallbackGroup(CallbackGroup):
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """One member runs at a time. A coroutine counts as running until its end, also while it awaits something."""
+    """One member runs at a time. A coroutine counts as running until its end, also while it awaits."""
 
     def __init__(self) -> None:
         super().__init__()
         self._active: Any = None
-        self._turn = [None]  # a token: whoever pops it may run; faster than a lock
+        self._turn = [None]  # a token: the thread that pops it may run; faster than a lock
 
     def can_execute(self, entity: Any) -> bool:
         """Whether no member runs."""
@@ -92,4 +92,4 @@ class _FreeGroup(ReentrantCallbackGroup):
 
 
 FREE_GROUP: CallbackGroup = _FreeGroup()
-"""For what belongs to no group in rclpy: the execution of an action's goals."""
+"""For work that belongs to no group in rclpy: the execution of an action's goals."""

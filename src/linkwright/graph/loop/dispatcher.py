@@ -20,16 +20,16 @@ from linkwright.graph.time.timebase import Alarm, Timebase
 _CALLS_A_TURN = 256
 _SECONDS_A_TURN = 0.002
 _MOST_TURNS = 1000
-"""How many turns without a call `settle` waits for coroutines to come to rest."""
+"""How many turns without a call `settle` waits for coroutines to become idle."""
 
 
 class LoopDispatcher:
     """A dispatcher on the event loop of the thread that makes it.
 
     Entities take turns: one that has more to do after its call goes to the end of the queue, so that a flood of
-    messages on one topic starves nobody. A turn of the loop runs what is ready for a moment, and then lets the loop
-    serve sockets and timers. What is made ready while a callback runs comes after it, never inside it. Callbacks that
-    are coroutines run as tasks of the loop, which end with their node.
+    messages on one topic does not starve the others. A turn of the loop runs ready entities for a moment, and then lets
+    the loop serve sockets and timers. Work that becomes ready while a callback runs comes after it, never inside it.
+    Callbacks that are coroutines run as tasks of the loop, which end with their node.
     """
 
     def __init__(self, timebase: Timebase, loop: asyncio.AbstractEventLoop) -> None:
@@ -41,7 +41,7 @@ class LoopDispatcher:
         self._waking = False
         self._closed = False
         self.on_error: Callable[[Entity, Exception], None] = Entity.report
-        """What is done with the error of a callback; it is logged unless this is changed."""
+        """Handles the error of a callback; it is logged unless this is changed."""
         self._tasks: dict[asyncio.Task[None], NodeHandle] = {}
         self._held: dict[CallbackGroup, _Hold] = {}
         timebase.attach(self)
@@ -99,7 +99,7 @@ class LoopDispatcher:
         return bool(getattr(self._loop, "_ready", ()))
 
     def close(self) -> None:
-        """Forget all work, and cancel what runs."""
+        """Drop all work, and cancel running coroutines."""
         self._closed = True
         self._ready.clear()
         self._held.clear()
@@ -195,7 +195,7 @@ class LoopDispatcher:
     async def _run(self, entity: Entity, coroutine: Coroutine[Any, Any, object]) -> None:
         try:
             await coroutine
-        except Exception as error:  # noqa: BLE001  # as for callbacks that are no coroutines
+        except Exception as error:  # noqa: BLE001  # as for callbacks that are not coroutines
             self.on_error(entity, error)
 
     def _release(self, group: CallbackGroup, entity: Entity) -> None:

@@ -1,7 +1,7 @@
 """Entities: the parts of a node that call back; guard conditions, the simplest of them.
 
-An entity (a subscription, a timer, a service, ...) tells the dispatcher of its node that it has something to do; the
-dispatcher decides when, and in which thread, it takes that from the entity and does it. The event loop of the launcher
+An entity (a subscription, a timer, a service, ...) notifies the dispatcher of its node that it has a call to run; the
+dispatcher decides when, and in which thread, it takes the call and runs it. The event loop of the launcher
 is one dispatcher (`linkwright.graph.loop.dispatcher`), the executors of rclpy are others
 (`linkwright.graph.executors`).
 """
@@ -26,7 +26,7 @@ class Entity(Part, ABC):
 
     Attributes:
         callback_group: which entities may run beside it; the node's default group unless another one is given.
-        dispatcher: what runs its calls; None while the node has none, and after it was destroyed.
+        dispatcher: runs its calls; None while the node has none, and after it was destroyed.
     """
 
     unblockable = False
@@ -47,9 +47,9 @@ class Entity(Part, ABC):
 
     @abstractmethod
     def take(self) -> Callable[[], object] | None:
-        """The next call that is due, taken out of the entity's queue; None when there is none any more.
+        """The next call that is due, taken out of the entity's queue; None when there is no more.
 
-        What the call raises is the user's; it may give a coroutine, which the dispatcher runs to its end.
+        The call may raise any exception of the user's; it may give a coroutine, which the dispatcher runs to its end.
         """
 
     @abstractmethod
@@ -69,7 +69,7 @@ class Entity(Part, ABC):
             self.announce()
 
     def announce(self) -> None:
-        """Tell the dispatcher that there is something to take, unless it knows."""
+        """Notify the dispatcher that there is a call to take, unless it knows."""
         if not self._announced:
             dispatcher = self.dispatcher
             if dispatcher is not None:
@@ -79,7 +79,7 @@ class Entity(Part, ABC):
     def _next_of(self, queue: deque[T]) -> T | None:
         """Take the oldest item out of a queue that the entity's calls come from; None when it is empty.
 
-        What waits behind it is announced.
+        The items behind it are announced.
         """
         self._announced = False
         try:

@@ -24,7 +24,7 @@ def is_stepped_by_executor() -> bool:
 class StepsByExecutor:
     """While this is entered, coroutines are stepped in this thread by an executor of rclpy, not by asyncio.
 
-    A future that is awaited then gives itself to whoever steps, even inside a running event loop.
+    A future that is awaited then gives itself to the code that steps, even inside a running event loop.
     """
 
     def __enter__(self) -> None:
@@ -35,11 +35,11 @@ class StepsByExecutor:
 
 
 class Future(Generic[T]):
-    """A result to come. It can be awaited in a coroutine that asyncio runs and in one that an executor runs.
+    """A future result. It can be awaited in a coroutine that asyncio runs and in one that an executor runs.
 
     Args:
-        executor: what runs the done callbacks (its ``create_task(callback, future)``); without one they are called at
-            once by whoever completes the future.
+        executor: runs the done callbacks (its ``create_task(callback, future)``); without one they are called at once
+            in the thread that completes the future.
     """
 
     def __init__(self, *, executor: Any = None) -> None:
@@ -53,7 +53,7 @@ class Future(Generic[T]):
         self._executor = executor
         self._lock = threading.Lock()
         self.source: Any = None
-        """The client whose server it waits for; None for a future of anything else."""
+        """The client whose server it waits for; None for any other future."""
 
     def __del__(self) -> None:
         if self._exception is not None and not self._exception_fetched:
@@ -72,7 +72,7 @@ class Future(Generic[T]):
         return self._cancelled
 
     def cancel(self) -> None:
-        """Give up: callbacks are told, and nobody waits any longer. Does nothing to a future that is done."""
+        """Give up: callbacks are called, and no waiter waits any longer. Does nothing to a future that is done."""
         with self._lock:
             if self._done or self._cancelled:
                 return

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Handle:
-    """Entered while what it belongs to is used (rclpy ``handle``).
+    """Entered while its owner is used (rclpy ``handle``).
 
     Args:
         is_destroyed: whether that was destroyed.
@@ -35,7 +35,7 @@ class Handle:
 
     @property
     def pointer(self) -> int:
-        """A number that tells it from others."""
+        """A number that distinguishes it from others."""
         return id(self)
 
     def __enter__(self) -> Self:
@@ -49,7 +49,7 @@ class Handle:
 
 
 class Handled:
-    """Something with a `handle`, and with an attribute ``destroyed``."""
+    """An object with a `handle`, and with an attribute ``destroyed``."""
 
     __slots__ = ()
 
@@ -72,13 +72,14 @@ P = TypeVar("P", bound="Part")
 
 
 class Dispatcher(AlarmSetter, Protocol):
-    """Runs what entities have to do: an event loop, or an executor. All methods may be called from any thread."""
+    """Runs the calls of entities: an event loop, or an executor. All methods may be called from any thread."""
 
     def ready(self, entity: Any) -> None:
         """Note that an `Entity` has at least one call to be taken.
 
-        An entity says so when its queue was empty before, and again from within `Entity.take` while more remain; so
-        nothing piles up here when messages flood in. An entity whose ``dispatcher`` is another one by then is skipped.
+        An entity announces itself when its queue was empty before, and again from within `Entity.take` while more
+        remain; so nothing piles up here when messages flood in. An entity whose ``dispatcher`` is another one by then
+        is skipped.
         """
 
 
@@ -100,10 +101,10 @@ class HomeGraph(Protocol):
         """Wake the waiters of `wait_until`, which check their condition again."""
 
     def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until something of the graph holds; whether it does."""
+        """Block the calling thread until a condition of the graph holds; whether it does."""
 
     def watch_lost(self) -> None:
-        """Tell subscriptions from now on of publishers of their topics that are lost."""
+        """Notify subscriptions from now on of publishers of their topics that are lost."""
 
 
 class Part(Handled):
@@ -147,22 +148,22 @@ class Part(Handled):
 
 
 class NodeHandle(Handle):
-    """A node of a graph: what it is called, what it owns, and what runs its callbacks.
+    """A node of a graph: its name, its parts, and the dispatcher that runs its callbacks.
 
     Args:
         graph: the graph it lives in.
         identity: its name.
         remappings: its rules for names of topics and services.
-        logger: what it logs with.
-        dispatcher: what runs its callbacks; None while nothing does.
-        copies_messages: whether what it sends is copied, for its sender to change it then.
-        stays_inside: whether other processes see neither it nor anything of it.
+        logger: its logger.
+        dispatcher: runs its callbacks; None while nothing does.
+        copies_messages: whether its messages are copied, so that their sender may change them afterwards.
+        stays_inside: whether it is hidden, with all its endpoints, from other processes.
 
     Attributes:
-        timebase: what the graph's time is made of.
+        timebase: the time of the graph.
         default_callback_group: the group of entities that are in no other.
-        intake: is shown each message that comes for a subscription of the node, in any thread, with the subscription
-            before it; the message waits for the callback only if the answer is true. None for all messages to.
+        intake: called with each subscription of the node and each message that arrives for it, in any thread; the
+            message waits for the callback only if it returns True. None queues all messages.
         strict_callback_groups: whether responses to its requests wait for the callback group of the client.
     """
 
@@ -201,7 +202,7 @@ class NodeHandle(Handle):
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Set the dispatcher that runs the node's callbacks; None for none.
 
-        What falls due while there is none waits as the quality of service says, and is announced to the next one.
+        Calls that fall due while there is none wait as the quality of service says; the next one is notified of them.
         """
         self.dispatcher = dispatcher
         for part in tuple(self._parts):

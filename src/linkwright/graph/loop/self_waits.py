@@ -1,9 +1,9 @@
-"""Callbacks that block until something comes which only their own callback group could let in.
+"""Callbacks that block until an event which only their own callback group could let in.
 
 In rclpy the response to a request is taken in the callback group of its client. While a callback of a mutually
-exclusive group runs, nothing else of that group does: a callback that blocks until the response is there blocks for
-ever. Here responses run no code of the user's and are let in all the same. So that nobody finds out on the robot, it is
-logged as an error; where the parameter `STRICT` of the node asks for it, it hangs as there.
+exclusive group runs, nothing else of that group does: a callback that blocks until the response arrives blocks for
+ever. Here responses run no code of the user's and are let in all the same. The mistake is logged as an error before the
+program runs on a robot; where the parameter `STRICT` of the node is set, the callback hangs as in rclpy.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Waited(Protocol):
     """A future, as it is looked at here.
 
     Attributes:
-        source: the client whose server it waits for; None for a future of anything else.
+        source: the client whose server it waits for; None for any other future.
     """
 
     source: Any
@@ -44,7 +44,7 @@ def tell_if_it_waits_for_itself(future: Waited) -> None:
     """Log an error where the calling thread is in a callback that would wait for ever on a robot; once for each place.
 
     Args:
-        future: what is to be waited for.
+        future: the future to wait for.
     """
     client = future.source
     if client is None or future.ended():
@@ -67,13 +67,13 @@ def tell_if_it_waits_for_itself(future: Waited) -> None:
     client.node.logger.error(
         f"callback '{callback.co_name}' ({callback.co_filename}:{callback.co_firstlineno}) waits at {place} for the "
         f"{client.what}, which is in the same mutually exclusive callback group: on a robot it waits for ever. Give "
-        "the client a callback group of its own and use a MultiThreadedExecutor, or go on in a done callback of "
+        "the client a callback group of its own and use a MultiThreadedExecutor, or continue in a done callback of "
         "call_async()"
     )
 
 
 def _entity_of(frame: FrameType) -> Any:
-    """What a frame of an executor runs a callback of; None for any other frame."""
+    """The entity whose callback a frame of an executor runs; None for any other frame."""
     return frame.f_locals.get(RUNNER) if RUNNER in frame.f_code.co_varnames else None
 
 

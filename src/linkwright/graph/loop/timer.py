@@ -18,7 +18,7 @@ from linkwright.graph.time.values import ClockType, Time
 
 @dataclass(frozen=True, init=False)
 class TimerInfo:
-    """When a timer's call was due and when it came (rclpy ``TimerInfo``).
+    """The times at which a timer's call was due and made (rclpy ``TimerInfo``).
 
     Args:
         expected_call_time: nanoseconds, or a point in time.
@@ -53,7 +53,7 @@ class Timer(Entity):
         node: whose it is.
         callback: called without arguments, or with a `TimerInfo` when it takes one.
         period_ns: the period; 0 calls whenever there is nothing else to do.
-        clock: what the period is counted on.
+        clock: the clock that counts the period.
         callback_group: which entities may run beside it.
         autostart: whether it runs from the start; else `reset` starts it.
 
@@ -126,7 +126,7 @@ class Timer(Entity):
         self._disarm()
 
     def reset(self) -> None:
-        """Start anew: the next call comes one period from now.
+        """Restart the period: the next call comes one period from now.
 
         Raises:
             InvalidHandleError: the timer was destroyed.
@@ -137,7 +137,7 @@ class Timer(Entity):
         self._running = True
         self._last_ns = self.clock.timer_ns()
         self._due_ns = self._last_ns + self._period_ns
-        # An alarm that comes too early sets itself anew: what is reset with each message does not set one each time.
+        # An alarm that comes too early sets itself again: a timer reset with each message sets no alarm each time.
         if self._alarm is None or self._alarm_ns > self._due_ns:
             self._disarm_alarm()
             self._arm()
@@ -196,19 +196,19 @@ class Timer(Entity):
         )
 
     def before_switch(self) -> None:
-        """Keep what is left of the period while the clock becomes another one."""
+        """Keep the rest of the period while the clock becomes another one."""
         self._rest_ns = min(max(self._due_ns - self.clock.timer_ns(), 0), self._period_ns)
         self._disarm_alarm()
 
     def after_switch(self) -> None:
-        """Resume on the new clock with what was left of the period."""
+        """Resume on the new clock with the rest of the period."""
         self._due_ns = self.clock.timer_ns() + self._rest_ns
         self._last_ns = self._due_ns - self._period_ns
         if self._running and not self._due:
             self._arm()
 
     def after_jump_back(self) -> None:
-        """Start the period anew when the clock went back behind the last call, or else wait for the same time."""
+        """Restart the period when the clock went back behind the last call, or else wait for the same time."""
         self._disarm_alarm()
         now_ns = self.clock.timer_ns()
         if now_ns < self._last_ns:
@@ -251,8 +251,8 @@ def _check_period(period_ns: int) -> None:
 class Rate:
     """Lets a loop turn at a fixed rate: each `sleep` ends with the next beat of a timer.
 
-    The timer's callbacks must be run by another thread than the one that sleeps; a coroutine waits with `wait`. What
-    comes late does not shift the beat.
+    The timer's callbacks must be run by another thread than the one that sleeps; a coroutine waits with `wait`. A late
+    beat does not shift the beats after it.
 
     Args:
         timer: the timer that beats; the rate takes its callback.
@@ -290,7 +290,7 @@ class Rate:
         self._beat()
 
     def destroy(self) -> bool:
-        """End the rate; who sleeps by it is woken. Returns whether it had not been destroyed before."""
+        """End the rate; threads that sleep by it wake. Returns whether it had not been destroyed before."""
         self.wake()
         self.timer.node.remove_cleanup(self.wake)
         return self.timer.node.remove(self.timer)

@@ -10,16 +10,16 @@ if TYPE_CHECKING:
     from regex import Pattern
 
 _SECONDS = 0.5
-"""What a search may take; names and what is written to find them take microseconds."""
+"""The time that a search may take; names and usual expressions take microseconds."""
 
 _LEAST = 0.001
-"""Seconds for each of many names, though the others took all there was."""
+"""Seconds for each of many names, though the others took all the time."""
 
 _MOST_CHARACTERS = 2000
 
 
 class ExpressionError(ValueError):
-    """A text is not a valid regular expression; the message says why."""
+    """A text is not a valid regular expression; the message is the reason."""
 
 
 class TooCostlyError(ExpressionError):
@@ -34,7 +34,7 @@ class Expression:
             with it.
 
     Raises:
-        ExpressionError: the text is no expression.
+        ExpressionError: the text is not an expression.
     """
 
     def __init__(self, text: str) -> None:
@@ -48,10 +48,10 @@ class Expression:
             raise ExpressionError(str(error)) from None
 
     def matches(self, text: str) -> bool:
-        """Whether the text as a whole is what the expression says, as with `regex_match` of C++.
+        """Whether the expression matches the whole text, as with `regex_match` of C++.
 
         Raises:
-            TooCostlyError: it takes too long to tell.
+            TooCostlyError: the search takes too long.
         """
         try:
             return self._pattern.fullmatch(text, timeout=_SECONDS) is not None
@@ -62,7 +62,7 @@ class Expression:
         """Those names in which the expression is found, as with `regex_search` of C++.
 
         Raises:
-            TooCostlyError: it takes too long to tell, for all of them together.
+            TooCostlyError: the search takes too long, for all of them together.
         """
         end = time.monotonic() + _SECONDS
         try:

@@ -15,7 +15,7 @@ _MAX_NODE_NAME_LENGTH = 255
 _MAX_NAMESPACE_LENGTH = 245
 
 Problem = tuple[str, int]
-"""What is wrong with a name, and the index of the character where it is."""
+"""A mistake in a name, and the index of the character where it is."""
 
 
 class InvalidNameError(LinkwrightError, ValueError):
@@ -24,12 +24,12 @@ class InvalidNameError(LinkwrightError, ValueError):
     Args:
         kind: ``node name``, ``namespace``, ``topic name`` or ``service name``.
         name: the name as it was given.
-        error_msg: what is wrong with it.
+        error_msg: the mistake in it.
         invalid_index: at which character.
 
     Attributes:
         name: the name as it was given.
-        error_msg: what is wrong with it.
+        error_msg: the mistake in it.
         invalid_index: at which character.
     """
 
@@ -133,7 +133,7 @@ def absolute_namespace(namespace: str) -> str:
 
 
 def join(namespace: str, name: str) -> str:
-    """The full name of something in a namespace."""
+    """The full name of an entity in a namespace."""
     return f"/{name}" if namespace == "/" else f"{namespace}/{name}"
 
 

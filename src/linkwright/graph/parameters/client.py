@@ -31,7 +31,7 @@ Done = Callable[..., Any]
 class AsyncParameterClient:
     """Reads and sets the parameters of a node through its services.
 
-    Every method that asks gives a future of the service's response, and takes a callback for when it is there.
+    Every method that asks gives a future of the service's response, and takes a callback for its arrival.
 
     Args:
         node: makes the clients.
@@ -153,8 +153,8 @@ def parameter_dict_from_yaml_file(
 
     Args:
         parameter_file: its path.
-        use_wildcard: whether what the file has for any node (``/**``) counts, before what it has for single ones.
-        target_nodes: the nodes whose parameters are wanted; all in the file when left out.
+        use_wildcard: whether values for any node (``/**``) count, before those for single nodes.
+        target_nodes: the nodes whose parameters are read; all in the file when left out.
         namespace: put before each name.
 
     Raises:

@@ -15,10 +15,10 @@ class ParameterException(LinkwrightError):  # noqa: N818  # rclpy's name, which 
     """The base of rclpy's parameter exceptions.
 
     Args:
-        error_msg: what is wrong.
+        error_msg: the mistake.
         parameters: the name, or the names, of the parameters concerned.
         code: the diagnostic's code.
-        hint: how to mend it.
+        hint: how to fix it.
     """
 
     def __init__(

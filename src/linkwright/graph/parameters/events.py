@@ -52,7 +52,7 @@ class _Callbacks:
         return handle
 
     def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-        """Remove a callback; raises RuntimeError when it is not there."""
+        """Remove a callback; raises RuntimeError when it is not registered."""
         key = (handle.parameter_name, handle.node_name)
         with self._lock:
             _remove(handle, self.parameter_callbacks.get(key, []))
@@ -67,7 +67,7 @@ class _Callbacks:
         return handle
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-        """Remove a callback; raises RuntimeError when it is not there."""
+        """Remove a callback; raises RuntimeError when it is not registered."""
         with self._lock:
             _remove(handle, self.event_callbacks)
 
@@ -98,7 +98,7 @@ class ParameterEventHandler:
     Args:
         node: subscribes.
         qos_profile: that of the subscription.
-        options: what else ``create_subscription`` of the node takes.
+        options: further arguments of ``create_subscription`` of the node.
     """
 
     Callbacks = _Callbacks
@@ -126,7 +126,7 @@ class ParameterEventHandler:
         Args:
             parameter_name: its name.
             node_name: the node whose it is: absolute, relative to the namespace of our node, or empty for our node.
-            callback: what is called.
+            callback: the callback.
         """
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
 
@@ -134,7 +134,7 @@ class ParameterEventHandler:
         """Remove a callback.
 
         Raises:
-            RuntimeError: it is not there.
+            RuntimeError: it is not registered.
         """
         self._callbacks.remove_parameter_callback(handle)
 
@@ -146,7 +146,7 @@ class ParameterEventHandler:
         """Remove a callback.
 
         Raises:
-            RuntimeError: it is not there.
+            RuntimeError: it is not registered.
         """
         self._callbacks.remove_parameter_event_callback(handle)
 

@@ -1,8 +1,8 @@
 """Parameter files: YAML that names nodes, and below ``ros__parameters`` the values of their parameters.
 
 Read as rcl_yaml_param_parser reads it: nested names of namespaces and nodes, nested parameter names, its own idea of
-scalars (see `scalar_value`), lists of one type, no anchors. What it would refuse is refused here, with the place; only
-a parameter whose list has lists or mappings in it is left out, since files of real robots have such lists.
+scalars (see `scalar_value`), lists of one type, no anchors. A file that it would refuse is refused here, with the
+place; only a parameter whose list has lists or mappings in it is left out, since files of real robots have such lists.
 `parameter_file_text` writes a file, as ``ros2 param dump`` does.
 """
 
@@ -39,8 +39,8 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
     """Read a parameter file.
 
     Raises:
-        ParameterFileNotFoundError: GRAPH211, there is no such file.
-        LinkwrightError: GRAPH211 if it cannot be read, GRAPH212 if what is in it is none.
+        ParameterFileNotFoundError: GRAPH211, the file does not exist.
+        LinkwrightError: GRAPH211 if it cannot be read, GRAPH212 if its content is not a parameter file.
     """
     path = Path(path)
     shown = display_path(path)
@@ -71,7 +71,7 @@ def parse_parameters(source: SourceText) -> ParameterRules:
     A parameter whose list has lists or mappings in it is left out, with a finding in `ParameterRules.left_out`.
 
     Raises:
-        LinkwrightError: GRAPH212, what is wrong with it and where.
+        LinkwrightError: GRAPH212, a mistake and its place.
     """
     return _Reader(source).read()
 
@@ -200,7 +200,7 @@ class _Reader:
             self._pass_rest_of_list()
 
     def _pass_rest_of_list(self) -> None:
-        """Go on to the end of a list; the current event is the start of a list or mapping in it."""
+        """Advance to the end of a list; the current event is the start of a list or mapping in it."""
         depth = 2
         while depth:
             self._advance()
@@ -256,7 +256,7 @@ class _Reader:
             if part not in ("*", "**") and not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", part):
                 raise self._error(
                     phrase("'{key}' is not a node name", key=key),
-                    phrase("names have letters, digits and '_', and do not begin with a digit; * and ** stand for any"),
+                    phrase("names have letters, digits and '_', and do not begin with a digit; * and ** match any"),
                 )
         if not parts:
             raise self._error(phrase("'{key}' is not a node name", key=key), phrase("any node is /**"))
@@ -296,7 +296,7 @@ def _uniform_hint(first: Any, value: Any, text: str) -> Phrase:
     if type(first) is float and type(value) is int:
         return phrase("write {text}.0", text=text)
     if type(first) is int and type(value) is float:
-        return phrase("write {first}.0 in front, or whole numbers only", first=first)
+        return phrase("write {first}.0 as the first value, or integers only", first=first)
     if type(first) is str:
         return phrase('write "{text}"', text=text)
     return phrase("all values of a list must be of one type")
@@ -326,7 +326,7 @@ def scalar_value(text: str, *, plain: bool) -> Any:
 
     Args:
         text: the scalar.
-        plain: whether it stands without quotes.
+        plain: whether it is written without quotes.
     """
     if not plain:
         return text

@@ -24,7 +24,7 @@ class NodeParameters:
     """The parameter methods of a node, a base of `Node`.
 
     Descriptors, results and parameter values are accepted as our own small classes and as messages of rcl_interfaces;
-    what is given back are messages, as in rclpy.
+    return values are messages, as in rclpy.
     """
 
     def __init__(self, parameters: ParameterStore) -> None:
@@ -40,11 +40,11 @@ class NodeParameters:
             name: its name.
             value: the default, whose type every later value must have too, or a ``Parameter.Type`` for a parameter
                 that has no value until it gets one.
-            descriptor: what else is to be said of it; its name and type are filled in.
-            ignore_override: whether the value from outside is left aside.
+            descriptor: the description of the parameter; its name and type are filled in.
+            ignore_override: whether the value from outside is ignored.
 
         Raises:
-            TypeError: the name is no text, or the descriptor is none.
+            TypeError: the name is not a text, or the descriptor is not a descriptor.
             ParameterAlreadyDeclaredException: it is declared already.
             InvalidParameterException: the name is empty.
             InvalidParameterTypeException: the value from outside has another type than the default.
@@ -69,7 +69,7 @@ class NodeParameters:
         Raises:
             TypeError: a tuple has another form.
             ParameterAlreadyDeclaredException: with all names that are declared already; none is declared then.
-            ParameterException: as `declare_parameter`; those declared up to then stay declared.
+            ParameterException: as `declare_parameter`; parameters declared up to then stay declared.
 
         Returns:
             A parameter for each tuple. Of two tuples with one name the last one counts.
@@ -97,19 +97,19 @@ class NodeParameters:
 
     @property
     def _pre_set_parameters_callbacks(self) -> list[PreSetParameters]:
-        """What `add_pre_set_parameters_callback` added and may still be taken away, the last first."""
+        """The callbacks of `add_pre_set_parameters_callback` that are still registered, the last first."""
         return self.__parameters.pre_set
 
     @property
     def _on_set_parameters_callbacks(self) -> list[OnSetParameters]:
-        """What `add_on_set_parameters_callback` added, the last first."""
+        """The callbacks of `add_on_set_parameters_callback`, the last first."""
         return self.__parameters.on_set
 
     _parameters_callbacks = _on_set_parameters_callbacks
 
     @property
     def _post_set_parameters_callbacks(self) -> list[PostSetParameters]:
-        """What `add_post_set_parameters_callback` added, the last first."""
+        """The callbacks of `add_post_set_parameters_callback`, the last first."""
         return self.__parameters.post_set
 
     def undeclare_parameter(self, name: str) -> None:
@@ -177,7 +177,7 @@ class NodeParameters:
         One that gets no value is undeclared, where its descriptor allows dynamic typing.
 
         Raises:
-            ParameterNotDeclaredException: one is not declared; those before it stay set.
+            ParameterNotDeclaredException: a parameter is not declared; those before it stay set.
         """
         return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 
@@ -243,15 +243,15 @@ class NodeParameters:
         Args:
             name: the parameter.
             descriptor: the new one.
-            alternative_value: an rcl_interfaces/msg/ParameterValue to set if the value so far does not go with it.
+            alternative_value: an rcl_interfaces/msg/ParameterValue to set if the present value does not satisfy it.
 
         Returns:
-            The value that holds then, as such a message.
+            The value afterwards, as such a message.
 
         Raises:
             ParameterNotDeclaredException: it is not declared.
             ParameterImmutableException: it is read-only.
-            InvalidParameterValueException: neither value goes with the descriptor.
+            InvalidParameterValueException: neither value satisfies the descriptor.
         """
         parameter = self.__parameters.set_descriptor(name, descriptor, _plain(alternative_value))
         return (Parameter(name) if parameter is None else parameter).get_parameter_value()

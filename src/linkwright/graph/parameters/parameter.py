@@ -75,7 +75,7 @@ class ParameterType(Enum):
         return self.value >= ParameterType.BYTE_ARRAY.value
 
     def __str__(self) -> str:
-        # The text of rclpy's nested class, which stands in the reasons of refusals.
+        # The text of rclpy's nested class, which the reasons of refusals contain.
         return f"Type.{self.name}"
 
 
@@ -139,7 +139,7 @@ class Parameter:
 
     @classmethod
     def from_parameter_msg(cls, param_msg: Any) -> Parameter:
-        """The parameter that an rcl_interfaces/msg/Parameter tells of; lists as Python lists."""
+        """The parameter in an rcl_interfaces/msg/Parameter; lists as Python lists."""
         type_ = ParameterType(param_msg.value.type)
         return cls(param_msg.name, type_, parameter_value_to_python(param_msg.value))
 
@@ -217,14 +217,14 @@ class Range:
 
 @dataclass(slots=True)
 class ParameterDescriptor:
-    """The description of a parameter; the fields of rcl_interfaces/msg/ParameterDescriptor, which may stand for it.
+    """The description of a parameter; a rcl_interfaces/msg/ParameterDescriptor may take its place.
 
     Attributes:
         name: the parameter's name; filled in when it is declared.
-        type: number of its type; filled in from the default value, which shows it, but for an empty list.
+        type: number of its type; filled in from the default value, which shows it, except for an empty list.
         description: what the parameter is for.
-        additional_constraints: in plain words, what else its values must be.
-        read_only: it has the value it was declared with for good.
+        additional_constraints: in plain words, further constraints on its values.
+        read_only: whether it keeps the value that it was declared with.
         dynamic_typing: values of any type may be set, and it may be undeclared by setting nothing.
         floating_point_range: at most one `Range`, for DOUBLE.
         integer_range: at most one `Range`, for INTEGER.
@@ -246,7 +246,7 @@ class ParameterDescriptor:
 
 @dataclass(frozen=True, slots=True)
 class SetParametersResult:
-    """Whether parameters were set, and why not; rcl_interfaces/msg/SetParametersResult may stand for it."""
+    """Whether parameters were set, and why not; a rcl_interfaces/msg/SetParametersResult may take its place."""
 
     successful: bool
     reason: str = ""

@@ -40,8 +40,8 @@ class QoSOverridingOptions:
 
     Args:
         policy_kinds: the policies.
-        callback: says whether the profile that results is valid: a result as of a callback for parameters, or a bool.
-        entity_id: told apart by it are several publishers or subscriptions of a node on one topic.
+        callback: decides whether the resulting profile is valid: a result as of a callback for parameters, or a bool.
+        entity_id: distinguishes several publishers or subscriptions of a node on one topic.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ def override_qos(
         entity: which of the two.
         topic: the absolute name of its topic.
         qos: the profile that its code gives it.
-        options: what may be overridden; None for nothing.
+        options: the policies that may be overridden; None for none.
 
     Raises:
         InvalidQosOverridesError: GRAPH208, the profile is refused, or a value is none that its policy has.

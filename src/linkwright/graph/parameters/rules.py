@@ -1,4 +1,4 @@
-"""Values for parameters of nodes that are named by patterns: what parameter files and ``-p`` say together."""
+"""Values for parameters of nodes that are named by patterns: the sum of parameter files and ``-p``."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ ANY_NODE = "/**"
 class ParameterRules:
     """Parameter values by node name pattern.
 
-    A pattern is a node's full name, in which ``*`` stands for one part and ``**`` for any number of parts. As in rcl
-    the patterns count in the order in which they came up first, and for a node the later of two that fit it wins.
+    A pattern is a node's full name, in which ``*`` matches one part and ``**`` any number of parts. As in rcl the
+    patterns count in the order in which they appear first, and for a node the later of two that match it wins.
 
     Attributes:
         files: the paths of the files that they were read from.

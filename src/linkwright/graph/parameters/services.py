@@ -1,4 +1,4 @@
-"""The services of a node through which others read and set its parameters, and the topic that tells of changes."""
+"""The services of a node through which others read and set its parameters, and the topic of parameter events."""
 
 from __future__ import annotations
 
@@ -86,11 +86,11 @@ class ParameterServices:
 
 
 class ParameterEvents:
-    """Publishes what changes among a node's parameters.
+    """Publishes the changes of a node's parameters.
 
     Args:
         publisher: of ``/parameter_events``.
-        clock: what the events are stamped with.
+        clock: stamps the events.
         node_name: the full name of the node.
     """
 
@@ -100,7 +100,7 @@ class ParameterEvents:
         self._node_name = node_name
 
     def publish(self, change: ParameterChange) -> None:
-        """Publish a change, if somebody listens: the topic keeps nothing for late joiners."""
+        """Publish a change, if a subscription matches: the topic keeps nothing for late joiners."""
         if not self._publisher.get_subscription_count():
             return
         event: Any = self._publisher.msg_type()

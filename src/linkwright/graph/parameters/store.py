@@ -52,9 +52,9 @@ class ParameterStore:
 
     Args:
         overrides: values that take the place of defaults when parameters of these names are declared. Mappings in it
-            stand for names with dots: ``{"zeros": {"j": 1.0}}`` gives ``zeros.j``.
-        allow_undeclared: whether parameters may be set and read that are not declared.
-        on_change: told of each successful setting, before the callbacks in `post_set`.
+            represent names with dots: ``{"zeros": {"j": 1.0}}`` gives ``zeros.j``.
+        allow_undeclared: whether undeclared parameters may be set and read.
+        on_change: receives each successful change, before the callbacks in `post_set`.
 
     Attributes:
         pre_set, on_set, post_set: the node's callbacks, the one added last first.
@@ -144,7 +144,7 @@ class ParameterStore:
         return {name[len(start) :]: parameter for name, parameter in self._parameters.items() if name.startswith(start)}
 
     def descriptor(self, name: str) -> Any:
-        """The descriptor of a parameter, a copy of what it was declared with, or what it was given since."""
+        """The descriptor of a parameter: a copy of the declared one, or of the one that replaced it."""
         if name in self._descriptors:
             return self._descriptors[name]
         if self.allow_undeclared:
@@ -152,7 +152,7 @@ class ParameterStore:
         raise ParameterNotDeclaredException(name, self._parameters)
 
     def keep_descriptor(self, name: str, descriptor: Any) -> None:
-        """Keep another object that says the same as the descriptor so far."""
+        """Store another object with the same content as the descriptor so far."""
         self._descriptors[name] = descriptor
 
     def set_descriptor(self, name: str, descriptor: Any, alternative: Any) -> Parameter | None:

@@ -36,13 +36,13 @@ class QoSCompatibility(IntEnum):
 
 
 def limit_ns(duration: Duration) -> int | None:
-    """A deadline, lifespan or lease in nanoseconds; None where it is no limit."""
+    """A deadline, lifespan or lease in nanoseconds; None where it sets no limit."""
     nanoseconds = duration.nanoseconds
     return None if nanoseconds <= 0 or nanoseconds >= BEST_AVAILABLE_DURATION.nanoseconds else nanoseconds
 
 
 def resolved(qos: QoSProfile) -> QoSProfile:
-    """The profile with values for what is left to the middleware, as Cyclone DDS chooses them; no limit is infinite."""
+    """The profile with Cyclone DDS's choices for policies left to the middleware; no limit is infinite."""
     return QoSProfile(
         depth=max(qos.depth, 1),
         history=_known(qos.history, HistoryPolicy.KEEP_LAST),
@@ -224,7 +224,7 @@ class Fitting:
     """A profile that fits publishers.
 
     Attributes:
-        profile: what to subscribe with.
+        profile: the profile to subscribe with.
         mixed: the policies in which the publishers differ, so that the weaker was taken: ``(offered by some, taken)``,
             named as rclpy's enumerations.
     """
@@ -238,7 +238,7 @@ def fit(wanted: QoSProfile, offers: Sequence[QoSProfile]) -> Fitting:
 
     Args:
         wanted: the rest of the profile, and all of it where there are no publishers.
-        offers: what the publishers of the topic offer.
+        offers: the profiles that the publishers of the topic offer.
     """
     chosen = copy(wanted)
     if not offers:

@@ -84,7 +84,7 @@ class ReliabilityPolicy(QoSPolicyEnum):
 
 
 class DurabilityPolicy(QoSPolicyEnum):
-    """Whether subscriptions that come late get what was published before."""
+    """Whether subscriptions that join late get earlier messages."""
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -229,7 +229,7 @@ class QoSProfile:
 
     @property
     def durability(self) -> DurabilityPolicy:
-        """Whether late joiners get what was published before."""
+        """Whether late joiners get earlier messages."""
         return self._durability
 
     @durability.setter

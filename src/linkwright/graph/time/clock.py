@@ -178,7 +178,7 @@ class Clock:
         return self.timebase.steady_ns()
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a call for a value of `timer_ns`; what is called is short."""
+        """Schedule a call for a value of `timer_ns`; the callback is short."""
         return dispatcher.call_at(timer_ns, callback)
 
     def add_timer(self, timer: FollowsClock) -> None:
@@ -194,7 +194,7 @@ class Clock:
 
         Args:
             until: when, by a clock of this type.
-            context: something with ``ok()``; the sleep ends early when that is no longer true. The clock's own when
+            context: an object with ``ok()``; the sleep ends early when that is no longer true. The clock's own when
                 None.
 
         Returns:
@@ -269,7 +269,7 @@ class ROSClock(Clock):
     """ROS time: the system's until a simulation takes over (rclpy ``ROSClock``).
 
     While it is simulated (`ros_time_is_active`), only `set_ros_time_override` moves it, forward or back. Timers on it
-    keep the rest of their period when it becomes simulated or ceases to be, and start their period anew when it jumps
+    keep the rest of their period when it becomes simulated or ceases to be, and restart their period when it jumps
     back (rcl ``rcl_timer``).
     """
 
@@ -366,7 +366,7 @@ class ROSClock(Clock):
                 alarm.callback()
 
     def _jump_to(self, now_ns: int) -> None:
-        """Set simulated time, and tell those who asked to be told of it, and timers if it goes back."""
+        """Set simulated time, and call the jump callbacks that it exceeds, and timers if it goes back."""
         jump = TimeJump(ClockChange.ROS_TIME_NO_CHANGE, Duration(nanoseconds=now_ns - self._override_ns))
         handles = [handle for handle in self._jump_handles if handle.threshold.is_exceeded(jump)]
         self._tell_before(handles)

@@ -65,8 +65,8 @@ class ScheduledAlarm:
 
     Attributes:
         steady_ns: when it is due.
-        number: of those that are due at the same time, the least comes first.
-        callback: what is called.
+        number: its place among alarms that are due at the same time; the least comes first.
+        callback: the callback.
         cancelled: whether it is not called any more.
     """
 
@@ -83,7 +83,7 @@ class ScheduledAlarm:
 class FineAlarms:
     """Calls that are scheduled on one event loop, in the order in which they are due.
 
-    It is set anew after each time it rings, which also makes its file unreadable again: nothing need be read.
+    The timer is set again after each time it rings, which also makes its file unreadable again: no read is needed.
 
     Args:
         set_timer: gives the kernel the setting.
@@ -126,10 +126,10 @@ class FineAlarms:
 
     def _set(self) -> None:
         setting = self._setting
-        # A time of 0 would stop it, as none does; one that has gone by rings at once.
+        # A time of 0 would stop it, as no alarm has; a time that has passed rings at once.
         setting[2], setting[3] = divmod(self._alarms[0].steady_ns, _NANOSECONDS) if self._alarms else (0, 0)
         self._set_timer()
 
 
 _of_loops: dict[int, FineAlarms | None] = {}
-"""By the identity of the loop; what is said of a loop goes with it."""
+"""By the identity of the loop; the entry is removed with the loop."""

@@ -30,7 +30,7 @@ class AlarmSetter(Protocol):
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a call for a steady time of the graph, in nanoseconds; from any thread.
 
-        It is never made before this returns. What is called marks entities as ready: it is short, and no user's code.
+        It is never made before this returns. The callback marks entities as ready: it is short, and not a user's code.
         """
 
 
@@ -80,7 +80,7 @@ class SystemClock(Timebase):
 
 
 class JumpClock(Timebase):
-    """Time that stands still until a test moves it, so that an hour of timers takes milliseconds.
+    """Time that moves only when a test advances it, so that an hour of timers takes milliseconds.
 
     Args:
         start_ns: what `now_ns` gives at first, nanoseconds since the epoch.
@@ -112,11 +112,11 @@ class JumpClock(Timebase):
         self._dispatchers.append(dispatcher)
 
     async def advance(self, seconds: float, *, is_settled: bool = False) -> None:
-        """Let time go by; each timer is called when it falls due, and what it causes is done before the next.
+        """Advance the time; each timer is called when it falls due, and its effects are done before the next.
 
         Args:
             seconds: how much.
-            is_settled: whether all that is ready has been done, and need not be waited for.
+            is_settled: whether all ready work is done, so that there is nothing to wait for.
         """
         end = self._steady_ns + round(seconds * NANOSECONDS_PER_SECOND)
         if not is_settled:

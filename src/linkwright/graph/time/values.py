@@ -24,7 +24,7 @@ class ClockType(IntEnum):
 
 
 class Duration:
-    """A span of time in whole nanoseconds, of 64 bits (rclpy ``Duration``).
+    """A span of time in nanoseconds, an integer of 64 bits (rclpy ``Duration``).
 
     Args:
         seconds: seconds, a fraction counts.
@@ -96,7 +96,7 @@ class Duration:
 
     @classmethod
     def from_msg(cls, msg: messages.Duration) -> Duration:
-        """The span that a message tells.
+        """The span in a message.
 
         Raises:
             TypeError: it is not a ``builtin_interfaces/msg/Duration``.
@@ -144,7 +144,7 @@ class Time:
         self.clock_type = clock_type
 
     def seconds_nanoseconds(self) -> tuple[int, int]:
-        """Whole seconds, and the nanoseconds on top of them."""
+        """The seconds as an integer, and the nanoseconds on top of them."""
         return divmod(self.nanoseconds, NANOSECONDS_PER_SECOND)
 
     def __repr__(self) -> str:
@@ -215,7 +215,7 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: Any, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """The point that a message tells.
+        """The point in a message.
 
         Raises:
             TypeError: it is not a ``builtin_interfaces/msg/Time``.

@@ -1,1 +1,1 @@
-"""tf2: transforms over time, who sends them and who asks for them."""
+"""tf2: transforms over time, their broadcasters and their users."""

@@ -26,7 +26,7 @@ class TransformBroadcaster:
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms that do not change: each message has all that were sent so far, for those who come late.
+    """Publishes transforms that do not change: each message has all transforms sent so far, for late joiners.
 
     Args:
         node: publishes.

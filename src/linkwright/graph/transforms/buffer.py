@@ -101,11 +101,11 @@ class _Plan:
 class TransformBuffer:
     """Keeps the latest transform of each frame, as a display needs it.
 
-    As in tf2 a frame has one parent, and what is received last holds, whoever sent it; so a frame changes its parent
-    when a transform says so. Unlike tf2 there is no history: stamps are not looked at.
+    As in tf2 a frame has one parent, and the transform received last holds, whoever sent it; so a transform with
+    another parent moves the frame there. Unlike tf2 there is no history: stamps are ignored.
 
     Args:
-        on_problem: told once, in tf2's words, of each kind of bad transform of each frame.
+        on_problem: called once, with tf2's words, for each kind of bad transform of each frame.
     """
 
     def __init__(self, on_problem: Callable[[str], object] | None = None) -> None:
@@ -213,7 +213,7 @@ class TransformBuffer:
         self._structure_changed()
 
     def clear(self) -> None:
-        """Forget all transforms but the static ones, as when time begins anew."""
+        """Forget all transforms except the static ones, as when time starts again."""
         moving = (self._parents >= 0) & ~self._static
         self.remove([name for name, row in self._rows.items() if moving[row]])
 

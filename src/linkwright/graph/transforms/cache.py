@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 _COMPACT_FROM = 256
-"""How many forgotten transforms stay in the list before it is cut: cutting costs as much as what stays is long."""
+"""How many forgotten transforms stay in the list before it is cut: the cost of a cut is that of the rest's length."""
 
 
 class Sample(NamedTuple):
@@ -34,7 +34,7 @@ class Sample(NamedTuple):
 
 
 class NoDataError(Exception):
-    """There is no transform for a time; the text says which there are, in tf2's words. Empty when there are none."""
+    """There is no transform for a time; the text names those that exist, in tf2's words. Empty when there are none."""
 
 
 def shown_time(stamp_ns: int) -> str:
@@ -67,7 +67,7 @@ class FrameCache(ABC):
 
     @abstractmethod
     def latest(self) -> tuple[int, int] | None:
-        """Stamp of the latest transform (0 for a static one) and number of its parent; None without any."""
+        """Stamp of the latest transform (0 for a static one) and number of its parent; None if there is none."""
 
     @abstractmethod
     def oldest_ns(self) -> int:

@@ -1,7 +1,7 @@
 """The tf buffer with a memory: transforms of the last seconds, and lookups at any time among them.
 
 The methods are those of ``tf2_py.BufferCore``, the behaviour and the texts those of tf2. `TransformBuffer` is for
-displays, which want all frames as they are now.
+displays, which need the present pose of all frames.
 """
 
 from __future__ import annotations
@@ -49,11 +49,11 @@ _NOT_DEFINED = "Source or target frame is not yet defined"
 class BufferCore:
     """Keeps transforms for a while. It may be used from several threads.
 
-    Times are ``Time`` objects, or messages of builtin_interfaces; zero stands for the latest.
+    Times are ``Time`` objects, or messages of builtin_interfaces; zero requests the latest.
 
     Args:
         cache_time: how far back transforms are kept, from the latest one of each frame.
-        logger: says which transforms are not taken; one called ``tf2`` when left out.
+        logger: reports refused transforms; one called ``tf2`` when left out.
     """
 
     def __init__(self, cache_time: Any = None, *, logger: Logger | None = None) -> None:
@@ -68,11 +68,11 @@ class BufferCore:
         self._walker = Walker(self._caches, self._names, self.all_frames_as_string)
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Take in a geometry_msgs/msg/TransformStamped. One that tf2 would refuse is dropped, and the log says why.
+        """Store a geometry_msgs/msg/TransformStamped. One that tf2 would refuse is dropped, and the reason logged.
 
         Args:
             transform: the message.
-            authority: who says so, for reports.
+            authority: the sender, for reports.
         """
         self._set_message(transform, authority, static=False)
 
@@ -87,7 +87,7 @@ class BufferCore:
             message: the transforms.
             static: whether they came on ``/tf_static``.
             now_ns: the present; it does not matter here, and does for a `TransformBuffer`.
-            authority: who says so, for reports.
+            authority: the sender, for reports.
         """
         columns = message.columns()
         if columns is None:
@@ -314,9 +314,9 @@ class BufferCore:
         )
 
     def _plan(self, parents: tuple[str, ...], children: tuple[str, ...], authority: str, static: bool) -> _Plan:
-        """Where the transforms of a message with these frames go, worked out once for all such messages.
+        """The caches for the transforms of a message with these frames, worked out once for all such messages.
 
-        The cache is None for transforms that are to be told of in the log.
+        The cache is None for transforms that the log must report.
         """
         key = (parents, children, authority, static)
         plan = self._plans.get(key)

@@ -12,7 +12,7 @@ class TransformException(LinkwrightError):  # noqa: N818  # tf2's name, which us
 
     Args:
         text: why.
-        hint: how to mend it.
+        hint: how to fix it.
         code: the diagnostic's code.
     """
 
@@ -56,7 +56,7 @@ class TimeoutException(TransformException):
 
 
 def loop(which: str) -> LookupException:
-    """The error for parents that form a loop; `which` says where."""
+    """The error for parents that form a loop; `which` names the place."""
     return LookupException(
         phrase("The tf tree is invalid because it contains a loop.{which}", which=which), code="GRAPH303"
     )

@@ -16,7 +16,7 @@ from linkwright.geometry.single import Transform, compose, normalized, rotate
 from linkwright.geometry.vectors import Vector3
 
 _NO_ROTATION = float(np.finfo(np.float64).eps)
-"""A quaternion with a squared length below this stands for no rotation, as in tf2_geometry_msgs."""
+"""A quaternion with a squared length below this counts as no rotation, as in tf2_geometry_msgs."""
 
 
 def transform_pose_of(transform: Any) -> Transform:

@@ -24,7 +24,7 @@ class TransformListener:
     The topic names are absolute, as in tf2_ros: namespaces do not divide the transforms, remappings can.
 
     Args:
-        buffer: what is filled.
+        buffer: receives the transforms.
         node: subscribes.
         qos: for ``/tf``.
         static_qos: for ``/tf_static``.
@@ -63,7 +63,7 @@ class TransformListener:
             subscription.take_together()
 
     def unregister(self) -> None:
-        """Destroy the subscriptions; the buffer keeps what it has."""
+        """Destroy the subscriptions; the buffer keeps its transforms."""
         for subscription in self._subscriptions:
             self.node.destroy_subscription(subscription)
         self._subscriptions = []

@@ -9,7 +9,7 @@ from linkwright.graph.transforms.cache import shown_time
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 _SHORTEST_SPAN_NS = 100_000
-"""What counts as the time between transforms that came at one moment (tf2: 100 microseconds)."""
+"""The time that counts between transforms that came at one moment (tf2: 100 microseconds)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +19,7 @@ class FrameFacts:
     Attributes:
         name: the frame.
         parent: its parent.
-        authority: who said so.
+        authority: the sender of the transform.
         count: how many transforms are kept of it.
         latest_ns: stamp of the latest; 0 for one that always holds.
         oldest_ns: stamp of the oldest.

@@ -1,7 +1,7 @@
 """The velocity of a frame, from its poses at two times. The formulas are those of tf2's ``lookupVelocity``.
 
-They are kept as they are there, so that programs get the numbers that they get from tf2, also where the reference
-frame turns against the others and other formulas would be right.
+They are the same as there, so that programs get the numbers that they get from tf2, also where the reference
+frame rotates against the others and other formulas would be right.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from linkwright.graph.time.values import Duration
 from linkwright.graph.transforms.core import BufferCore
 
 _LOOK_EVERY_SECONDS = 0.1
-"""How long a wait goes on without news before it looks again, should a clock that steps have made the difference."""
+"""Seconds that a wait lasts without news before it looks again, in case a step of the clock made the difference."""
 
 NO_TIME = Duration()
 
@@ -23,8 +23,8 @@ class Buffer(BufferCore):
 
     Args:
         cache_time: how far back transforms are kept; 10 seconds when left out.
-        node: where given, it offers the service ``tf2_frames`` that tells of all frames, its clock empties the buffer
-            when it jumps back, and its logger says which transforms are not taken.
+        node: where given, it offers the service ``tf2_frames`` that reports all frames, its clock empties the buffer
+            when it jumps back, and its logger reports refused transforms.
     """
 
     def __init__(self, cache_time: Any = None, node: Any = None) -> None:
@@ -65,13 +65,13 @@ class Buffer(BufferCore):
             timeout: how long to wait for it. Another thread must spin the node meanwhile.
 
         Raises:
-            TransformException: it does not come in time; which one tells why.
+            TransformException: it does not arrive in time; the class names the reason.
         """
         self.can_transform(target_frame, source_frame, time, timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """The same, for a coroutine, as soon as it is there."""
+        """The same, for a coroutine, as soon as it is available."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
@@ -91,7 +91,7 @@ class Buffer(BufferCore):
     async def lookup_transform_full_async(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Any:
-        """The same, for a coroutine, as soon as it is there."""
+        """The same, for a coroutine, as soon as it is available."""
         await self.wait_for_transform_full_async(target_frame, target_time, source_frame, source_time, fixed_frame)
         return self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
 
@@ -125,7 +125,7 @@ class Buffer(BufferCore):
         return verdict if return_debug_tuple else verdict[0]
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[Any]:
-        """A future that has the transform as its result as soon as it is there."""
+        """A future that has the transform as its result as soon as it is available."""
         return self._future(
             lambda: self.can_transform_core(target_frame, source_frame, time)[0],
             lambda: self.lookup_transform_core(target_frame, source_frame, time),
@@ -134,7 +134,7 @@ class Buffer(BufferCore):
     def wait_for_transform_full_async(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Future[Any]:
-        """A future that has the transform by way of a fixed frame as its result as soon as it is there."""
+        """A future that has the transform by way of a fixed frame as its result as soon as it is available."""
         question = (target_frame, target_time, source_frame, source_time, fixed_frame)
         return self._future(
             lambda: self.can_transform_full_core(*question)[0], lambda: self.lookup_transform_full_core(*question)
@@ -159,7 +159,7 @@ class Buffer(BufferCore):
             try:
                 if can():
                     future.set_result(look_up())
-            except Exception as error:  # noqa: BLE001  # it belongs to who waits
+            except Exception as error:  # noqa: BLE001  # it belongs to the waiter
                 future.set_exception(error)
 
         with self._lock:

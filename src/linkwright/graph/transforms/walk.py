@@ -57,7 +57,7 @@ class Walker:
     """Finds ways among frames.
 
     Args:
-        caches: what is remembered of each frame, by number; None for frames without a parent. It may grow.
+        caches: the transforms of each frame, by number; None for frames without a parent. It may grow.
         names: of the frames, by number.
         shape: gives the text that shows all frames, for messages.
     """
@@ -74,7 +74,7 @@ class Walker:
             target: number of the target frame.
             source: number of the source frame, another one.
             time_ns: the time, 0 for the latest that all frames on the way have.
-            poses: whether the poses are wanted.
+            poses: whether to compute the poses.
 
         Raises:
             ConnectivityException: there is none.
@@ -127,7 +127,7 @@ class Walker:
         raise self._loop()
 
     def _climb_from_source(self, way: Way, source: int, target: int, poses: bool) -> str | None:
-        """Go up until the target or the top; gives why there was no going on, where that was for lack of data."""
+        """Climb until the target or the top; gives the reason for a stop, where that was a lack of data."""
         frame, pose = source, IDENTITY
         trouble = None
         for depth in range(MAX_DEPTH + 2):
