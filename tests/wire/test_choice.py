@@ -65,7 +65,9 @@ def test_a_process_with_neither_says_so_and_goes_on(installed):
         assert join(graph, environment={}) is None
         assert join(graph, environment={"LINKWRIGHT_DDS": "0"}) is None
         (record,) = log
-        assert record.text.startswith("This process speaks to no other one: neither DDS nor Zenoh is installed")
+        assert record.text.startswith(
+            "This process does not communicate with other processes: neither DDS nor Zenoh is installed"
+        )
         assert graph.create_node("alone").get_node_names() == ["alone"]
     finally:
         graph.close_now()

@@ -65,8 +65,8 @@ def test_who_watches_the_graph_and_fails_keeps_nobody_from_knowing_it(processes)
     client = a.node.create_client(SetBool, "flip")
     assert client.wait_for_service(60)
     wait_until(lambda: "b" in a.node.get_node_names())
-    wait_until(lambda: told(a, "what watches nodes and endpoints outside failed:"))
-    assert len(told(a, "what watches the graph failed:")) == 1
+    wait_until(lambda: told(a, "a callback for changes outside failed:"))
+    assert len(told(a, "a callback for changes of the graph failed:")) == 1
     assert after.calls > 1
 
 
@@ -108,7 +108,7 @@ def test_a_kept_message_that_cannot_be_written_is_told_and_the_others_are_sent(p
     b.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
     b.spin_until(lambda: len(got) == 2)
     assert got == ["one", "three"]
-    assert [text for text in a.warnings() if text.startswith("sending what topic '/described' has said failed:")]
+    assert [text for text in a.warnings() if text.startswith("sending the messages of topic '/described' failed:")]
 
 
 def test_a_request_that_waited_and_cannot_be_written_fails_and_the_next_is_answered(processes):

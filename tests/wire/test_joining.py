@@ -60,7 +60,9 @@ def test_without_a_wheel_a_process_says_so_and_goes_on(graph, log, monkeypatch):
     assert "'cyclonedds' is not installed" in why_not()
     assert join(graph) is None
     (text,) = texts(log)
-    assert text.startswith("This process speaks to no other one: the package 'cyclonedds' is not installed")
+    assert text.startswith(
+        "This process does not communicate with other processes: the package 'cyclonedds' is not installed"
+    )
     assert goes_on(graph)
 
 
@@ -71,7 +73,7 @@ def test_a_domain_that_is_none_is_told(graph, log, monkeypatch, number):
     assert join(graph) is None
     (text,) = texts(log)
     assert f"error[DDS101]: '{number}' is not a DDS domain" in text
-    assert "This process goes on by itself" in text
+    assert "This process continues by itself" in text
     assert goes_on(graph)
 
 

@@ -30,15 +30,15 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.subscription import Subscription
 
 _JOINED_WITHIN = 10.0
-"""Seconds after which the thread that joins is given up: an import that Ctrl-C ended may keep its lock for ever."""
+"""Seconds after which the thread that joins is abandoned: an import that Ctrl-C ended may keep its lock for ever."""
 
 _LOOK_AGAIN = 0.01
 _CLOSED_WITHIN = 0.05
-"""Seconds after which who waits sees that the domain was left."""
+"""Seconds after which a waiting thread notices that the domain was left."""
 
 
 class Departed(Protocol):
-    """Judges how publishers outside went."""
+    """Judges how publishers outside left."""
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers."""
@@ -47,17 +47,18 @@ class Departed(Protocol):
 class BackgroundTransport(ABC):
     """The graph of this process on the wire (`linkwright.graph.endpoints.transport.Transport`).
 
-    Threads of its own do the work, so that nothing here blocks but what says so; none of them runs a user's callback. A
-    process that is forked off has no part in it: there, nothing goes out and nothing comes in.
+    Threads of its own do the work, so that no method here blocks unless its docstring states it; none of them runs a
+    user's callback. A forked process has no part in it: there, nothing goes out and nothing comes in.
 
     Args:
         domain_id: the ROS domain.
-        outside: the tables of what is outside.
-        departures: judges how publishers outside went.
-        logger: for what there is to tell.
-        only_looks: whether it only finds out what there is outside: nobody outside hears of the graph's nodes and
-            endpoints, which saves making them there.
-        must_join: whether `problem` is raised by who joins, who has no use for a graph alone; it is not logged then.
+        outside: the tables of nodes and endpoints outside.
+        departures: judges how publishers outside left.
+        logger: logs problems.
+        only_looks: whether it only discovers what is outside: the graph's nodes and endpoints are not announced,
+            which saves making them there.
+        must_join: whether the caller of `join` raises `problem`, since it needs more than its own graph; it is not
+            logged then.
     """
 
     def __init__(
@@ -107,10 +108,10 @@ class BackgroundTransport(ABC):
         """Whether it waits for others without whom the domain cannot be joined, as long as its settings say."""
         return False
 
-    # --- for whoever joined ------------------------------------------------------------------------------------------
+    # --- for the code that joined ------------------------------------------------------------------------------------
 
     def wait_until_ready(self, timeout: float | None = None) -> bool:
-        """Block until the domain is joined and all that was asked for so far is made.
+        """Block until the domain is joined and every endpoint that was requested so far is made.
 
         Args:
             timeout: seconds at most; None for any time.
@@ -132,7 +133,7 @@ class BackgroundTransport(ABC):
         return done.is_set()
 
     def wait_for_discovery(self, timeout: float = 5.0) -> bool:
-        """Block until discovery has settled: all that is there has announced itself, and nothing is new.
+        """Block until discovery has settled: every process has announced itself, and nothing is new.
 
         Args:
             timeout: seconds at most.
@@ -167,7 +168,7 @@ class BackgroundTransport(ABC):
         self._mirror(lambda engine: engine.open_publisher(publisher))
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
-        """Stop mirroring a publisher once what it sent reliably is acknowledged, or no reader is there to do so."""
+        """Stop mirroring a publisher once its reliable messages are acknowledged, or no reader is left to do so."""
         self._mirror(lambda engine: engine.close_publisher(publisher))
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
@@ -203,7 +204,7 @@ class BackgroundTransport(ABC):
         self._mirror(lambda engine: engine.close_endpoint(presence))
 
     def look_around(self) -> None:  # noqa: B027 - nothing is to be done where all is discovered anyhow
-        """Find out what there is outside, for who asks next; only where that is not done all the time."""
+        """Discover the graph outside for the next query, where discovery does not run all the time."""
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
         """The nodes of other processes, as far as discovery has come."""
@@ -215,19 +216,19 @@ class BackgroundTransport(ABC):
 
     def watch(self, changed: Callable[[], None]) -> None:
         """Register a callback for changes of nodes and endpoints outside, called from any thread."""
-        self._outside.watch(partial(run_logged, self._logger, "what watches nodes and endpoints outside", changed))
+        self._outside.watch(partial(run_logged, self._logger, "a callback for changes outside", changed))
 
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for publishers outside that are lost, called with each from any thread."""
 
         def tell(publisher: EndpointInfo) -> None:
-            run_logged(self._logger, "what is told of publishers that are lost", partial(lost, publisher))
+            run_logged(self._logger, "a callback for publishers that are lost", partial(lost, publisher))
 
         self._departed.watch(tell)
         self._do(lambda _: None)  # processes are looked at from now on
 
     def close(self) -> None:
-        """Leave the domain once what was sent reliably is acknowledged, or a second has passed."""
+        """Leave the domain once reliable messages are acknowledged, or a second has passed."""
         if self._closed:
             return
         self._closed = True
@@ -248,7 +249,7 @@ class BackgroundTransport(ABC):
         until = time.monotonic() + _JOINED_WITHIN
         while self._starter.is_alive() and time.monotonic() < until:
             self._starter.join(_CLOSED_WITHIN)
-            if self.waits:  # for others, it may be in a call that nobody can end
+            if self.waits:  # for other processes, it may be in a call that cannot be interrupted
                 break
 
     def abandon(self) -> None:
@@ -318,12 +319,12 @@ if hasattr(os, "register_at_fork"):
 def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
     """Log why a domain is not joined."""
     findings = "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
-    logger.error(f"{findings}\nThis process goes on by itself: nobody outside sees its nodes.")
+    logger.error(f"{findings}\nThis process continues by itself: other processes do not see its nodes.")
 
 
 def say_alone(logger: Logger, reason: Phrase) -> None:
     """Log that a process has no transport."""
-    logger.warning(f"This process speaks to no other one: {reason}. Everything inside of it works.")
+    logger.warning(f"This process does not communicate with other processes: {reason}. Everything inside of it works.")
 
 
 AnyTransport = TypeVar("AnyTransport", bound=BackgroundTransport)
@@ -342,7 +343,7 @@ class JoinOptions(TypedDict, total=False):
     """Whether the graph sees other processes and is not seen by them."""
 
     must_join: bool
-    """Whether who joins raises the transport's `problem`, which is not logged then."""
+    """Whether the caller raises the transport's `problem`, which is not logged then."""
 
 
 def join_with(
@@ -352,13 +353,13 @@ def join_with(
     why_not: Callable[[Mapping[str, str] | None], Phrase],
     options: JoinOptions,
 ) -> AnyTransport | None:
-    """Attach a transport to a graph; where there is none, the graph goes on without the network.
+    """Attach a transport to a graph; where there is none, the graph continues without the network.
 
     Args:
         graph: the graph.
-        name: of the logger that says why there is none.
+        name: the logger that reports why there is none.
         make: makes the transport; it may raise LinkwrightError.
-        why_not: why there is no transport in an environment; empty where there is one.
+        why_not: gives the reason why an environment has no transport; empty where it has one.
         options: handed to `make`.
     """
     logger = graph.get_logger(name)

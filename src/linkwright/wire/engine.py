@@ -20,19 +20,19 @@ _WORK_SPAN = 0.02
 """Seconds after which work on the own endpoints makes room for news from outside."""
 
 Work: TypeAlias = "deque[Callable[[Engine], None]]"
-"""What there is to do, called with the engine in the order of asking."""
+"""Requests to the engine, called with it in the order of asking."""
 
 
 class Engine(ABC):
-    """Makes, feeds and deletes what mirrors the endpoints of this process, in threads of its own.
+    """Makes, feeds and deletes the mirrors of this process's endpoints, in threads of its own.
 
     Args:
-        work: what there is to do; others append to it and `wake`.
-        logger: for what there is to tell.
+        work: the queue of requests; others append to it and `wake`.
+        logger: logs problems.
     """
 
     refusal: ClassVar[type[Exception]]
-    """What the library of the wire raises, whose words are told without a traceback."""
+    """The exception of the wire's library, which is logged without a traceback."""
 
     def __init__(self, work: Work, logger: Logger) -> None:
         self._work = work
@@ -48,11 +48,11 @@ class Engine(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """End, once what was sent reliably is on its way or a second has passed."""
+        """End, once reliable messages are on their way or a second has passed."""
 
     @abstractmethod
     def abandon(self) -> None:
-        """Send nothing more, and end without what needs the network: this process was forked off."""
+        """Send nothing more, and end without the parts that need the network: this process was forked off."""
 
     @abstractmethod
     def add_node(self, node: NodeIdentity) -> None:
@@ -90,7 +90,7 @@ class Engine(ABC):
     def close_endpoint(self, endpoint: Any) -> None:
         """Stop mirroring a subscription, a service, a client or a presence."""
 
-    # --- what was asked for ------------------------------------------------------------------------------------------
+    # --- requests ----------------------------------------------------------------------------------------------------
 
     def _do_some_work(self) -> None:
         """Make and delete the endpoints that were asked for, for a limited time."""
@@ -107,13 +107,13 @@ class Engine(ABC):
         guarded(partial(self._work.popleft(), self), self._report)
 
     def _report(self, error: Exception) -> None:
-        """Log that something is not mirrored: why the library refuses it, or the traceback of an error of ours."""
+        """Log that an endpoint is not mirrored: the library's refusal, or the traceback of an error of ours."""
         lines = [str(error)] if isinstance(error, self.refusal) else traceback.format_exception(error)
         self._logger.error("A part of the graph is not seen outside of this process: " + "".join(lines).rstrip())
 
 
 def ends_by_error() -> bool:
-    """Whether this program has ended with an exception that nobody caught; Ctrl-C is none of these."""
+    """Whether this program has ended with an uncaught exception; Ctrl-C is none of these."""
     error = getattr(sys, "last_value", None)
     is_interactive = hasattr(sys, "ps1")
     return isinstance(error, Exception) and not isinstance(error, ExternalShutdownException) and not is_interactive

@@ -40,7 +40,7 @@ def middleware(environment: Mapping[str, str] | None = None) -> str:
 
 
 def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
-    """Why this process speaks to no other one; empty when it does.
+    """The reason why this process does not communicate with others; empty when it does.
 
     Args:
         environment: the environment variables; those of the process when left out.
@@ -68,7 +68,7 @@ def available(environment: Mapping[str, str] | None = None) -> bool:
 
 
 def check_security(environment: Mapping[str, str] | None = None) -> None:
-    """Refuse to join where only nodes with DDS security may; whoever keeps to itself needs none.
+    """Refuse to join where only nodes with DDS security may; a process that does not join needs none.
 
     Raises:
         LinkwrightError: DDS121, security is enforced.
@@ -81,7 +81,7 @@ def check_settings(environment: Mapping[str, str] | None = None) -> None:
     """Read the settings that joining would read.
 
     Raises:
-        LinkwrightError: DDS101, ROS_DOMAIN_ID is no domain; DDS111, a setting of Zenoh is not well formed.
+        LinkwrightError: DDS101, ROS_DOMAIN_ID is not a domain; DDS111, a setting of Zenoh is not well formed.
     """
     if middleware(environment) == ZENOH:
         from linkwright.wire.zenoh.settings import read_settings as read_zenoh_settings
@@ -94,10 +94,10 @@ def check_settings(environment: Mapping[str, str] | None = None) -> None:
 
 
 def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | None:
-    """Have a graph seen by other processes, and see theirs. It happens in the background; nothing waits for it.
+    """Connect a graph with those of other processes. It happens in the background; nothing waits for it.
 
-    Problems are logged, and the graph goes on without the network. So are, once in a process, settings of ROS 2 that
-    are not followed.
+    Problems are logged, and the graph continues without the network. Settings of ROS 2 that are not followed are
+    logged once in a process.
 
     Args:
         graph: the graph; the transport attaches itself to it.

@@ -14,12 +14,12 @@ def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None 
     """Call a function; an exception is reported, not raised.
 
     Args:
-        call: what to call.
-        report: told of the error. Where there is none, or it fails itself, Python tells of it as of an error that ends
-            a thread (``threading.excepthook``).
+        call: the function.
+        report: receives the error. Where there is none, or it fails itself, Python reports the error as one that ends a
+            thread (``threading.excepthook``).
 
     Returns:
-        What the call returns; None where it failed.
+        Its return value; None where it failed.
     """
     try:
         return call()

@@ -63,6 +63,9 @@ def _refused(error: OSError, group: str, port: int) -> LinkwrightError:
             "CLI461",
             phrase("multicast to {group}:{port} is not possible here", group=group, port=port),
             notes=(Note(foreign(error.strerror or error)),),
-            hint=phrase("it needs a network interface with a route for multicast, and a port that nobody has alone"),
+            hint=phrase(
+                "it needs a network interface with a route for multicast, and a port that no other program has to"
+                " itself"
+            ),
         )
     )

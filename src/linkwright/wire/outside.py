@@ -16,7 +16,7 @@ class Outside(ABC):
     def __init__(self) -> None:
         self._watchers: list[Callable[[], None]] = []
         self.changed_at = time.monotonic()
-        """When something changed last, by the steady clock."""
+        """The time of the last change, by the steady clock."""
 
     @abstractmethod
     def nodes(self) -> list[NodeIdentity]:

@@ -1,7 +1,7 @@
 """Requests and responses as bytes and back, for all transports.
 
-They are handed on in threads of transports, which others depend on: what fails there is logged as the failure of a
-callback is, and goes no further.
+They are handed on in threads of transports, which others depend on: a failure there is logged as the failure of a
+callback is, and ends there.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ def hand_request_on(body: bytes, service: Any, reply: Callable[[Any], None], req
 
 
 def hand_response_on(body: bytes, client: Any, answer: Callable[[Any], None]) -> None:
-    """Give a client's response to who waits for it; that it cannot be read is logged.
+    """Give a client's response to the caller that waits for it; a response that cannot be read is logged.
 
     Args:
         body: CDR with its header; handed on as it is to a client that is raw.
         client: the client.
-        answer: takes it.
+        answer: receives the response.
     """
     try:
         response = _read_or_warn(body, "Response", client)

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from linkwright.diagnostics import Phrase, phrase
 
 SWITCH = "LINKWRIGHT_DDS"
-"""With the value 0 a process speaks to no other one, over whatever."""
+"""With the value 0 a process does not communicate with others, over any middleware."""
 
 
 def is_switched_off(environment: Mapping[str, str] | None = None) -> bool:

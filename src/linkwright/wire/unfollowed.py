@@ -1,7 +1,7 @@
 """Settings of ROS 2 in the environment that no transport here follows: security, discovery servers, other middlewares.
 
 A real node acts on them: it refuses nodes without certificates, or is found through a server alone. Ours would start
-all the same and meet nobody, or send in the clear what the user believes to be encrypted.
+all the same and find no other node, or send in the clear what the user believes to be encrypted.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _OTHER_DDS = (
 _KNOWN = (CYCLONE, *_FAST, ZENOH, *_OTHER_DDS)
 
 _told: set[str] = set()
-"""Codes of what was told of in this process."""
+"""Codes of the settings that were reported in this process."""
 
 
 def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> None:
@@ -47,10 +47,10 @@ def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> No
         raise LinkwrightError(
             Diagnostic(
                 "DDS121",
-                phrase("ROS_SECURITY_STRATEGY is Enforce, and Linkwright has no DDS security: it does not join"),
+                phrase("ROS_SECURITY_STRATEGY is Enforce, but Linkwright has no DDS security: it does not join"),
                 hint=phrase(
-                    "run this command in a shell with ROS_SECURITY_ENABLE=false, where it is seen by nodes without"
-                    " security only; those with security need a real ROS 2"
+                    "run this command in a shell with ROS_SECURITY_ENABLE=false, where only nodes without "
+                    "security see it; nodes with security need a real ROS 2"
                 ),
             )
         )
@@ -69,11 +69,11 @@ def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Di
         found.append(
             Diagnostic(
                 "DDS122",
-                phrase("ROS_SECURITY_ENABLE is true, and Linkwright has no DDS security: it joins without"),
+                phrase("ROS_SECURITY_ENABLE is true, but Linkwright has no DDS security: it joins without security"),
                 severity=Severity.WARNING,
                 hint=phrase(
-                    "messages are not encrypted, and nodes with security may refuse them; set"
-                    " ROS_SECURITY_ENABLE=false to say that this is meant"
+                    "messages are not encrypted, and nodes with security may refuse them; set "
+                    "ROS_SECURITY_ENABLE=false if this is intended"
                 ),
             )
         )
@@ -111,7 +111,7 @@ def unfollowed_settings(environment: Mapping[str, str] | None = None) -> list[Di
 
 
 def untold_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
-    """Return those of the `unfollowed_settings` that were not returned before: each is told of once in a process."""
+    """Return those of the `unfollowed_settings` that were not returned before: each is reported once in a process."""
     found = [
         unfollowed_setting
         for unfollowed_setting in unfollowed_settings(environment)

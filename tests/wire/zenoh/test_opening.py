@@ -45,7 +45,7 @@ def test_a_client_says_what_it_waits_for_and_joins_when_the_router_comes(
     joining = threading.Thread(target=us.join)
     joining.start()
     us.spin_until(us.warnings)
-    assert us.warnings()[0].startswith(f"Waiting for a Zenoh router: nobody listens at tcp/localhost:{router_port}")
+    assert us.warnings()[0].startswith(f"Waiting for a Zenoh router: nothing listens at tcp/localhost:{router_port}")
     start_router()
     joining.join()
     other = processes("other")
@@ -58,7 +58,7 @@ def test_waiting_ends_after_the_time_that_is_set(processes, monkeypatch, router_
     us = processes("ours", join_now=False)
     with pytest.raises(AssertionError):
         us.join()
-    assert f"nobody listens at tcp/localhost:{router_port}" in us.warnings()[-1]
+    assert f"nothing listens at tcp/localhost:{router_port}" in us.warnings()[-1]
     assert "DDS112" in us.warnings()[-1]
 
 

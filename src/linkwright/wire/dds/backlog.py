@@ -3,7 +3,7 @@
 A reader of Fast DDS that has received a sample in part asks for the rest of it. When a newer sample has taken its place
 in the writer's history, Cyclone answers with a GAP, and Fast DDS up to 3.6 then frees the sample without forgetting it:
 the next ``take`` of the reader never returns (`docs/decisions/0095-large-messages-to-fast-dds.md`). So no sample takes
-the place of a large one that may still be asked for. What waits here is replaced by newer messages instead.
+the place of a large one that may still be asked for. Newer messages replace the samples that wait here instead.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ PATIENCE = 3.0
 
 
 class Backlog:
-    """What waits to be written by one reliable writer that keeps the last samples.
+    """The samples that wait to be written by one reliable writer that keeps the last samples.
 
     Args:
         depth: how many samples the writer keeps.
         fragment_size: the bytes of a sample that go into one packet; larger samples may be received in part.
         write: writes a sample.
-        acknowledged: whether all readers have acknowledged all that was written.
-        matters: whether somebody listens whom a replaced sample would harm.
+        acknowledged: whether all readers have acknowledged all written samples.
+        matters: whether a reader listens that a replaced sample would harm.
         now: the steady clock, in seconds.
     """
 
@@ -50,7 +50,7 @@ class Backlog:
         self._lock = threading.RLock()  # a warning of a write that failed may go the same way
 
     def send(self, sample: bytes) -> bool:
-        """Write a sample, or let it wait; whether something waits."""
+        """Write a sample, or let it wait; whether a sample waits."""
         with self._lock:
             if not self._written and len(sample) <= self._fragment_size:
                 self._write(sample)
@@ -59,7 +59,7 @@ class Backlog:
             return self._write_what_fits()
 
     def review(self) -> bool:
-        """Write what may be written by now; whether something still waits."""
+        """Write the samples that may be written by now; whether a sample still waits."""
         with self._lock:
             return self._write_what_fits()
 

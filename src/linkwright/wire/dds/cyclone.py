@@ -1,9 +1,9 @@
 """The C interface of Eclipse Cyclone DDS, as far as it is used here, bound to the library of the `cyclonedds` wheel.
 
-The Python classes of `cyclonedds` are built over the same functions. Two of their habits do not fit a process that
+The Python classes of `cyclonedds` are built over the same functions. Two of their properties do not suit a process that
 publishes from the thread of an event loop: `DataWriter.write` keeps Python's global lock while it waits for slow
-readers, and every entity's `__del__` deletes it in whatever thread the garbage collector runs. So only what has no
-equal in C is taken from there: topics for types described in Python, and taking samples as bytes.
+readers, and every entity's `__del__` deletes it in whatever thread the garbage collector runs. So only functions
+without an equal in C are used from there: topics for types described in Python, and taking samples as bytes.
 
 Functions that may wait are called with the global lock released, the quick ones with it held: giving it up costs up to
 five milliseconds each time when another thread computes.
@@ -26,7 +26,7 @@ TIMEOUT = -10
 BUILTIN_PARTICIPANTS = 0x7FFF_0001
 BUILTIN_PUBLICATIONS = 0x7FFF_0003
 BUILTIN_SUBSCRIPTIONS = 0x7FFF_0004
-"""Topics that Cyclone makes from what discovery says (DDS_BUILTIN_TOPIC_DCPS...)."""
+"""Topics that Cyclone makes from discovery (DDS_BUILTIN_TOPIC_DCPS...)."""
 
 ANY_STATE = 0x7F
 """Sample, view and instance states: everything (DDS_ANY_STATE)."""
@@ -170,7 +170,7 @@ class CycloneError(Exception):
 
 
 class Cyclone:
-    """The bound functions, under their names in C, and what is used of the Python package."""
+    """The bound functions, under their names in C, and the used parts of the Python package."""
 
     def __init__(self) -> None:
         _open_package()
@@ -236,7 +236,7 @@ class Cyclone:
         return self._text(value) if self.dds_qget_entity_name(qos, c.byref(value)) else ""
 
     def property(self, qos: int, name: str) -> str:
-        """What a participant tells of itself under a name; empty where it tells nothing."""
+        """A property that a participant announces; empty where it announces none of this name."""
         value = c.c_void_p()
         return self._text(value) if self.dds_qget_prop(qos, name.encode(), c.byref(value)) else ""
 
@@ -251,10 +251,10 @@ class Cyclone:
 
 
 def _open_package() -> None:
-    """Have modules of the package `cyclonedds` imported when they are used, not all with the first of them.
+    """Import modules of the package `cyclonedds` when they are used, not all with the first of them.
 
-    Its ``__init__`` does nothing but to import them all, which takes several times as long as those that are used here.
-    Whoever imports the package in this process finds everything in it as before.
+    Its ``__init__`` imports them all, which takes several times as long as those that are used here. Other code that
+    imports the package in this process finds everything in it as before.
     """
     spec = find_spec("cyclonedds")
     if "cyclonedds" in sys.modules or spec is None:
@@ -280,10 +280,10 @@ def load() -> Cyclone:
 
 
 def checked(code: int, what: str) -> int:
-    """What a call gave back.
+    """The result of a call.
 
     Raises:
-        CycloneError: it failed; `what` says what was attempted.
+        CycloneError: it failed; `what` names the attempt.
     """
     if code < 0:
         raise CycloneError(code, what)
@@ -301,7 +301,7 @@ def write(writer: int, data: bytes) -> int:
 
     Args:
         writer: the writer.
-        data: CDR with its header; it is filled up to a multiple of four as RTPS wants.
+        data: CDR with its header; it is padded to a multiple of four as RTPS requires.
 
     Returns:
         Zero, or Cyclone's return code.

@@ -1,9 +1,9 @@
 """Tells publishers that were lost (killed, crashed, out of reach) from those that left in order.
 
-Who leaves says so: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before it takes it out of the domain
-(rmw_dds_common), and so do we. An endpoint that is gone and was not withdrawn is lost: its participant was not heard of
-for as long as its lease is, or was taken out of the domain at the end of a process that failed. Where a participant
-tells which process of this machine it is, nobody waits for the lease: the process is gone, and the participant is not.
+A publisher that leaves announces it: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before it takes it out of
+the domain (rmw_dds_common), and so do we. An endpoint that is gone and was not withdrawn is lost: its participant was
+silent for as long as its lease is, or was taken out of the domain at the end of a process that failed. Where a
+participant states which process of this machine it is, the end of the process counts, and the lease is not waited for.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ class _Gone:
 
 
 class Departures:
-    """Judges how publishers went; everything but `watch` happens in the thread of discovery.
+    """Judges how publishers left; everything except `watch` happens in the thread of discovery.
 
     Args:
-        remote: what there is outside; it tells `endpoint_went` and `announced`.
+        remote: the graph outside; it calls `endpoint_went` and `announced`.
         now: the steady clock, in seconds.
     """
 

@@ -49,11 +49,11 @@ _READER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history
 
 
 class Discovery:
-    """Fills the tables of what is outside and publishes what is inside.
+    """Fills the tables of the graph outside and publishes the graph inside.
 
-    A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on, and the wrong size harms who hears it. Ours has the
-    size that the first ROS 2 node heard uses; where both are heard, that of the older, whose ``ros2 node list`` would
-    fail as a whole. Other processes of Linkwright understand both and give no evidence.
+    A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on, and the wrong size harms the nodes that receive it.
+    Ours has the size that the first ROS 2 node heard uses; where both are heard, that of the older, whose
+    ``ros2 node list`` would fail otherwise. Processes of Linkwright understand both and give no evidence.
 
     Args:
         participant: ours.
@@ -72,7 +72,7 @@ class Discovery:
         self._types = types
         self.gid_size = gid_size
         self.changed = False
-        """Whether something outside has changed since somebody last looked and set it back."""
+        """Whether something outside has changed since the flag was last read and reset."""
         self._nodes: Sequence[NodeEntities] = ()
         self._evidence: dict[bytes, int] = {}
         self._participants = self._builtin(BUILTIN_PARTICIPANTS)
@@ -136,11 +136,11 @@ class Discovery:
         self._remote.participant_came(RemoteParticipant(guid, facts.get("enclave", "/"), name, process, host))
 
     def _host_of(self, qos: int) -> str:
-        """The machine of a participant, as Fast DDS and Cyclone tell it; empty where neither does."""
+        """The machine of a participant, as Fast DDS and Cyclone announce it; empty where neither does."""
         return next((host for host, _ in told_processes(partial(self._dds.property, qos)) if host), "")
 
     def _process_of(self, qos: int) -> int | None:
-        """The process of a participant, as Fast DDS and Cyclone tell it; None unless it runs on this machine.
+        """The process of a participant, as Fast DDS and Cyclone announce it; None unless it runs on this machine.
 
         One in a container may have the name of this machine and a number that is another process here, or none.
         """
@@ -179,7 +179,7 @@ class Discovery:
         return len(samples) == _AT_ONCE
 
     def ask_silent(self) -> float | None:
-        """Ask those for their nodes who have not announced them; seconds after which to call this again, or None."""
+        """Ask participants that have not announced their nodes for them; seconds until the next call, or None."""
         return self._requests.review(is_complete=self._remote.all_announced())
 
     def _listen_again(self) -> Callable[[], None]:
@@ -220,7 +220,7 @@ class Discovery:
 
 
 def told_processes(property_of: Callable[[str], str]) -> Iterator[tuple[str, str]]:
-    """The host and the number of a participant's process, as each vendor tells them.
+    """The host and the number of a participant's process, as each vendor announces them.
 
     Fast DDS 3 names its machine by the machine's id, for which this machine's name stands here.
 
@@ -253,13 +253,13 @@ INTERVALS = (0.02, 0.1, 0.2, 0.4, 0.8)
 class DiscoveryRequests:
     """Listens with a second reader of ``ros_discovery_info`` until every participant has announced its nodes.
 
-    Otherwise some would announce them only after seconds. A writer of Fast DDS tells a reader what it has told before
-    when it gets to know the reader. Often that is before Cyclone knows the writer, so that it is lost; what Cyclone
-    sends to have it repeated, Fast DDS passes over, and repeats it after 3 s by itself. A reader that is made when the
-    writer is known is told within milliseconds.
+    Otherwise some would announce them only after seconds. A writer of Fast DDS repeats its last announcement to a
+    reader when it discovers the reader. Often that is before Cyclone knows the writer, so that it is lost; Fast DDS
+    ignores the request of Cyclone to repeat it, and repeats it after 3 s by itself. A reader that is made when the
+    writer is known receives it within milliseconds.
 
     Args:
-        listen: makes such a reader; gives what takes it back.
+        listen: makes such a reader; gives a function that deletes it.
     """
 
     def __init__(self, listen: Callable[[], Callable[[], None]]) -> None:

@@ -56,7 +56,7 @@ def encode(info: ParticipantEntities, gid_size: int) -> bytes:
 def decode(data: bytes) -> ParticipantEntities | None:
     """A sample of either layout; None when it is neither.
 
-    The layout is the one that fits to the last byte; where both do, there are no gids in it and they say the same.
+    The layout is the one that fits to the last byte; where both do, there are no gids in it and both give the same.
     """
     for gid_size in (OLD_GID_SIZE, GID_SIZE):
         try:

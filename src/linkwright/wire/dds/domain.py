@@ -16,7 +16,7 @@ class Domain:
 
     Attributes:
         participant: ours.
-        remote: who is outside.
+        remote: the graph outside.
         types: descriptions of types.
         fragment_size: the bytes of a sample up to which it surely goes into one packet.
         pacer: sends large samples to Fast DDS.

@@ -1,7 +1,7 @@
-"""Makes, feeds and deletes what mirrors the endpoints of this process in a domain.
+"""Makes, feeds and deletes the mirrors of this process's endpoints in a domain.
 
-Two threads do the work. One makes and deletes readers and writers in the order in which they were asked for, and keeps
-the tables of what is outside; the other takes samples and hands them on.
+Two threads do the work. One makes and deletes readers and writers in the order in which they were requested, and keeps
+the tables of the graph outside; the other takes samples and hands them on.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from linkwright.wire.engine import Engine as AnyEngine
 from linkwright.wire.engine import Work, ends_by_error
 
 CLOSING_TIME = 1.0
-"""Seconds that leaving may take until what was sent reliably is acknowledged."""
+"""Seconds that leaving may take until reliable samples are acknowledged."""
 
 _LOOK_AGAIN = 0.01
 _NAMED_WITHIN = 1.0
-"""Seconds within which a participant will have said which node an endpoint belongs to."""
+"""Seconds within which a participant announces which node an endpoint belongs to."""
 
 _TELL_SPAN = 0.1
 """Seconds after which new nodes are announced though more of them are being made."""
@@ -49,9 +49,9 @@ class Engine(AnyEngine):
     Args:
         settings: the domain and how to join it.
         remote: the tables to fill.
-        departures: judges how publishers outside went.
-        work: what there is to do; others append to it and `wake`.
-        logger: for what there is to tell.
+        departures: judges how publishers outside left.
+        work: the queue of requests; others append to it and `wake`.
+        logger: logs problems.
 
     Raises:
         LinkwrightError: the domain cannot be joined.
@@ -105,9 +105,9 @@ class Engine(AnyEngine):
         self._control.wake()
 
     def close(self) -> None:
-        """End: what was sent reliably is acknowledged first, or a second has passed.
+        """End: reliable samples are acknowledged first, or a second has passed.
 
-        Others are told that our nodes leave, unless the process ends because of an error (`departures`).
+        The departure of our nodes is announced, unless the process ends because of an error (`departures`).
         """
         self._control.stop(CLOSING_TIME)
         self._reception.stop(CLOSING_TIME)
@@ -157,7 +157,7 @@ class Engine(AnyEngine):
         self._is_told = False
 
     def close_publisher(self, publisher: Any) -> None:
-        """Delete a publisher's writer when all readers have acknowledged what it sent, or after a second."""
+        """Delete a publisher's writer when all readers have acknowledged its samples, or after a second."""
         topic = self._outgoing.pop(publisher, None)
         if topic is not None:
             self._control.detach(topic.entity)
@@ -195,7 +195,7 @@ class Engine(AnyEngine):
         self._is_told = False
 
     def close_endpoint(self, endpoint: Any) -> None:
-        """Delete what mirrors a subscription, a service, a client or a presence."""
+        """Delete the mirror of a subscription, a service, a client or a presence."""
         self._is_told = False
         presence = self._presences.pop(endpoint, None)
         if presence is not None:
@@ -214,7 +214,7 @@ class Engine(AnyEngine):
     # --- between the work --------------------------------------------------------------------------------------------
 
     def _idle(self) -> float | None:
-        """Work off what was asked for, and handle what discovery found; seconds after which to look again, or None."""
+        """Work off requests, and handle what discovery found; seconds after which to look again, or None."""
         self._do_some_work()
         self._look_outside()
         self._end_leaving()
@@ -280,9 +280,9 @@ class Engine(AnyEngine):
             self._control.wake()
 
     def _write_waiting(self) -> None:
-        """Write what waited for acknowledgements that have come."""
+        """Write the samples that waited for acknowledgements that have come."""
         for topic in tuple(self._waiting):
-            del self._waiting[topic]  # first: what comes from now on is noted anew
+            del self._waiting[topic]  # first: acknowledgements that come from now on are noted again
             if topic.review():
                 self._waiting[topic] = None
 

@@ -1,7 +1,7 @@
 """Services and clients as rmw_fastrtps knows them.
 
-Which request a reply is for stands beside the sample there, in the inline QoS of RTPS. Cyclone neither writes nor hands
-that on, so a participant of our own does (`linkwright.wire.dds.rtps`), with a reader and a writer for each service and
+A reply names its request in the inline QoS of RTPS there, beside the sample. Cyclone neither writes nor hands on inline
+QoS, so a participant of our own does (`linkwright.wire.dds.rtps`), with a reader and a writer for each service and
 client beside those of Cyclone.
 """
 
@@ -46,13 +46,13 @@ _REMEMBERED = 64
 
 @dataclass(frozen=True, slots=True)
 class EarlyRequest:
-    """A request that came to Cyclone's reader, which does not tell its number.
+    """A request that Cyclone's reader received, which does not give its number.
 
     Attributes:
         writer: the GUID of the client's writer.
         body: CDR with its header.
         written: by the client's clock, in ns.
-        came: when, by the steady clock.
+        came: the time of arrival, by the steady clock.
     """
 
     writer: bytes
@@ -65,7 +65,7 @@ class FastServer:
     """A service of this process, as clients on Fast DDS call it.
 
     A client there takes a service for ready as soon as it knows one reader and one writer of it, which may be those of
-    Cyclone. What it asks then comes to Cyclone's reader alone, which hands on no number; `came_early` takes it, and it
+    Cyclone. Its request then reaches Cyclone's reader alone, which hands on no number; `came_early` takes it, and it
     gets its number when the client is heard here.
 
     Args:
@@ -81,14 +81,14 @@ class FastServer:
         self._late: deque[tuple[float, bytes, int, Any]] = deque()
         self._early: list[EarlyRequest] = []
         self._first: dict[bytes, tuple[int, int]] = {}
-        """Number and time of the first sample of each writer that came here; all that follow do."""
+        """Number and time of the first sample of each writer that arrived here; all that follow do."""
         self._numbered: dict[bytes, deque[tuple[int, int]]] = {}
         self._lock = Lock()
         self._replies = participant.add_writer(dds_topic(Role.REPLY, service.name), response, facts)
         self._requests = participant.add_reader(dds_topic(Role.REQUEST, service.name), request, facts, self._on_data)
 
     def came_early(self, request: EarlyRequest) -> None:
-        """Take a request from Cyclone's reader; it is dropped when it comes here too."""
+        """Take a request from Cyclone's reader; it is dropped when it arrives here too."""
         heard_at = self._participant.matched_writers(self._requests).get(request.writer)
         if heard_at is None or time.monotonic() < heard_at + _SETTLED:
             with self._lock:
@@ -120,7 +120,7 @@ class FastServer:
             self._first.setdefault(sample.writer, (sample.number, sample.time))
             asked = self._numbered.get(sample.writer, ())
             if any(number == sample.number and abs(time_ - sample.time) < _SAME_TIME for number, time_ in asked):
-                return  # it came so late here that it was taken from Cyclone's reader
+                return  # it arrived so late here that it was taken from Cyclone's reader
         told = read_related_identity(sample.inline, sample.order)
         client = sample.writer
         if told is not None and is_reader(told[0]) and told[0].startswith(sample.source):
@@ -147,7 +147,7 @@ class FastServer:
         return any(reader.startswith(wanted) for reader in self._participant.matched_readers(self._replies))
 
     def _number_early(self, now: float) -> None:
-        """Give early requests the numbers before the first that came here, in their order."""
+        """Give early requests the numbers before the first that arrived here, in their order."""
         heard = self._participant.matched_writers(self._requests)
         with self._lock:
             early, self._early = self._early, []

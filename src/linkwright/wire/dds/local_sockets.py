@@ -1,4 +1,4 @@
-"""How many processes of this machine take part in a domain, as far as the system tells: by the ports they listen on.
+"""How many processes of this machine take part in a domain, as far as the system reports it: by their ports.
 
 Every DDS implementation listens on the ports that RTPS gives to a domain (DDSI-RTPS 2.3, 9.6.1.1): one that all share
 for multicast, one of its own for unicast, or both. So a process that has not answered yet is seen here already.
@@ -31,7 +31,7 @@ def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> in
         tables: the folder with the system's tables of sockets (proc(5)).
 
     Returns:
-        The number, which may be 0; None where the system does not tell.
+        The number, which may be 0; None where the system does not report it.
     """
     first = multicast_port(domain_id)
     listening: Counter[int] = Counter()
@@ -50,14 +50,14 @@ def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> in
 
 
 def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | None:
-    """How many bytes wait to be received at a UDP port of this machine, with what the system adds to each packet.
+    """How many bytes wait to be received at a UDP port of this machine, with the system's overhead of each packet.
 
     Args:
         port: the port; where several sockets listen on it, the fullest counts.
         tables: the folder with the system's tables of sockets (proc(5)).
 
     Returns:
-        The bytes, 0 also where nobody listens; None where the system does not tell.
+        The bytes, 0 also where no socket listens; None where the system does not report them.
     """
     wanted = b":%04X" % port
     most = 0

@@ -8,7 +8,7 @@ from enum import Enum
 from linkwright.wire.type_names import ros_type
 
 DISCOVERY_TOPIC = "ros_discovery_info"
-"""Where each participant says which nodes it has."""
+"""The topic on which each participant announces its nodes."""
 
 
 class Role(Enum):
@@ -28,7 +28,7 @@ class RosName:
     """A ROS name found in a DDS topic.
 
     Attributes:
-        role: what the topic carries.
+        role: the role of the topic.
         name: the absolute name of the topic or service.
     """
 
@@ -40,7 +40,7 @@ def dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
     """The DDS topic of an absolute ROS name.
 
     Args:
-        role: what the topic carries.
+        role: the role of the topic.
         name: such as ``/joint_states``.
         plain: QoS ``avoid_ros_namespace_conventions``: no prefix.
     """
@@ -48,7 +48,7 @@ def dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
 
 
 def ros_name(topic: str) -> RosName | None:
-    """The ROS name that a DDS topic stands for; None when it is none of ROS's."""
+    """The ROS name of a DDS topic; None when it does not belong to ROS."""
     prefix, slash, rest = topic.partition("/")
     role = _ROLES.get(prefix)
     if role is None or not slash:

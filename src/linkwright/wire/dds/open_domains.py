@@ -13,7 +13,7 @@ from linkwright.wire.dds.type_descriptions import WireTypes
 
 
 class OpenDomain:
-    """A domain with what its participants share.
+    """A domain with the entities that its participants share.
 
     Attributes:
         number: the domain.
@@ -61,7 +61,7 @@ def close_domain(domain: OpenDomain) -> None:
 
 
 def _create_domain(settings: Settings) -> int:
-    """The domain with the first configuration that Cyclone takes; it says by itself what it does not like in one.
+    """The domain with the first configuration that Cyclone accepts; it prints itself what it rejects in one.
 
     Raises:
         LinkwrightError: DDS102 or DDS103, it takes none.
@@ -69,7 +69,7 @@ def _create_domain(settings: Settings) -> int:
     code = _first_taken(settings.domain_id, settings.configurations)
     if code >= 0:
         if not settings.user_configuration:
-            # Warnings come for every broken or foreign packet, so anybody could flood the log.
+            # Each broken or foreign packet causes a warning, so any process could flood the log.
             load().dds_set_log_mask(LOG_ERRORS)
         return code
     if settings.user_configuration:
@@ -85,7 +85,7 @@ def _create_domain(settings: Settings) -> int:
                     ),
                     hint=phrase(
                         "it is XML text or the URL of an XML file such as file:///home/me/cyclonedds.xml; "
-                        "Cyclone's own words about it are above"
+                        "Cyclone's own messages are above"
                     ),
                 )
             )
@@ -93,13 +93,13 @@ def _create_domain(settings: Settings) -> int:
         Diagnostic(
             code="DDS103",
             message=phrase(
-                "Cyclone DDS cannot open domain {domain_id}; its own words about it are above",
+                "Cyclone DDS cannot open domain {domain_id}; its own messages are above",
                 domain_id=settings.domain_id,
             ),
             hint=phrase(
-                "at most {most} processes may be on it, no other program may hold its ports"
-                " (7400 and what follows, 250 a domain), and a network interface must be up; another"
-                " ROS_DOMAIN_ID has other ports, CYCLONEDDS_URI can name an interface",
+                "at most {most} processes may be on it, no other program may hold its ports (from 7400 on, 250 "
+                "a domain), and a network interface must be up; another ROS_DOMAIN_ID has other ports, "
+                "CYCLONEDDS_URI can name an interface",
                 most=most_participants(settings.domain_id),
             ),
         )

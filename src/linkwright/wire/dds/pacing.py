@@ -4,7 +4,7 @@ Cyclone sends all packets of a sample at once. A reader of Fast DDS receives int
 packets of an image are lost: a reliable reader asks for them again, which takes milliseconds for every three packets,
 and a best-effort reader drops the image. Here the packets are sent first, under the GUID and the sequence number of
 Cyclone's writer. Then Cyclone writes the sample, and its packets are duplicates to a reader that has them. Discovery,
-acknowledgements and what is sent again stay with Cyclone (`docs/decisions/0104-large-messages-packet-by-packet.md`).
+acknowledgements and retransmission stay with Cyclone (`docs/decisions/0104-large-messages-packet-by-packet.md`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _PACKET = 61_440
 """Bytes that a packet with a full fragment takes in that buffer, rounded up: three fit."""
 
 _LEAST_ROOM = 2
-"""Packets that have to fit before sending goes on: to look after each packet would take longer than to send it."""
+"""Packets that have to fit before sending resumes: to check after each packet would take longer than to send it."""
 
 _PAUSE = 0.0002
 """Seconds after which a full buffer is looked at again."""
@@ -38,7 +38,7 @@ _LOOKS = 200
 """How often, for one sample; a reader that was stopped takes nothing."""
 
 _BLIND_PAUSE, _BLIND_PACKETS = 0.0005, 2
-"""The pause after so many packets where the system does not tell what waits in a buffer."""
+"""The pause after so many packets where the system does not report the bytes in a buffer."""
 
 
 class Receiver:
@@ -46,7 +46,7 @@ class Receiver:
 
     Args:
         address: of the socket.
-        waiting: the bytes that wait at a port; None where the system does not tell.
+        waiting: the bytes that wait at a port; None where the system does not report them.
         pause: waits some seconds.
     """
 
@@ -63,7 +63,7 @@ class Receiver:
         self._is_stuck = False
 
     def begin(self) -> None:
-        """Begin with a sample. For a reader that took nothing of the last one nobody waits again."""
+        """Begin with a sample. A reader that took nothing of the last one is not waited for again."""
         self._room, self._looks = 0, 1 if self._is_stuck else _LOOKS
 
     def takes_one(self) -> bool:
@@ -147,7 +147,7 @@ class Pacer:
             for prefix, receiver in tuple(readers.items()):
                 if receiver.takes_one():
                     head = message(writer[:PREFIX], stamp, start, to=prefix)
-                    with suppress(OSError):  # what the system does not take, Cyclone sends
+                    with suppress(OSError):  # Cyclone sends the packets that the system does not take
                         self._socket.sendto(head + part, receiver.address)
                 else:
                     del readers[prefix]
@@ -228,12 +228,12 @@ class PacedWriter:
             return self._changed.wait_for(lambda: not self._is_pacing, min(seconds, threading.TIMEOUT_MAX))
 
     def close(self) -> None:
-        """Drop what waits."""
+        """Drop waiting samples."""
         with self._changed:
             self._waiting.clear()
 
     def _places(self, sample: bytes) -> dict[bytes, Address]:
-        """Where the readers listen that a sample is paced for; none for what goes in one packet."""
+        """The addresses of the readers that a sample is paced for; none for a sample that fits one packet."""
         return self._pacer.places_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
 
     def _write_now(self, sample: bytes, published: int | None = None) -> bool:

@@ -22,13 +22,13 @@ SERVICES_NAME = "linkwright-services"
 def entity_name() -> str:
     """The name of a participant of this process: what it is, its process and the process namespace that counts in.
 
-    Others of ours see by it, on the same machine, that the process is gone before its lease has run out.
+    Other processes of Linkwright on the same machine see from it that the process is gone before its lease has run out.
     """
     return f"{NAME}/{process_namespace()}/{os.getpid()}"
 
 
 def process_namespace() -> str:
-    """Tells processes with the same id in different containers apart; empty where that is not known."""
+    """Distinguishes processes with the same id in different containers; empty where that is not known."""
     try:
         return Path("/proc/self/ns/pid").readlink().name.strip("pid:[]")
     except OSError:
@@ -89,7 +89,7 @@ class Participant:
             self._dds.dds_delete(entity)
 
     def close(self) -> None:
-        """Leave the domain; everything that was made goes with it, and with the last its sockets and threads."""
+        """Leave the domain and delete all entities; the last to leave deletes its sockets and threads, too."""
         self.closed = True
         self._dds.dds_delete(self.entity)
         close_domain(self._domain)

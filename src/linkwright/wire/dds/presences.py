@@ -1,4 +1,4 @@
-"""Endpoints that others see in a domain, and that take no part: readers that nobody takes samples from."""
+"""Endpoints that others see in a domain, and that take no part: readers whose samples are never taken."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def open_presence(presence: Presence, domain: Domain) -> QuietReader | QuietClie
 
 
 class QuietReader(MirroredTopic):
-    """A reader that keeps the last sample, which nobody takes; writers send it nothing that others here do not get."""
+    """A reader that keeps the last sample, which is never taken; writers send it only samples that others here get."""
 
     _STATUS = 0
     writer_guids: Sequence[bytes] = ()
@@ -72,4 +72,4 @@ class QuietClient:
 
 
 def _ignore(_: Any) -> None:
-    """Who has another quality of service tells its own users so."""
+    """Ignore it: the other side with an incompatible quality of service notifies its own users."""

@@ -37,8 +37,8 @@ def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
     Samples of this participant do not come back to it: the bus of the process has delivered them.
 
     Args:
-        profile: what is offered or asked for; what it leaves open is what Cyclone chooses for ROS.
-        user_data: facts for rmw's eyes.
+        profile: the QoS that is offered or requested; Cyclone chooses open values as for ROS.
+        user_data: facts for rmw.
     """
     dds = load()
     qos: int = dds.dds_create_qos()
@@ -91,7 +91,7 @@ def profile_of(qos: int, *, tells_history: bool = True) -> QoSProfile:
 
     Args:
         qos: the policies.
-        tells_history: whether the endpoint says how much it keeps; what Cyclone has of one that does not is a default.
+        tells_history: whether the endpoint announces its history; Cyclone has only a default for one that does not.
     """
     dds = load()
     kind, depth, duration = c.c_int(), c.c_int32(), c.c_int64()

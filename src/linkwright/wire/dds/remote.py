@@ -32,7 +32,7 @@ _PREFIX = 12
 """Bytes of a GUID that name the participant."""
 
 _ENDPOINTS_WITHIN = 1.3
-"""Seconds within which a participant's first endpoint is heard of; Fast DDS repeats what was missed after 1 s."""
+"""Seconds within which a participant's first endpoint is heard of; Fast DDS repeats lost announcements after 1 s."""
 
 _ALL_WITHIN = 3.0
 """Seconds within which a participant that listens to announcements makes one, and the endpoints in it are heard of."""
@@ -45,10 +45,10 @@ class RemoteParticipant:
     Attributes:
         guid: 16 bytes.
         enclave: from its USER_DATA.
-        entity_name: what it calls itself.
+        entity_name: its own name.
         peer_process: of one that is not ours, the id of its process, where that is one of this machine.
-        host: the machine that it runs on; empty where it does not say.
-        entities: what it said in ``ros_discovery_info``; None as long as it has not.
+        host: the machine that it runs on; empty where it does not announce it.
+        entities: its announcement in ``ros_discovery_info``; None as long as there is none.
     """
 
     guid: bytes
@@ -58,15 +58,15 @@ class RemoteParticipant:
     host: str = ""
     entities: ParticipantEntities | None = None
     came_at: float = field(default_factory=time.monotonic)
-    """When it was heard of first, by the steady clock."""
+    """When it was first heard of, by the steady clock."""
 
     def endpoints(self) -> set[bytes]:
-        """The GUIDs of the endpoints that it says its nodes have."""
+        """The GUIDs of the endpoints that it announces for its nodes."""
         return {gid for node in (self.entities.nodes if self.entities else ()) for gid in _gids(node)}
 
     @property
     def is_ours(self) -> bool:
-        """Whether it is one of Linkwright's, which says nothing about the distribution of ROS 2."""
+        """Whether it is one of Linkwright's, which gives no evidence of the distribution of ROS 2."""
         return self.entity_name.startswith(NAME + "/")
 
     @property
@@ -91,7 +91,7 @@ class RemoteEndpoint:
 
     Attributes:
         guid: 16 bytes.
-        handle: what Cyclone calls it in this process.
+        handle: its handle at Cyclone in this process.
         participant: the GUID of its participant.
         is_writer: whether it writes.
         topic: its DDS topic.
@@ -120,7 +120,7 @@ class RemoteEndpoint:
         return is_fast(self.guid)
 
     def described(self, node: NodeIdentity | None, host: str = "") -> EndpointInfo | None:
-        """In ROS's terms; None for what is not ROS's, and for the second half of services and clients.
+        """In ROS's terms; None for endpoints outside of ROS, and for the second half of services and clients.
 
         Args:
             node: whose it is, where that is known.
@@ -139,7 +139,7 @@ class RemoteEndpoint:
             return None
         if type_name is None:
             return None
-        # rmw_fastrtps tells that of the request or the response, the others that of the service.
+        # rmw_fastrtps announces the hash of the request or the response, the others that of the service.
         tells_hash = name.role is Role.TOPIC or not self.is_fast
         type_hash = self.facts.get("typehash", "") if tells_hash else ""
         return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, type_hash, host=host)
@@ -156,7 +156,7 @@ class DepartureWatch(Protocol):
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other processes; see `Outside` for who writes and reads it."""
+    """The nodes and endpoints of other processes; `Outside` names the threads that write and read it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -167,7 +167,7 @@ class RemoteGraph(Outside):
         self._early: dict[bytes, ParticipantEntities] = {}
         self._dead: tuple[float, frozenset[bytes]] = (0.0, frozenset())
         self.departures: DepartureWatch | None = None
-        """What is told of endpoints that are gone."""
+        """Is notified of endpoints that are gone."""
 
     # --- from discovery -----------------------------------------------------------------------------------------
 
@@ -273,8 +273,8 @@ class RemoteGraph(Outside):
     def is_complete(self) -> bool:
         """Whether all have announced their nodes, and those nodes' endpoints are known.
 
-        Who listens to announcements belongs to ROS and makes one, too. Of who is there, and nothing else is known of
-        it, something is awaited for a moment.
+        A participant that listens to announcements belongs to ROS and makes one, too. A participant without known
+        endpoints is waited for a moment.
         """
         now = time.monotonic()
         with self._lock:
@@ -286,7 +286,7 @@ class RemoteGraph(Outside):
                 age = now - participant.came_at
                 if guid not in known and age < _ENDPOINTS_WITHIN:
                     return False
-                # Of Fast DDS the readers may be told a second before the writers.
+                # Fast DDS may announce readers a second before writers.
                 if age < _ALL_WITHIN and guid in listeners and participant.entities is None:
                     return False
                 if age < _ALL_WITHIN and not self._endpoints.keys() >= participant.endpoints():
@@ -328,7 +328,7 @@ class RemoteGraph(Outside):
         return participant.host if participant else ""
 
     def node_name(self, endpoint: RemoteEndpoint) -> str:
-        """The full name of the node that an endpoint belongs to; empty as long as it has not been told."""
+        """The full name of the node that an endpoint belongs to; empty as long as it is not announced."""
         with self._lock:
             owner = self._owner_of(endpoint)
         return owner.full_name if owner else ""
@@ -343,7 +343,7 @@ class RemoteGraph(Outside):
         return None
 
     def writers_of(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
-        """The writers of a participant, and the node of each where it has been told."""
+        """The writers of a participant, and the node of each where it is announced."""
         with self._lock:
             writers = [
                 endpoint
@@ -383,7 +383,7 @@ def runs(process: int) -> bool:
 
 
 def _is_zombie(process: int) -> bool:
-    """Whether a process has ended, and who started it has not asked how; that is known on Linux."""
+    """Whether a process has ended, and its parent has not asked how; that is known on Linux."""
     try:
         stat = Path(f"/proc/{process}/stat").read_bytes()
     except OSError:

@@ -26,7 +26,7 @@ def halves(service_type: str) -> tuple[str, str]:
 
 
 def _hash_of(endpoint: Endpoint) -> str:
-    """The hash of a service's type as it was told, or of the type; empty where bytes of an unknown one are carried."""
+    """The announced hash of a service's type, or the type's own; empty where bytes of an unknown one are carried."""
     if endpoint.type_hash:
         return endpoint.type_hash
     try:

@@ -4,8 +4,9 @@ A service is two topics. rmw_cyclonedds_cpp writes a header before each request:
 sequence number of the request. The server writes the same before its reply; all replies reach all clients of a service,
 and each picks its own. The USER_DATA of both endpoints of a client or a server name them as belonging together.
 
-rmw_fastrtps_cpp has the same beside the samples (inline QoS), which Cyclone neither hands on nor writes: what is called
-from there, or calls from here, has a second reader and writer for that (`linkwright.wire.dds.fast_services`).
+rmw_fastrtps_cpp has the same beside the samples (inline QoS), which Cyclone neither hands on nor writes: services that
+are called from there, and clients that call from here, have a second reader and writer for that
+(`linkwright.wire.dds.fast_services`).
 """
 
 from __future__ import annotations
@@ -81,12 +82,12 @@ class Pair:
         self.reader_guid = self._dds.guid(self.reader)
         self.writer_guid = self._dds.guid(self.writer)
         endpoint.gid = self.reader_guid if is_server else self.writer_guid
-        # Cyclone wakes a thread until a status is taken. A server takes none: who has matched it asks when it replies.
+        # Cyclone wakes a thread until a status is taken. A server takes none: it asks for matches when it replies.
         self._dds.dds_set_status_mask(self.reader, DATA_AVAILABLE | (0 if is_server else SUBSCRIPTION_MATCHED))
         self._dds.dds_set_status_mask(self.writer, 0 if is_server else PUBLICATION_MATCHED)
 
     def has_matched(self, entity: int) -> bool:
-        """Whether something came to the reader or writer, or left it, since this was asked last."""
+        """Whether the reader or writer has gained or lost a match since the last call."""
         mask = SUBSCRIPTION_MATCHED if entity == self.reader else PUBLICATION_MATCHED
         status = c.c_uint32()
         self._dds.dds_take_status(entity, c.byref(status), mask)
@@ -112,7 +113,7 @@ class OutsideServer:
     Args:
         client: the client.
         domain: where the others are.
-        matched: called when something connected or left, in the thread that receives.
+        matched: called when an endpoint connected or left, in the thread that receives.
     """
 
     def __init__(self, client: Client[Any, Any], domain: Domain, matched: Callable[[], None]) -> None:
@@ -153,7 +154,7 @@ class OutsideServer:
         return count == _AT_ONCE
 
     def on_writer_status(self) -> bool:
-        """Note that something connected with the writer or left it."""
+        """Note that a reader connected with the writer or left it."""
         if self.pair.has_matched(self.pair.writer):
             self._matched()
         return False
@@ -244,7 +245,7 @@ class IncomingService:
 
     @property
     def has_more_to_do(self) -> bool:
-        """Whether replies wait for their clients, or requests for what tells their clients."""
+        """Whether replies wait for their clients, or requests for the discovery of their clients."""
         return bool(self._late) or (self._fast is not None and self._fast.has_more_to_do)
 
     def close(self) -> None:

@@ -1,7 +1,7 @@
 """The settings of DDS from the environment: the domain, the range of discovery, and Cyclone's configuration.
 
-Left to itself a process stays inside its machine; see `docs/decisions/0011-dds.md` for what the configuration is made
-of and why. As soon as ROS's own variables say how far to go, they are followed as rmw_cyclonedds_cpp follows them.
+Left to itself a process stays inside its machine; `docs/decisions/0011-dds.md` explains the parts of the configuration.
+As soon as ROS's own variables set the range, they are followed as rmw_cyclonedds_cpp follows them.
 """
 
 from __future__ import annotations
@@ -65,9 +65,9 @@ class Settings:
     Attributes:
         domain_id: the DDS domain.
         range: how far others are looked for.
-        configurations: fragments for Cyclone, of which the first that it takes is used.
+        configurations: fragments for Cyclone; the first one that it accepts is used.
         gid_size: the gid's bytes in ``ros_discovery_info`` as long as no ROS 2 node was heard.
-        warnings: what the user may want to know.
+        warnings: warnings for the user.
         user_configuration: the value of CYCLONEDDS_URI.
         own_configurations: the fragments without that.
         peers: other machines to be asked without multicast.
@@ -120,7 +120,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
 
 
 def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
-    """How far to look: ROS_LOCALHOST_ONLY goes before ROS_AUTOMATIC_DISCOVERY_RANGE, as in rcl."""
+    """How far to look: ROS_LOCALHOST_ONLY takes precedence over ROS_AUTOMATIC_DISCOVERY_RANGE, as in rcl."""
     localhost_only = variables.get("ROS_LOCALHOST_ONLY", "")
     if localhost_only == "1":
         return Range.LOCALHOST
@@ -148,10 +148,10 @@ _REPEATED = "<SPDPInterval>3 s</SPDPInterval>"
 _THIS_MACHINE = '<Peer address="127.0.0.1" PruneDelay="inf"/>'
 """The ports of this machine, for as long as the process lives.
 
-A node of Fast DDS on LOCALHOST announces itself on loopback alone, and what arrives there Cyclone leaves aside unless
+A node of Fast DDS on LOCALHOST announces itself on loopback alone, and Cyclone ignores packets on loopback unless
 loopback is one of its interfaces. So we announce ourselves to it, and it answers at our address on the network. Were
-loopback an interface, its address would be told to the network, and Fast DDS on other machines sends all data to their
-own loopback as well.
+loopback an interface, its address would be announced to the network, and Fast DDS on other machines sends all data to
+their own loopback as well.
 """
 
 _RELIABLE_TRAFFIC = (
@@ -192,7 +192,7 @@ def _machine(interfaces: str, addresses: list[str], most: int, *, multicast: boo
 
 
 def _stays_here(reach: Range, peers: list[str]) -> bool:
-    """Whether nobody outside of this machine is looked for."""
+    """Whether only processes of this machine are looked for."""
     return reach is Range.MACHINE or (reach is Range.LOCALHOST and not peers)
 
 
@@ -215,7 +215,7 @@ def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
             f"<Tag>ros_discovery_off_{os.getpid()}</Tag></Discovery></Domain></CycloneDDS>"
         )
         return [off]
-    from xml.sax.saxutils import quoteattr  # with it come the modules of urllib, which the usual case does without
+    from xml.sax.saxutils import quoteattr  # it imports the modules of urllib, which the usual case does not need
 
     local = reach is Range.LOCALHOST
     listed = _THIS_MACHINE + "".join(f"<Peer address={quoteattr(peer)} PruneDelay='inf'/>" for peer in peers)
@@ -233,8 +233,8 @@ _REQUEST = "256s"
 def own_addresses() -> list[str]:
     """The IPv4 addresses of the interfaces beside loopback, in the system's order.
 
-    Cyclone prints an error when it is told of an interface that is not there, and a process that was told to stay on
-    the machine may be met at the address of its interface alone.
+    Cyclone prints an error when it is given an interface that does not exist, and a process that is set to stay on
+    the machine may be reachable at the address of its interface alone.
     """
     addresses = _by_interface() if sys.platform.startswith("linux") else _by_name()
     return [address for address in dict.fromkeys(addresses) if address and not address.startswith("127.")]

@@ -1,6 +1,6 @@
 """The types of a domain's topics, as Cyclone has them: each made once, kept as long as the domain, known by its name.
 
-Two habits of Cyclone's Python package stand in the way of using its types as they come.
+Two properties of Cyclone's Python package prevent the use of its types as they are.
 
 It cannot make a topic without a description of the type, and the description is sent with each endpoint. That does
 harm: Cyclone compares descriptions where both sides have one, and cannot read those that Fast DDS 3 sends of types with
@@ -72,7 +72,7 @@ class TopicTypes:
             self._dds.ddsi_sertype_free(self._made.popitem()[1])
 
     def _new(self, participant: int, described_type: Any, what: str) -> int:
-        """The address of a type: that of a topic of the package's, which nobody uses and which goes with `participant`.
+        """The address of a type: that of an unused topic of the package's, which is deleted with `participant`.
 
         Were it deleted at once, Cyclone would forget the description again, while it reads those of other types
         without a lock (``ddsi_topic_descriptor_from_type``): graphs of a process that joined at the same time crashed.

@@ -63,22 +63,22 @@ def keep_large_blocks() -> None:
 
     By itself glibc gives them back to the system, which has to clear each page again: half of the processor's time that
     a publisher of images takes. It keeps blocks up to the size of the largest that was ever mapped and freed
-    (``M_MMAP_THRESHOLD`` in mallopt(3)), so here is one, of pages that nobody touches.
+    (``M_MMAP_THRESHOLD`` in mallopt(3)), so this function frees one, of pages that are never touched.
     """
     bytes(_LARGEST_KEPT)
 
 
 def type_facts(message_class: Any) -> bytes:
-    """The type's hash as ROS 2 from Iron on tells it in USER_DATA; older ones do not look."""
+    """The type's hash as ROS 2 from Iron on announces it in USER_DATA; older ones ignore it."""
     return f"typehash={type_hash(message_class)};".encode()
 
 
 class MirroredTopic(ABC):
-    """A reader or a writer that stands for an endpoint of the process.
+    """A reader or a writer that represents an endpoint of the process.
 
     Args:
         endpoint: the subscription or publisher.
-        domain: where the others are.
+        domain: the domain.
         mismatch: called when an endpoint of another process has incompatible QoS.
     """
 
@@ -104,7 +104,7 @@ class MirroredTopic(ABC):
     def _describe_type(self, endpoint: Endpoint, domain: Domain) -> tuple[Any, bytes]:
         """The type's description for Cyclone, and its hash for others in USER_DATA.
 
-        A type that no package here has goes by its name, where the bytes alone are wanted.
+        A type that is in no package here has only a name, which suffices where bytes are carried.
         """
         told = f"typehash={endpoint.type_hash};".encode() if endpoint.type_hash else b""
         try:
@@ -167,11 +167,11 @@ class OutgoingTopic(MirroredTopic):
         return False
 
     def review(self) -> bool:
-        """Write what waited for acknowledgements that have come; whether something still waits."""
+        """Write the samples that waited for acknowledgements that have come; whether a sample still waits."""
         return self._backlog is not None and self._backlog.review()
 
     def acknowledged(self, nanoseconds: int) -> bool:
-        """Wait until all reliable readers have acknowledged what was published; whether they have."""
+        """Wait until all reliable readers have acknowledged all published samples; whether they have."""
         until = time.monotonic_ns() + nanoseconds
         while self.review():
             if not self._are_acknowledged(max(0, until - time.monotonic_ns())):
@@ -200,7 +200,7 @@ class OutgoingTopic(MirroredTopic):
         return self.acknowledged(0x7FFF_FFFF_FFFF_FFFF if seconds is None else int(seconds * 1e9))
 
     def _are_acknowledged(self, nanoseconds: int) -> bool:
-        """Whether all readers acknowledge, within the time given, what was published and does not wait."""
+        """Whether all readers acknowledge, within the time given, all published samples that do not wait."""
         until = time.monotonic_ns() + nanoseconds
         if self._paced is not None and not self._paced.wait_until_written(nanoseconds / 1e9):
             return False
@@ -208,7 +208,7 @@ class OutgoingTopic(MirroredTopic):
         return code >= 0
 
     def _make_paced(self, domain: Domain) -> PacedWriter | None:
-        """What samples go through where newer ones replace older ones, and packets are those that the pacer makes."""
+        """The writer for samples that newer ones replace, where packets are those that the pacer makes; else None."""
         profile = self._publisher.qos_profile
         if profile.history is HistoryPolicy.KEEP_ALL or domain.fragment_size != FRAGMENT:
             return None
@@ -221,7 +221,7 @@ class OutgoingTopic(MirroredTopic):
         return [endpoint.guid for endpoint in known if endpoint is not None and endpoint.is_fast]
 
     def _make_backlog(self, fragment_size: int) -> Backlog | None:
-        """What large samples wait in, where the writer replaces samples that readers may ask for again."""
+        """The queue for large samples, where the writer replaces samples that readers may ask for again; else None."""
         profile = self._publisher.qos_profile
         is_reliable = profile.reliability is not ReliabilityPolicy.BEST_EFFORT
         if not is_reliable or profile.history is HistoryPolicy.KEEP_ALL:
@@ -283,7 +283,7 @@ class OutgoingTopic(MirroredTopic):
         """Log that messages are not sent: once, and again after some time."""
         if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._told.is_due("failed"):
             return
-        reason = "who listens outside does not keep up" if code == TIMEOUT else describe(code)
+        reason = "the subscribers outside do not keep up" if code == TIMEOUT else describe(code)
         self._publisher.node.logger.warning(
             f"A message of topic '{self._publisher.name}' was not sent out of this process: {reason}"
         )
@@ -340,7 +340,7 @@ class IncomingTopic(MirroredTopic):
                     gid = self._gid_of(publisher)
                 try:
                     receive(data, MessageInfo(info.source_timestamp, received, gid, True))
-                except Exception as error:  # noqa: BLE001 - what else was taken from Cyclone is not to be lost with it
+                except Exception as error:  # noqa: BLE001 - the other samples taken from Cyclone must not be lost
                     self._subscription.report(error)
         return len(samples) == AT_ONCE
 
@@ -382,7 +382,7 @@ class IncomingTopic(MirroredTopic):
 
 
 class _Told:
-    """Remembers what has been logged."""
+    """Remembers logged messages."""
 
     _AGAIN_AFTER = 30.0
 
@@ -397,7 +397,7 @@ class _Told:
         return is_new
 
     def is_due(self, what: str) -> bool:
-        """Whether it is time to log something, for the first time or again."""
+        """Whether it is time to log a message, for the first time or again."""
         now = time.monotonic()
         is_due = now - self._said.get(what, -self._AGAIN_AFTER) >= self._AGAIN_AFTER
         if is_due:

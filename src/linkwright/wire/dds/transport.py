@@ -24,7 +24,7 @@ class DdsTransport(BackgroundTransport):
 
     Args:
         settings: the domain and how to join it.
-        logger: for what there is to tell.
+        logger: logs problems.
         only_looks: see `BackgroundTransport`.
         must_join: see `BackgroundTransport`.
     """
@@ -54,8 +54,8 @@ class DdsTransport(BackgroundTransport):
     def _knows_everybody(self) -> bool:
         """Whether all processes that can take part are known, so that there is nothing to wait for.
 
-        That can be told of Linkwright's processes on this machine, and only where nobody else is looked for. Of several
-        participants of this process it cannot be told.
+        That is known only of Linkwright's processes on this machine, and only where no others are looked for. It is not
+        known where this process has several participants.
         """
         if self._settings.range is not Range.MACHINE:
             return False

@@ -1,4 +1,4 @@
-"""Descriptions of ROS types for Cyclone, which checks samples against them and tells other tools about them.
+"""Descriptions of ROS types for Cyclone, which checks samples against them and announces them to other tools.
 
 Cyclone compares types structurally when both sides describe theirs, so they are described member by member, as
 rmw_cyclonedds_cpp does where it does (final, keyless; ``byte`` and ``char`` are unsigned octets; an empty message has
@@ -40,7 +40,7 @@ class WireTypes:
     def discovery(self) -> Any:
         """The description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``: its name, and nothing of its contents.
 
-        Those differ with the distribution (`discovery_info`), and Cyclone would reject what does not fit.
+        Those differ with the distribution (`discovery_info`), and Cyclone would reject data that do not fit.
         """
         return self._named(DISCOVERY_TYPE)
 
@@ -66,7 +66,7 @@ class WireTypes:
             for field in structure.wire_fields:
                 members[field.name] = self._member(field.type)
         except UndescribableError:
-            return {}  # goes by its name alone with what does not describe itself either, such as real ROS 2 nodes
+            return {}  # the name alone identifies it to nodes that do not describe it either, such as real ROS 2 nodes
         return members
 
     def _member(self, field: FieldType) -> Any:

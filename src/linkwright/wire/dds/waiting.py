@@ -1,4 +1,4 @@
-"""Threads that wait for Cyclone and call what was attached."""
+"""Threads that wait for Cyclone and call the attached handlers."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from linkwright.wire.dds.cyclone import INFINITY, checked, load
 from linkwright.wire.living_threads import guarded
 
 Handler = Callable[[], bool]
-"""Does what there is to do; True when there is more, so that others get their turn first."""
+"""Does pending work; True when there is more, so that others get their turn first."""
 
 _AT_ONCE = 64
 
 
 class WaitingThread(threading.Thread):
-    """Calls handlers when the entities they were attached for have something.
+    """Calls handlers when the entities they were attached for have work.
 
     Args:
         name: of the thread.
         owner: the participant.
-        report: called with the error when a callback fails; the thread goes on.
-        idle: called after the handlers, and whenever `wake` was called; gives the seconds after which it wants to be
-            called again, or None.
+        report: called with the error when a callback fails; the thread continues.
+        idle: called after the handlers, and whenever `wake` was called; gives the seconds after which it must be called
+            again, or None.
     """
 
     def __init__(

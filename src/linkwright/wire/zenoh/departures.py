@@ -1,12 +1,12 @@
 """Tells publishers that were lost (killed, crashed, out of reach) from those that left in order.
 
-A token goes when its owner withdraws it, and when its session ends, however that ends. Linkwright's sessions have a
-token of their own, and say that they leave before it goes: what they had is lost when it goes without that. Others
-withdraw the endpoints of a node before the node itself; at the end of a session that was killed all its tokens go at
-once, in no order. So an endpoint is lost whose node went before it.
+A token disappears when its owner withdraws it, and when its session ends for any reason. Linkwright's sessions have a
+token of their own, and announce that they leave before it disappears: without the announcement their endpoints are
+lost. Other sessions withdraw the endpoints of a node before the node itself; at the end of a session that was killed
+all its tokens disappear at once, in no order. So an endpoint is lost if its node disappears before it.
 
-A client of a router asks for a session's other tokens once it knows of a publisher there (`Interests.follow`). Of a
-session that ends before the router has answered, milliseconds later, nothing tells how: it counts as one that left.
+A client of a router asks for a session's other tokens once it knows of a publisher there (`Interests.follow`). A
+session that ends before the router has answered, milliseconds later, leaves no evidence: it counts as one that left.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from linkwright.wire.zenoh.remote import RemoteGraph
 
 GRACE = 0.4
-"""Seconds after a publisher is gone within which the rest of its session is heard of."""
+"""Seconds after a publisher is gone within which the rest of its session's tokens are heard of."""
 
 
 @dataclass(slots=True)
@@ -43,10 +43,10 @@ class _Gone:
 
 
 class Departures:
-    """Judges how publishers went; everything but `watch` happens in the thread of discovery.
+    """Judges how publishers left; everything except `watch` happens in the thread of discovery.
 
     Args:
-        remote: what there is outside.
+        remote: the graph outside.
         now: the steady clock, in seconds.
     """
 
@@ -67,7 +67,7 @@ class Departures:
 
     @property
     def is_watched(self) -> bool:
-        """Whether somebody is told of publishers that are lost."""
+        """Whether a callback is registered for publishers that are lost."""
         return bool(self._watchers)
 
     @property

@@ -1,7 +1,7 @@
-"""Makes and withdraws what mirrors the endpoints of this process in a Zenoh session.
+"""Makes and withdraws the mirrors of this process's endpoints in a Zenoh session.
 
-One thread does it, in the order of asking, and keeps the tables of what is outside. What comes in is handed on by the
-threads of Zenoh, as bytes.
+One thread does it, in the order of asking, and keeps the tables of the graph outside. Zenoh's threads hand on incoming
+traffic, as bytes.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class Engine(AnyEngine):
     Args:
         settings: the domain and how to join it.
         remote: the tables to fill.
-        departures: judges how publishers outside went.
-        work: what there is to do; others append to it and `wake`.
-        logger: for what there is to tell.
+        departures: judges how publishers outside left.
+        work: the queue of requests; others append to it and `wake`.
+        logger: logs problems.
         patience: opens the session.
 
     Raises:
@@ -101,7 +101,7 @@ class Engine(AnyEngine):
         return bool(info.peers_zid() or info.routers_zid())
 
     def close(self) -> None:
-        """End. Others are told that our nodes leave, unless the process ends because of an error."""
+        """End. The departure of our nodes is announced, unless the process ends because of an error."""
         self._ended.set()
         self._wake.set()
         if self._thread.ident is not None and self._thread is not threading.current_thread():
@@ -118,7 +118,7 @@ class Engine(AnyEngine):
         close_session(self._session)
 
     def abandon(self) -> None:
-        """Send nothing more, and keep all that is Zenoh's for ever: in a forked process its end would wait for ever."""
+        """Send nothing more, and keep all objects of Zenoh for ever: in a forked process their end would never come."""
         import ctypes
 
         self._ended.set()
@@ -185,13 +185,13 @@ class Engine(AnyEngine):
         self._announce(client, OutsideServer(client, token, self._session, self._matches_changed))
 
     def open_presence(self, presence: Any) -> None:
-        """Show an endpoint that takes no part: its token is all there is of it."""
+        """Show an endpoint that takes no part: only its token is declared."""
         token = self._token_of(presence, presence.kind)
         presence.gid = token.gid
         self._tokens[presence] = self._session.liveliness().declare_token(token.key)
 
     def close_endpoint(self, endpoint: Any) -> None:
-        """Stop mirroring an endpoint; its token goes first, so that nobody counts on it any more."""
+        """Stop mirroring an endpoint; its token goes first, so that no process counts on it any more."""
         token = self._tokens.pop(endpoint, None)
         if token is not None:
             token.undeclare()
@@ -240,7 +240,7 @@ class Engine(AnyEngine):
         try:
             return type_hash(endpoint.type_name)
         except InterfaceNotFoundError:
-            if kind in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT) and endpoint.raw:  # the bytes alone are wanted
+            if kind in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT) and endpoint.raw:  # only the bytes are needed
                 return tokens.NO_HASH
             raise
 
@@ -248,7 +248,7 @@ class Engine(AnyEngine):
         """Discover the whole graph from now on.
 
         Args:
-            seconds: after which who is there now has said so at the latest.
+            seconds: the time after which every process has announced itself at the latest.
             told: called then, from any thread.
         """
         self._interests.ask_all(seconds, told)
@@ -302,7 +302,7 @@ class Engine(AnyEngine):
             self._remote.announce()
 
     def _note(self, *, came: bool, key: str) -> bool:
-        """Note a token; whether that changes what is outside."""
+        """Note a token; whether that changes the graph outside."""
         if key.startswith(OURS):
             self._note_session(came=came, key=key)
             return False
@@ -323,7 +323,7 @@ class Engine(AnyEngine):
             self._departures.session_came(session)
         elif what == "here":
             self._departures.session_ended(session)
-            self._follows = False  # nothing more is to be heard of it
+            self._follows = False  # no more tokens are to be heard of
         elif came:
             self._departures.session_leaves(session)
 
@@ -333,7 +333,7 @@ class Engine(AnyEngine):
             mirrored.review(self._remote.count(kind, mirrored.token.data_key))
 
     def _look_for_router(self) -> None:
-        """Wait for a router, where ZENOH_ROUTER_CHECK_ATTEMPTS asks for that; then go on without one."""
+        """Wait for a router, where ZENOH_ROUTER_CHECK_ATTEMPTS asks for that; then continue without one."""
         attempts = self._settings.attempts
         for attempt in itertools.count():
             if self._ended.is_set() or (attempts is not None and attempt >= attempts):
@@ -348,7 +348,7 @@ class Engine(AnyEngine):
             )
 
     def _say_farewell(self) -> None:
-        """Withdraw endpoints, then nodes, having said that this session leaves."""
+        """Announce that this session leaves, and withdraw endpoints, then nodes."""
         left = self._session.liveliness().declare_token(self._own_token("left"))
         for token in self._tokens.values():
             token.undeclare()
@@ -367,4 +367,4 @@ _OPPOSITE = {
     EndpointKind.SUBSCRIPTION: EndpointKind.PUBLISHER,
     EndpointKind.CLIENT: EndpointKind.SERVICE,
 }
-"""What each kind of endpoint counts outside."""
+"""The kind of endpoint outside that each kind counts."""

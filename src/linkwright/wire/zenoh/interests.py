@@ -1,8 +1,8 @@
-"""Which tokens a session hears of.
+"""The tokens that a session hears of.
 
-Each one has been told of all by the router once it asks for all: in a hall of robots that is the square of their
-number. So a client of a router, as robots are, asks only for what the nodes and endpoints of its own have to do with,
-until somebody asks for the graph (`docs/decisions/0076-tokens-on-demand.md`).
+The router sends every token to each session that asks for all: in a hall of robots that is the square of their number.
+So a client of a router, as robots are, asks only for the tokens that its own nodes and endpoints need, until the graph
+is queried (`docs/decisions/0076-tokens-on-demand.md`).
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ OURS = "@linkwright"
 
 
 class Interests:
-    """What a session hears of; used by one thread, after `__init__`.
+    """The tokens that a session subscribes to; used by one thread, after `__init__`.
 
     Args:
         session: the session.
         domain_id: the ROS domain.
-        hear: called with each token that comes or goes, from threads of Zenoh.
+        hear: called with each token that appears or goes, from threads of Zenoh.
     """
 
     def __init__(self, session: zenoh.Session, domain_id: int, hear: Callable[[zenoh.Sample], None]) -> None:
@@ -48,7 +48,7 @@ class Interests:
             self._declare(key)
 
     def remove(self, key: str) -> bool:
-        """Undo `add`; whether nobody hears of these tokens any more."""
+        """Undo `add`; whether these tokens are not asked for any more."""
         self._counts[key] -= 1
         if self._counts[key]:
             return False
@@ -59,11 +59,11 @@ class Interests:
         return not self.in_all
 
     def follow(self, publishing: AbstractSet[str], there: AbstractSet[str]) -> None:
-        """Hear of all tokens of other sessions, by which they show how they leave, until nothing of them is there.
+        """Hear of all tokens of other sessions, which show how the sessions leave, until none of theirs is left.
 
         Args:
             publishing: the sessions whose publishers are known; not asked for once all tokens are heard of.
-            there: those that are there, by their own token or any other.
+            there: the live sessions, known by their own token or any other.
         """
         for session in self._followed - there:
             for key in self._keys_of(session):
@@ -88,10 +88,10 @@ class Interests:
             declared.undeclare()
 
     def ask_all(self, seconds: float, told: Callable[[], None]) -> None:
-        """Ask which tokens of the domain are there now; before `add_all`, after which Zenoh answers of what it has.
+        """Ask for the live tokens of the domain; before `add_all`, after which Zenoh answers from its own memory.
 
         Args:
-            seconds: how long at most.
+            seconds: the longest wait.
             told: called from a thread of Zenoh when all have answered, or the time is over.
         """
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def is_installed() -> bool:
-    """Whether the packages are there."""
+    """Whether the packages are installed."""
     return find_spec("zenoh") is not None and find_spec("xxhash") is not None
 
 

@@ -1,4 +1,4 @@
-"""Opening a session that waits for its router or peers, which the log tells and which can be interrupted."""
+"""Opening a session that waits for its router or peers, with a log of the reasons and a way to interrupt it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _AGAIN = 1.0
 """Seconds after which the addresses are called again."""
 
 _SAID_AFTER = 1.0
-"""Seconds after which it is said what is waited for."""
+"""Seconds after which the log names the reason of a wait."""
 
 _SAID_AGAIN_AFTER = 10.0
 
@@ -26,11 +26,11 @@ _SAID_AGAIN_AFTER = 10.0
 class Patience:
     """Opens sessions for as long as their configuration says, or until it is given up.
 
-    Zenoh waits by itself, too, but cannot be interrupted then, and says nothing.
+    Zenoh waits by itself, too, but cannot be interrupted then, and reports nothing.
 
     Args:
-        logger: for what is waited for.
-        given_up: set when nobody wants the session any more.
+        logger: logs the reason of a wait.
+        given_up: set when the session is not needed any more.
     """
 
     def __init__(self, logger: Logger, given_up: threading.Event) -> None:
@@ -43,7 +43,7 @@ class Patience:
         """A session.
 
         Raises:
-            LinkwrightError: DDS112, it cannot be opened, or nobody was reached in time, or before it was given up.
+            LinkwrightError: DDS112, it cannot be opened, no process was reached in time, or it was given up before.
         """
         seconds = _waits(config)
         if seconds == 0:
@@ -72,12 +72,12 @@ class Patience:
 
 
 class Telling:
-    """Says in a thread what stands in the way of the addresses that a session connects to.
+    """Reports from a thread the obstacles to the addresses that a session connects to.
 
     Args:
         config: the session's.
-        say: called from a thread with what stands in the way.
-        linked: whether there is nothing to be said for now.
+        say: called from a thread with the obstacles.
+        linked: whether there is nothing to report for now.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class Telling:
         self._thread.start()
 
     def end(self) -> None:
-        """Say no more; it takes a moment where an address is just being called."""
+        """Report no more; it takes a moment where an address is just being called."""
         self._over.set()
 
     def _run(self) -> None:
@@ -103,7 +103,9 @@ class Telling:
             if self._linked():
                 pause = _SAID_AFTER
                 continue
-            reasons = joined(obstacles(self._config), "; ") or f"{', '.join(asked_for(self._config))} takes nobody in"
+            reasons = (
+                joined(obstacles(self._config), "; ") or f"{', '.join(asked_for(self._config))} accepts no session"
+            )
             if not self._over.is_set() and not self._linked():
                 self._say(reasons)
             pause = _SAID_AGAIN_AFTER
@@ -118,7 +120,7 @@ def _try(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
 
 
 def _waits(config: zenoh.Config) -> float:
-    """Seconds for which a configuration has a session wait until it is connected, before it is there."""
+    """Seconds for which a configuration lets the opening of a session wait until it is connected."""
     is_client = of_mode(config, "mode", default="peer") == "client"
     if not asked_for(config) or not of_mode(config, "connect/exit_on_failure", default=is_client):
         return 0.0

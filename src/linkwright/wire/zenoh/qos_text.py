@@ -1,7 +1,7 @@
 """Quality of service as one chunk of a liveliness token.
 
 ``<reliability>:<durability>:<history>,<depth>:<deadline>:<lifespan>:<liveliness>,<lease>`` with times as seconds and
-nanoseconds; what is rmw_zenoh_cpp's default is left empty.
+nanoseconds; defaults of rmw_zenoh_cpp are left empty.
 """
 
 from __future__ import annotations

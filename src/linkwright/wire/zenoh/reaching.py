@@ -1,6 +1,6 @@
-"""Why a connection to an address fails, of which Zenoh itself gives no reason.
+"""The reasons why a connection to an address fails, which Zenoh itself does not give.
 
-The address is called as Zenoh calls it, as far as sockets and TLS go.
+The address is called as Zenoh calls it, as far as sockets and TLS are concerned.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def asked_for(config: zenoh.Config) -> list[str]:
 
 
 def of_mode(config: zenoh.Config, key: str, *, default: Any) -> Any:
-    """A setting that may be another one in each mode, such as ``{client: 0, peer: -1}``."""
+    """A setting that may differ by mode, such as ``{client: 0, peer: -1}``."""
     value = json.loads(config.get_json(key))
     if isinstance(value, dict):
         value = value.get(json.loads(config.get_json("mode")) or "peer")
@@ -46,7 +46,7 @@ def obstacles(config: zenoh.Config) -> list[Phrase]:
     tls = json.loads(config.get_json("transport/link/tls")) or {}
     found = [found for each in asked_for(config) if (found := obstacle(each, tls))]
     if not found and json.loads(config.get_json("id")) is not None:
-        found.append(phrase("who listens there may have the same 'id': leave 'id' out of the configuration"))
+        found.append(phrase("the process there may have the same 'id': leave 'id' out of the configuration"))
     return found
 
 
@@ -73,7 +73,7 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
     except socket.gaierror as error:
         return phrase("the name of {address} is not known here: {reason}", address=address, reason=_said(error))
     except ConnectionRefusedError:
-        return phrase("nobody listens at {address}: start a router there, or correct the port", address=address)
+        return phrase("nothing listens at {address}: start a router there, or correct the port", address=address)
     except TimeoutError:
         return phrase(
             "{address} does not answer: its machine is off or out of reach, or a firewall lets nothing through",
@@ -84,7 +84,7 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
 
 
 def _silence(address: str, called: socket.socket) -> Phrase:
-    """Whether who listens hangs up on a first message of Zenoh's, as one does that speaks TLS or something else."""
+    """Whether the listener hangs up on a first message of Zenoh's, as one does that speaks TLS or another protocol."""
     called.settimeout(_PATIENCE / 4)
     try:
         called.sendall(b"\x04\0\x01\x08\0\0")
@@ -95,7 +95,7 @@ def _silence(address: str, called: socket.socket) -> Phrase:
         answer = b""
     is_tls = answer[:1] == b"\x15"
     if is_tls:
-        return phrase("who listens at {address} speaks TLS: write tls/ in place of tcp/", address=address)
+        return phrase("the process at {address} speaks TLS: write tls/ in place of tcp/", address=address)
     return Phrase("")
 
 
@@ -116,7 +116,7 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
         if authority:
             context.load_verify_locations(authority)
     except ssl.SSLError:
-        return phrase("'{path}' holds no certificate of an authority in PEM", path=authority)
+        return phrase("'{path}' does not contain a certificate of an authority in PEM", path=authority)
     try:
         if certificate and key and tls.get("enable_mtls"):
             context.load_cert_chain(certificate, key)
@@ -130,7 +130,7 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
         with context.wrap_socket(called, server_hostname=host) as secured:
             is_agreed = True
             secured.settimeout(_PATIENCE / 2)
-            secured.recv(1)  # with TLS 1.3 who is refused hears of it after the handshake
+            secured.recv(1)  # with TLS 1.3 a refused client learns of the refusal after the handshake
     except TimeoutError:
         return Phrase("") if is_agreed else _no_tls(address)
     except ssl.SSLCertVerificationError as error:
@@ -166,7 +166,7 @@ def _refused(address: str, certificate: str, reason: str) -> Phrase:
 
 
 def _no_tls(address: str) -> Phrase:
-    return phrase("who listens at {address} does not speak TLS: write tcp/ in place of tls/", address=address)
+    return phrase("the process at {address} does not speak TLS: write tcp/ in place of tls/", address=address)
 
 
 def _unreadable(path: str) -> Phrase:

@@ -17,7 +17,7 @@ _GONE_FOR = 0.5
 
 
 class RemoteGraph(Outside):
-    """The nodes and endpoints of other sessions; see `Outside` for who writes and reads it."""
+    """The nodes and endpoints of other sessions; `Outside` names the threads that write and read it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -39,10 +39,10 @@ class RemoteGraph(Outside):
         return True
 
     def has_just_gone(self, key: str) -> bool:
-        """Whether news that a token is there is older than that it has gone, as far as can be told.
+        """Whether the news of a live token is older than the news of its end, as far as that is known.
 
-        A session that asks anew for what it knows already is told of that in a task of its own, which the news of the
-        token's end may overtake. A token that comes back with a broken link takes longer.
+        Zenoh answers a session that asks again for tokens that it knows already in a task of its own, which the news of
+        the token's end may overtake. A token that comes back with a broken link takes longer.
         """
         return key in self._gone and time.monotonic() - self._gone[key] < _GONE_FOR
 
@@ -63,7 +63,7 @@ class RemoteGraph(Outside):
         return token
 
     def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:
-        """Remove what nothing is heard of any more: the endpoints of a kind at a key."""
+        """Remove the endpoints of a kind at a key that is not heard of any more."""
         with self._lock:
             gone = [key for key, each in self._tokens.items() if (each.kind, each.data_key) == (kind, data_key)]
             for key in gone:
@@ -71,7 +71,7 @@ class RemoteGraph(Outside):
             self._counts.pop((kind, data_key), None)
 
     def forget_nodes(self, full_name: str) -> None:
-        """Remove the nodes of a name, of which nothing is heard any more."""
+        """Remove the nodes of a name that is not heard of any more."""
         with self._lock:
             for key in [key for key, each in self._tokens.items() if each.kind is None]:
                 if self._tokens[key].node.full_name == full_name:

@@ -36,7 +36,7 @@ class OutsideServer:
         client: the client.
         token: its token.
         session: the session.
-        changed: called, from any thread, when a server came or went.
+        changed: called, from any thread, when a server appears or leaves.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class OutsideServer:
             hand_response_on(sample.payload.to_bytes(), self._client, answer)
 
     def _end(self, number: int) -> None:
-        """Say once that a request has come to its end without a reply: its future stays open, as rclpy's does."""
+        """Log once that a request has ended without a reply: its future stays open, as rclpy's does."""
         if self._answers.pop(number, None) is not None and not self._told and not self._client.destroyed:
             self._told = True
             self._client.node.logger.warning(
@@ -128,13 +128,13 @@ class IncomingService:
             token.data_key, handler, complete=True, allowed_origin=zenoh.Locality.REMOTE
         )
         self._open: WeakSet[_Question] = WeakSet()
-        """What waits for its reply. What nobody will answer any more, because the queue was full or the callback has
-        failed, is not held: its client learns of it."""
+        """The requests that wait for a reply. A request that will get none, because the queue was full or the callback
+        has failed, is not held: its client learns of it."""
         self._closed = False
         self._lock = Lock()
 
     def close(self) -> None:
-        """Answer other processes no more; who still waits learns that there will be no reply."""
+        """Answer other processes no more; waiting clients learn that no reply will come."""
         self._queryable.undeclare()
         with self._lock:
             self._closed = True  # a request may be on its way here in a thread of Zenoh
@@ -174,7 +174,7 @@ class _Question:
 
     Args:
         query: Zenoh's; the client waits until it is dropped.
-        about: what came with it.
+        about: the attachment of the query.
     """
 
     def __init__(self, query: zenoh.Query, about: attachment.Attachment) -> None:
@@ -188,5 +188,5 @@ class _Question:
         self._query.drop()
 
     def drop(self) -> None:
-        """Tell the client that there will be no reply."""
+        """Notify the client that no reply will come."""
         self._query.drop()

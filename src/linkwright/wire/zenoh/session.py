@@ -60,7 +60,7 @@ def refusal(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
 
 
 def could_not_connect(error: zenoh.ZError) -> bool:
-    """Whether a session cannot be opened because nobody is reached that it connects to."""
+    """Whether a session cannot be opened because none of its addresses is reached."""
     return _NOT_CONNECTED in str(error)
 
 
@@ -126,17 +126,18 @@ def _reason(error: Exception) -> str:
 def _advice(reason: str) -> Phrase:
     if _NOT_CONNECTED in reason:
         return phrase(
-            "nobody answers at the address of 'connect/endpoints': start a router there first; with TLS, see that the"
-            " certificates are of one authority"
+            "no router answers at the address of 'connect/endpoints': start one there first; with TLS, check "
+            "that one authority signed the certificates"
         )
     if _TAKEN in reason:
         return phrase(
-            "only one process can listen at an address of 'listen/endpoints': give the others port 0, which is any free"
-            " one, or leave it out"
+            "only one process can listen at an address of 'listen/endpoints': give the others port 0 for any "
+            "free port, or leave it out"
         )
     if _TLS_FILES in reason:
         return phrase(
-            "see the files of 'listen_certificate' and 'listen_private_key' below 'transport/link/tls': they have to be"
-            " readable and belong together, and are looked for in the folder where the command runs"
+            "check the files of 'listen_certificate' and 'listen_private_key' below 'transport/link/tls': they "
+            "must be readable and belong together, and relative paths start at the folder where the command "
+            "runs"
         )
     return phrase("an address to listen at may be in use by another program, or not be one of this machine")

@@ -64,8 +64,8 @@ class Settings:
         domain_id: the ROS domain.
         file: of the configuration, in place of our own; empty for none.
         own: our own configuration.
-        overrides: what is set last, on top of either.
-        attempts: how many times to look for a router, a second apart, before going on; None for as long as it takes.
+        overrides: entries that are set last, on top of either.
+        attempts: how many times to look for a router, a second apart, before continuing; None for no limit.
         hashes: whether types have a hash on the wire; in Humble they have none.
     """
 
@@ -167,7 +167,7 @@ def _attempts(variables: Mapping[str, str]) -> int | None:
             Diagnostic(
                 "DDS111",
                 phrase("'{text}' in {variable} is not a number", text=text, variable=ATTEMPTS),
-                hint=phrase("write how many times to look for a router; 0 for as long as it takes, -1 for not at all"),
+                hint=phrase("write the number of attempts to find a router; 0 for no limit, -1 for no attempt"),
             )
         ) from None
     if number == 0:

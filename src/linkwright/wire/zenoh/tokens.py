@@ -1,6 +1,6 @@
 """Keys of data, and the liveliness tokens by which nodes and endpoints are known, as rmw_zenoh_cpp writes them.
 
-What goes over a topic or service has the key ``<domain>/<name>/<type>/<hash>``. A token is
+The data of a topic or service has the key ``<domain>/<name>/<type>/<hash>``. A token is
 ``@ros2_lv/<domain>/<session>/<node's id>/<id>/<kind>/<enclave>/<namespace>/<node>``, for an endpoint followed by
 ``<name>/<type>/<hash>/<QoS>``; a slash inside of one of its chunks becomes ``%``.
 """
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 ROOT = "@ros2_lv"
 NO_HASH = "TypeHashNotSupported"
-"""What Humble has in the place of a hash."""
+"""The placeholder for a hash in Humble."""
 
 KINDS = {
     "MP": EndpointKind.PUBLISHER,
@@ -78,7 +78,7 @@ class Token:
 
     @cached_property
     def data_key(self) -> str:
-        """The key of what goes over the endpoint's topic or service."""
+        """The key of the data of the endpoint's topic or service."""
         return data_key(self.domain_id, self.name, self.type_name, self.type_hash)
 
     @cached_property
@@ -94,7 +94,7 @@ class Token:
         return self.session, self.node_id
 
     def described(self) -> EndpointInfo | None:
-        """In ROS's terms; None for nodes, and for what is not ROS's."""
+        """In ROS's terms; None for nodes, and for endpoints outside of ROS."""
         type_name = ros_type(self.type_name)
         if self.kind is None or type_name is None:
             return None
@@ -107,7 +107,7 @@ class Token:
 
 
 def data_key(domain_id: int, name: str, type_name: str, type_hash: str) -> str:
-    """The key of what goes over a topic or service."""
+    """The key of the data of a topic or service."""
     return f"{domain_id}/{name.strip('/')}/{type_name}/{type_hash}"
 
 

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.subscription import Subscription
 
 _HEARTBEAT = 0.5
-"""Seconds after which a reliable publisher that keeps messages tells the number of its last one."""
+"""Seconds after which a reliable publisher that keeps messages announces the number of its last one."""
 
 _MOST_KEPT = 1_000_000
-"""What a publisher keeps for late joiners that is to keep everything."""
+"""The history for late joiners of a publisher that is to keep everything."""
 
 
 class OutgoingTopic:
@@ -72,7 +72,7 @@ class OutgoingTopic:
         self._send: Callable[[Any], None] | None = self._sender()
 
     def review(self, count: int) -> None:
-        """Send while somebody listens, or may come late.
+        """Send while a subscriber listens, or one may join late.
 
         Args:
             count: how many subscriptions outside are known.
@@ -116,7 +116,7 @@ class IncomingTopic:
         subscription: the subscription.
         token: its token.
         session: the session.
-        key: what to listen to; the token's own key, or an expression that includes it.
+        key: the key to listen to; the token's own key, or an expression that includes it.
         own: the gids of this session's publishers, which reach it inside the process.
     """
 
@@ -148,7 +148,7 @@ class IncomingTopic:
     def review(self, count: int) -> None:
         """Note how many publishers outside are known."""
         self._subscription.set_outside_count(count)
-        self._subscription.set_outside_liveliness(count, 0)  # nothing tells of one that is there but not alive
+        self._subscription.set_outside_liveliness(count, 0)  # Zenoh does not report publishers that are not alive
 
     def close(self) -> None:
         """Withdraw it."""
@@ -178,13 +178,13 @@ class IncomingTopic:
         if not self._told:
             self._told = True
             self._subscription.node.logger.warning(
-                f"Dropped a message of topic '{self._subscription.name}': it does not say who sent it and when, as "
+                f"Dropped a message of topic '{self._subscription.name}': it does not name its sender and time, as "
                 "those of ROS 2 do over Zenoh"
             )
 
 
 def _sent(_seconds: float | None) -> bool:
-    """Nothing is acknowledged over Zenoh, whose links are reliable: what was given to it is on its way."""
+    """Nothing is acknowledged over Zenoh, whose links are reliable: a message given to it is on its way."""
     return True
 
 

@@ -21,13 +21,13 @@ SETTLED_AFTER = 0.4
 """Seconds without news after which discovery counts as complete, where another session is linked to this one."""
 
 _ANSWERED_WITHIN = 2.0
-"""Seconds within which the router says what there is; who asks for the first time waits for that."""
+"""Seconds within which the router answers with the live tokens; the first query waits for that."""
 
 _QUIET = 0.1
-"""Seconds without news after which the answer counts as whole."""
+"""Seconds without news after which the answer counts as complete."""
 
 _ALONE_AFTER = 1.4
-"""The same where none is. Who is there is asked at once and again after a second."""
+"""The same where there is no router. Other sessions are asked at once and again after a second."""
 
 
 class ZenohTransport(BackgroundTransport):
@@ -35,7 +35,7 @@ class ZenohTransport(BackgroundTransport):
 
     Args:
         settings: the domain and how to join it.
-        logger: for what there is to tell.
+        logger: logs problems.
         only_looks: see `BackgroundTransport`.
         must_join: see `BackgroundTransport`.
     """
@@ -57,7 +57,7 @@ class ZenohTransport(BackgroundTransport):
         )
 
     def look_around(self) -> None:
-        """Find out what there is outside: a client of a router is told only what its own endpoints need until then."""
+        """Discover the graph outside: until then a client of a router hears only what its own endpoints need."""
         engine = self._zenoh_engine
         waits = engine is not None and self._decided.is_set() and not engine.runs_this
         with self._looking:
@@ -68,7 +68,7 @@ class ZenohTransport(BackgroundTransport):
             return
         told = Event()
         self._do(lambda engine: cast("ZenohEngine", engine).look_around(_ANSWERED_WITHIN, told.set))
-        if waits:  # else what there is comes as news
+        if waits:  # otherwise the graph outside arrives as news
             self._wait_until_told(told)
             self._do(self._note_news)
             self._looked.wait(_ANSWERED_WITHIN)
@@ -80,7 +80,7 @@ class ZenohTransport(BackgroundTransport):
         return self._patience is not None and self._patience.waits
 
     def _wait_until_told(self, told: Event) -> None:
-        """Wait for the answer, and until nothing more comes, which now and then it does."""
+        """Wait for the answer, and until no more of it comes, which now and then it does."""
         told.wait(_ANSWERED_WITHIN)
         begin = time.monotonic()
         while time.monotonic() < min(begin + _ANSWERED_WITHIN, max(self._remote.changed_at, begin) + _QUIET):

@@ -25,9 +25,9 @@ class ParticipantData:
     Attributes:
         prefix: of its GUIDs.
         vendor: which implementation it is of.
-        lease: seconds without a word from it after which it counts as gone.
-        discovery: where its discovery listens.
-        user: where its readers and writers listen that say nothing else.
+        lease: seconds of silence after which it counts as gone.
+        discovery: the addresses of its discovery.
+        user: the addresses of its readers and writers that announce none of their own.
     """
 
     prefix: bytes
@@ -79,13 +79,13 @@ def describe_endpoint(guid: bytes, topic: str, type_name: str, facts: bytes) -> 
 
 
 def key_of(guid: bytes, *, gone: bool = False) -> bytes:
-    """Inline QoS that names an endpoint, or says that it is gone."""
+    """Inline QoS that names an endpoint, or announces that it is gone."""
     status = ((v.PID_STATUS_INFO, bytes((0, 0, 0, _GONE))),) if gone else ()
     return v.parameters((v.PID_KEY_HASH, guid), *status)
 
 
 def gone_guid(sample: Data) -> bytes:
-    """The GUID of the participant or endpoint that a sample says is gone; empty when it does not say that.
+    """The GUID of the participant or endpoint whose end a sample announces; empty when it does not announce one.
 
     Raises:
         MalformedError: the sample names none.
@@ -98,7 +98,7 @@ def gone_guid(sample: Data) -> bytes:
         found, _ = _list(sample.payload)
         key = found.get(v.PID_ENDPOINT_GUID) or found.get(v.PID_PARTICIPANT_GUID)
     if not key or len(key[0]) < 16:
-        raise MalformedError("the end of nobody")
+        raise MalformedError("the end of an unnamed entity")
     return key[0][:16]
 
 
@@ -106,7 +106,7 @@ def read_participant(payload: bytes) -> ParticipantData:
     """A participant out of its SPDP sample.
 
     Raises:
-        MalformedError: it says not enough.
+        MalformedError: a required value is missing.
     """
     found, order = _list(payload)
     lease = _USUAL_LEASE
@@ -126,7 +126,7 @@ def read_endpoint(payload: bytes, *, is_writer: bool) -> EndpointData:
     """A reader or writer out of its SEDP sample.
 
     Raises:
-        MalformedError: it says not enough.
+        MalformedError: a required value is missing.
     """
     found, order = _list(payload)
     reliable = is_writer

@@ -37,9 +37,9 @@ class Data:
         writer: the GUID of its writer.
         number: its sequence number.
         order: ``<`` or ``>``, of `inline`.
-        inline: what stands beside the sample.
+        inline: the inline QoS.
         payload: serialized; None where there is nothing but a key.
-        time: when it was written, in ns since the epoch; 0 where that is not said.
+        time: when it was written, in ns since the epoch; 0 where that is not known.
         first: for fragments, the number of the first, from 1; 0 of a whole sample.
         fragment: for fragments, the size of each.
         size: for fragments, that of the sample.
@@ -218,13 +218,13 @@ def message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
 
 
 def info_timestamp(nanoseconds: int) -> bytes:
-    """INFO_TS: when what follows was written."""
+    """INFO_TS: when the following submessages were written."""
     seconds, rest = divmod(nanoseconds, 1_000_000_000)
     return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (rest << 32) // 1_000_000_000))
 
 
 def data(reader: bytes, writer: bytes, number: int, payload: bytes | None, inline: bytes = b"") -> bytes:
-    """DATA, or without a payload one that tells of the key in `inline` alone."""
+    """DATA; without a payload, DATA with the key in `inline` alone."""
     flags = (_INLINE if inline else 0) | (0 if payload is None else _HAS_DATA)
     head = struct.pack("<HH", 0, 16) + reader + writer + _pack(number)
     return _submessage(_DATA, flags, head + inline + (payload or b""))
@@ -276,7 +276,7 @@ def gap(reader: bytes, writer: bytes, start: int, base: int) -> bytes:
 def acknack(
     reader: bytes, writer: bytes, base: int, missing: Collection[int], count: int, *, final: bool = True
 ) -> bytes:
-    """ACKNACK: everything before `base` is here, and what is missing from there on, at most 256 further."""
+    """ACKNACK: every sample before `base` has arrived; the missing ones from there on, at most 256 further."""
     size = max(missing) - base + 1 if missing else 0
     words = [0] * ((size + 31) // 32)
     for number in missing:

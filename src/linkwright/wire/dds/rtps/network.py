@@ -17,12 +17,12 @@ _LOOPBACK = "127.0.0.1"
 _GROUP = "239.255.0.1"
 _FIRST_UNICAST, _PORTS_EACH = 10, 2
 _FEW = 33
-"""How many processes of a machine are looked for where ROS's variables say how far to look, as Cyclone does then."""
+"""How many processes of a machine are looked for where ROS's variables set the range, as Cyclone does then."""
 
 _BUFFER = 4 << 20
 _LARGEST = 0x1_0000
 _BURST = 120_000
-"""Bytes after which sending pauses, so that they fit the buffer of who receives; the usual one holds 212 992."""
+"""Bytes after which sending pauses, so that they fit the buffer of the receiver; the usual one holds 212 992."""
 
 _PAUSE = 0.001
 _NETWORK_TTL = 32
@@ -82,11 +82,11 @@ class Network:
         settings: the domain and how far to look.
 
     Raises:
-        OSError: there is none to be had.
+        OSError: no socket is available.
     """
 
     SOCKET = socket.socket
-    """What it is made of."""
+    """The class of its socket."""
 
     def __init__(self, settings: Settings) -> None:
         self._places = places_of(settings)
@@ -107,19 +107,19 @@ class Network:
         self.addresses: list[Address] = [(host, port) for host in self._places.own]
 
     def receive(self) -> tuple[bytes, Address] | None:
-        """A message that came, and from where; None when there is no more."""
+        """The next message, and its sender; None when there is no more."""
         while True:
             try:
                 packet, source = self.socket.recvfrom(_LARGEST)
             except BlockingIOError:
                 return None
             except OSError:
-                continue  # somebody whom we sent to does not listen any more (Windows says so here)
+                continue  # a process that we sent to does not listen any more (Windows reports that here)
             if not self._places.only_here or self.is_here(source[0]):
                 return packet, source
 
     def send(self, packets: Iterable[Packet]) -> None:
-        """Send messages; what the system does not take is lost, and asked for again by who lacks it."""
+        """Send messages; packets that the system does not take are lost, and readers that lack them ask again."""
         burst = 0
         for packet, addresses in packets:
             burst += len(packet)
@@ -131,7 +131,7 @@ class Network:
                     self.socket.sendto(packet, address)
 
     def send_everywhere(self, packet: bytes) -> None:
-        """Send a message to wherever somebody may be."""
+        """Send a message to every address where a participant may be."""
         self.send([(packet, tuple((host, port) for host in self._places.hosts for port in self._places.ports))])
         for interface in self._places.interfaces:
             with suppress(OSError):
@@ -139,7 +139,7 @@ class Network:
                 self.socket.sendto(packet, self._group)
 
     def best_of(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
-        """Where to send to reach who listens at some addresses: one of this machine is enough."""
+        """The address to send to for a receiver at some addresses: one of this machine is enough."""
         known = tuple(dict.fromkeys(addresses))
         here = sorted((each for each in known if self.is_here(each[0])), key=lambda each: each[0] != _LOOPBACK)
         if here:

@@ -1,7 +1,7 @@
 """A participant of RTPS that has readers and writers of services for the participants of Fast DDS.
 
-It speaks with these alone: others learn that it exists, because nobody knows where a participant of Fast DDS listens
-before it has answered, and are told of no endpoints.
+It speaks with these alone: other participants learn that it exists, because the address of a participant of Fast DDS is
+not known before it has answered, but no endpoints are announced to them.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ from linkwright.wire.living_threads import guarded
 _LEASE = 10.0
 _ANNOUNCED_EVERY = 3.0
 _LOOKED_FOR_AFTER = (0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.0)
-"""Seconds between the messages with which somebody is looked for; the last goes on for ever."""
+"""Seconds between the messages that look for a participant; the last interval repeats for ever."""
 
 _EARLY = 64
 """How many samples of writers are kept that came before these were known."""
@@ -94,7 +94,7 @@ class RtpsParticipant:
 
     Args:
         settings: the domain and how far to look.
-        name: what it calls itself.
+        name: its own name.
         changed: called in its thread, or in that of the caller, when a reader or writer was matched, heard or left.
 
     Raises:
@@ -104,7 +104,7 @@ class RtpsParticipant:
     def __init__(self, settings: Settings, name: str, changed: Callable[[], None]) -> None:
         self.prefix = v.VENDOR + os.urandom(v.PREFIX - len(v.VENDOR))
         self.changed = changed
-        """Called when something may have changed; see the argument."""
+        """Called when the graph may have changed; see the argument."""
         self._network = Network(settings)
         self._self = describe_participant(self.prefix, name, _LEASE, self._network.addresses)
         self._lock = threading.RLock()
@@ -175,7 +175,7 @@ class RtpsParticipant:
         self._network.send(packets)
 
     def write(self, local: LocalWriter, payload: bytes, *, inline: bytes = b"", to: bytes = b"") -> int:
-        """Write a sample; `Writer.write` tells of the arguments.
+        """Write a sample; see `Writer.write` for the arguments.
 
         Returns:
             Its sequence number.
@@ -193,7 +193,7 @@ class RtpsParticipant:
             return list(local.writer.readers)
 
     def matched_writers(self, local: LocalReader) -> dict[bytes, float | None]:
-        """The GUIDs of the writers that a reader of ours hears, and when each was heard first, by the steady clock."""
+        """The GUIDs of the writers that a reader of ours hears, and when each was first heard, by the steady clock."""
         with self._lock:
             return {guid: local.reader.heard_at(guid) for guid in local.reader.writers}
 
@@ -208,12 +208,12 @@ class RtpsParticipant:
         return next((address for address in addresses if self._network.is_here(address[0])), None)
 
     def last_of(self, local: LocalReader, writer: bytes) -> int:
-        """The highest sequence number that a writer has told a reader of ours."""
+        """The highest sequence number that a writer has announced to a reader of ours."""
         with self._lock:
             return local.reader.last_of(writer)
 
     def expect(self, prefixes: Iterable[bytes]) -> None:
-        """Look for participants of which others have told, until each has answered."""
+        """Look for participants that others have announced, until each has answered."""
         with self._lock:
             expected = frozenset(prefixes)
             if expected - self._expected:
@@ -222,7 +222,7 @@ class RtpsParticipant:
         self._ring()
 
     def close(self) -> None:
-        """Say that it leaves, and end."""
+        """Announce the departure, and end."""
         self._closing = True
         self._ring()
         if threading.current_thread() is not self._thread:
@@ -262,7 +262,7 @@ class RtpsParticipant:
         self._network.send(packets)
 
     def _due(self) -> float:
-        """Do what is due; seconds until the next."""
+        """Do the work that is due; seconds until the next."""
         now = time.monotonic()
         packets: list[Packet] = []
         with self._lock:
@@ -402,7 +402,7 @@ class RtpsParticipant:
         for listening in self._readers.values():
             listening.reader.unmatch(guid)
 
-    # --- what comes ---------------------------------------------------------------------------------------------------
+    # --- incoming packets ---------------------------------------------------------------------------------------------
 
     def _understand(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> list[Packet]:
         """The packets that answer one; callbacks to be made without the lock are appended to `calls`."""
@@ -488,7 +488,7 @@ class RtpsParticipant:
                     calls.append(partial(local.on_data, whole))
 
     def _replay(self, calls: list[Callable[[], None]]) -> None:
-        """Hand on what came before its writer was known."""
+        """Hand on the samples that came before their writer was known."""
         early, self._early = self._early, []
         for said in early:
             peer = self._peers.get(said.source)

@@ -1,7 +1,7 @@
 """Readers of RTPS that ask for what they lack (DDSI-RTPS 2.5, 8.4.12).
 
-A sample is handed on when it is there, though an earlier one may still be on its way: what asks and answers needs no
-order, and nobody waits for the call of another.
+A sample is handed on when it arrives, though an earlier one may still be on its way: requests and responses need no
+order, and no call waits for another one.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from linkwright.wire.dds.rtps.values import PREFIX, Address
 from linkwright.wire.dds.rtps.writer import Packet
 
 _FIRST_REPEAT, _LAST_REPEAT = 0.05, 2.0
-"""Seconds after which a writer that has said nothing yet is asked, and to which that grows."""
+"""Seconds after which a silent writer is asked for its samples, and the limit to which that interval grows."""
 
 _MOST_MISSING = 256
 _FURTHEST = 100_000
-"""How far ahead of what it waits for a reader takes note of samples."""
+"""How far ahead of the next expected number a reader takes note of samples."""
 
 _LARGEST = 1 << 30
 _MOST_INCOMPLETE = 8
@@ -100,12 +100,12 @@ class Reader:
         return self._writers.keys()
 
     def heard_at(self, writer: bytes) -> float | None:
-        """When the first heartbeat of a writer came, by the steady clock: it has matched this reader."""
+        """When the first heartbeat of a writer arrived, by the steady clock: it has matched this reader."""
         known = self._writers.get(writer)
         return known.heard_at if known is not None else None
 
     def last_of(self, writer: bytes) -> int:
-        """The highest number that a writer has told of."""
+        """The highest number that a writer has announced."""
         known = self._writers.get(writer)
         return known.last if known is not None else 0
 
@@ -118,7 +118,7 @@ class Reader:
         return [self._ask(writer, known, time.monotonic())]
 
     def unmatch(self, writer: bytes) -> None:
-        """Hear a writer no more."""
+        """Unmatch a writer."""
         self._writers.pop(writer, None)
 
     def on_data(self, said: Data) -> Data | None:
@@ -136,7 +136,7 @@ class Reader:
         return whole
 
     def on_heartbeat(self, said: Heartbeat) -> list[Packet]:
-        """The acknowledgement, with what is missing."""
+        """The acknowledgement, with the numbers of missing samples."""
         known = self._writers.get(said.writer)
         if known is None:
             return []

@@ -44,7 +44,7 @@ PID_KEY_HASH = 0x0070
 PID_STATUS_INFO = 0x0071
 PID_RELATED_SAMPLE_IDENTITY = 0x0083
 PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS = 0x800F
-"""By which Fast DDS before 2.14 says it."""
+"""The identity as Fast DDS before 2.14 writes it."""
 
 _PID_SENTINEL = 0x0001
 
@@ -130,7 +130,7 @@ def locator(address: Address) -> bytes:
 
 
 def read_locators(values: list[bytes], order: str) -> list[Address]:
-    """Those of UDPv4; Fast DDS tells of shared memory too."""
+    """The addresses over UDPv4; Fast DDS announces shared memory too."""
     found = []
     for value in values:
         if len(value) >= 24:
@@ -141,13 +141,13 @@ def read_locators(values: list[bytes], order: str) -> list[Address]:
 
 
 def related_identity(guid: bytes, number: int) -> bytes:
-    """Inline QoS that says which sample of which writer (or reader) another sample belongs to, for all Fast DDS."""
+    """Inline QoS with the sample of a writer (or reader) that another sample belongs to, for all Fast DDS."""
     value = guid + _IDENTITY.pack(number >> 32, number & 0xFFFF_FFFF)
     return parameters((PID_RELATED_SAMPLE_IDENTITY, value), (PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS, value))
 
 
 def read_related_identity(inline: Parameters, order: str) -> tuple[bytes, int] | None:
-    """GUID and sequence number out of inline QoS; None where it says nothing about them."""
+    """GUID and sequence number out of inline QoS; None where it has neither."""
     for pid in (PID_RELATED_SAMPLE_IDENTITY, PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS):
         for value in inline.get(pid, ()):
             if len(value) >= 24:

@@ -28,7 +28,7 @@ _MOST_BYTES = 64 << 20
 """How many samples wait for acknowledgement at most, and how many bytes of them; then the oldest is forgotten."""
 
 Packet = tuple[bytes, tuple[Address, ...]]
-"""A message and where it goes."""
+"""A message and its addresses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class Writer:
 
     Args:
         guid: 16 bytes.
-        lasting: whether readers that come later get what was written before.
+        lasting: whether readers that come later get the earlier samples.
     """
 
     def __init__(self, guid: bytes, *, lasting: bool = False) -> None:
@@ -95,15 +95,15 @@ class Writer:
         self._forget_acknowledged()
 
     def write(self, payload: bytes | None, *, inline: bytes = b"", to: bytes = b"") -> list[Packet]:
-        """A new sample.
+        """Write a new sample.
 
         Args:
-            payload: serialized; None for the end of what the key in `inline` names.
-            inline: what stands beside it.
-            to: how the GUIDs of its readers begin; the others are told that it is not for them.
+            payload: serialized; None for the end of the entity whose key is in `inline`.
+            inline: the inline QoS.
+            to: how the GUIDs of its readers begin; the others are notified that it is not for them.
 
         Returns:
-            What is to be sent.
+            The packets to send.
         """
         self._last += 1
         number = self._last
@@ -127,7 +127,7 @@ class Writer:
         return self._last
 
     def on_acknack(self, said: AckNack) -> list[Packet]:
-        """Handle an ACKNACK; returns the packets that repeat what the reader lacks."""
+        """Handle an ACKNACK; returns the packets that repeat the samples that the reader lacks."""
         known = self._readers.get(said.reader)
         if known is None:
             return []
