@@ -307,8 +307,8 @@ def test_actions():
         (get_service, "std_msgs/msg/String", "no service 'std_msgs/msg/String'", "'std_msgs/msg/String' is a message"),
         (get_message, "std_srvs/srv/SetBool", "no message 'std_srvs/srv/SetBool'", "is a service"),
         (get_action, "std_srvs/SetBool", "no action 'std_srvs/SetBool'", "there is 'std_srvs/srv/SetBool'"),
-        (get_interface, "std_msgs.msg.String", "'std_msgs.msg.String' is no name of", "'std_msgs/msg/String'"),
-        (get_interface, "String", "'String' is no name of a message, service or action", "'package/kind/Name'"),
+        (get_interface, "std_msgs.msg.String", "'std_msgs.msg.String' is not the name of", "'std_msgs/msg/String'"),
+        (get_interface, "String", "'String' is not the name of a message, service or action", "'package/kind/Name'"),
         (get_message, "std_msgs/msg/String_Request", "no message 'std_msgs/msg/String_Request'", "String"),
     ],
 )

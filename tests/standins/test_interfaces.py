@@ -112,7 +112,7 @@ def test_a_package_of_the_workspace_is_imported_without_a_build(workspace, below
     """
     first, second = run(program, workspace / below).splitlines()
     assert first == "my_msgs.msg.Count(n=5)"
-    assert second.endswith("Wrong.msg:1:7: 'X' is no name for a field")
+    assert second.endswith("Wrong.msg:1:7: 'X' is not a valid name for a field")
 
 
 @pytest.mark.parametrize("line", ["from my_msgs.msg import Wrong", "import my_msgs.msg._wrong"])
@@ -125,7 +125,7 @@ def test_a_faulty_file_is_told_in_one_traceback(workspace, line):
     assert done.stderr.count("Traceback") == 1
     last = done.stderr.splitlines()[-1]
     assert last.startswith("ImportError: ")
-    assert last.endswith("Wrong.msg:1:7: 'X' is no name for a field")
+    assert last.endswith("Wrong.msg:1:7: 'X' is not a valid name for a field")
 
 
 def test_what_is_installed_comes_first(tmp_path):

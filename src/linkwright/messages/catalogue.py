@@ -1,4 +1,4 @@
-"""The interfaces that come with Linkwright: what ROS 2 Humble ships, as one text file for each package in ``data/``.
+"""The interfaces that come with Linkwright: those of ROS 2 Humble, as one text file for each package in ``data/``.
 
 A file has the interface files of its package one after the other, each after a line such as ``=== msg/JointState``.
 Comments are our own; types that few programs use have none. It is read when the first of its interfaces is asked for.

@@ -5,8 +5,8 @@ The functions return the value to be kept, or raise the AssertionError that rclp
 arrays and buffers of bytes may be assigned to sequences of numbers and bools, unless a program keeps to what ROS takes
 (`keep_to_ros`).
 
-numpy is imported for fixed arrays of numbers alone, whose fields hold its arrays: to import it takes longer than all
-else that a verb such as ``topic list`` needs. Whoever never imported it has none of its values.
+numpy is imported for fixed arrays of numbers alone, whose fields hold its arrays: to import it takes longer than the
+rest of a verb such as ``topic list``. A program that never imported it has none of its values.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def keep_to_ros(*, as_humble: bool) -> None:
     """Accept, in this process, only what the classes of ROS 2 accept from now on.
 
     Args:
-        as_humble: constructors convert what they are given for fixed arrays, as up to Humble; else they check it.
+        as_humble: constructors convert the values given for fixed arrays, as up to Humble; otherwise they check them.
     """
     global _keeps_to_ros, _fixed_as_humble
     _keeps_to_ros, _fixed_as_humble = True, as_humble
@@ -200,11 +200,11 @@ def is_scalar(value: Any) -> TypeGuard[np.generic]:
 
 
 def ndarray_class() -> type[NDArray[Any]] | None:
-    """``numpy.ndarray``; None as long as nobody has imported numpy."""
+    """``numpy.ndarray``; None as long as numpy is not imported."""
     return getattr(sys.modules.get("numpy"), "ndarray", None)
 
 
-# --- what the checks are made of -----------------------------------------------------------------------------------
+# --- parts of the checks --------------------------------------------------------------------------------------------
 
 
 def _is_collection(value: Any) -> bool:

@@ -19,10 +19,10 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
     """Build the class of a structure.
 
     Args:
-        structure: what it holds.
+        structure: its definition.
         base: its base class.
-        classes: type name -> class, of every structure that fields are made of.
-        module: what it says its module is.
+        classes: type name -> class, of every structure that fields use.
+        module: the name of its module.
     """
     # Names with capitals, which no field has.
     scope: dict[str, Any] = {
@@ -97,7 +97,7 @@ class _FieldCode:
         if self.kind.is_numeric_array:
             made = "made_fixed_array" if self.kind.container is Container.ARRAY else "made_sequence"
             return lines + f"    else: M._{name} = Checks.{made}({name!r}, {argument}, K_{name})\n"
-        if self._is_plain():  # as the setter does, but for the call
+        if self._is_plain():  # as the setter does, except for the call
             lines += f"    elif {self._usual(argument)}: M._{name} = {argument}\n"
         return lines + f"    else: S_{name}(M, {argument})\n"
 
@@ -164,7 +164,7 @@ class _FieldCode:
         return self.kind.container is Container.ONE
 
     def _default(self) -> Any:
-        """The default value of the definition, as the field holds it; None without one."""
+        """The default value of the definition, as the field holds it; None if there is none."""
         value = self.field.default
         if value is None or self._is_plain():
             return value

@@ -43,7 +43,7 @@ def get_message(name: str) -> type[Any]:
         name: ``sensor_msgs/msg/JointState`` or ``sensor_msgs/JointState``.
 
     Raises:
-        InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is no name.
+        InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is not a name.
         DefinitionError: the interface file in the workspace has mistakes.
     """
     return _named(name, Message, "msg")

@@ -28,7 +28,7 @@ class Abridgement(NamedTuple):
     no_str: bool = False
 
     def text(self, text: str) -> str:
-        """What is shown of a text."""
+        """A text as it is shown."""
         return f"<string length: <{len(text)}>>" if self.no_str else self.cut(text)
 
     def cut(self, text: str) -> str:
@@ -45,8 +45,8 @@ def to_dict(
     Args:
         message: any message.
         truncate_length: longer texts and lists are cut to this length and end with ``...``.
-        no_arr: say only of what kind and how long arrays and sequences are.
-        no_str: say only how long texts are.
+        no_arr: whether only the type and length of arrays and sequences are given.
+        no_str: whether only the length of texts is given.
 
     Bytes are texts of the characters of the same numbers (rosidl_runtime_py).
     """

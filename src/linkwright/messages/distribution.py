@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 
 ASSUMED = "LINKWRIGHT_ROS_DISTRO_ASSUMED"
-"""Set where nobody named a distribution, and ``ROS_DISTRO`` is there only because launch files ask for it."""
+"""Set where the user named no distribution, and ``ROS_DISTRO`` is set only because launch files ask for it."""
 
 BEFORE_IRON = ("dashing", "eloquent", "foxy", "galactic", "humble")
 """The distributions up to Humble."""
@@ -24,10 +24,10 @@ def is_before_kilted(variables: Mapping[str, str] = os.environ) -> bool:
 
 
 def checks_fields_as_ros(variables: Mapping[str, str] = os.environ) -> bool:
-    """Whether values of fields are checked as ROS 2 does, without what we accept beyond it.
+    """Whether values of fields are checked as ROS 2 does, which accepts fewer than we do.
 
-    So it is for who names Humble or an earlier distribution, and where ``ROS_PYTHON_CHECK_FIELDS`` asks for it, as in
-    the newer ones, which else take what comes.
+    They are where the user names Humble or an earlier distribution, and where ``ROS_PYTHON_CHECK_FIELDS`` asks for it,
+    as in the newer ones, which otherwise accept any value.
     """
     if variables.get("ROS_PYTHON_CHECK_FIELDS") == "1":
         return True

@@ -14,7 +14,7 @@ class DefinitionError(LinkwrightError):
 
 
 class MessageDataError(LinkwrightError, ValueError):
-    """Bytes are no message of the type, or a message cannot be written as bytes."""
+    """Bytes are not a message of the type, or a message cannot be written as bytes."""
 
 
 class FieldValueError(LinkwrightError, ValueError):

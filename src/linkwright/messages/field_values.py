@@ -26,8 +26,8 @@ def set_fields(
 ) -> list[StampSetter]:
     """Set fields of a message from plain data: numbers, bools, texts, lists, and mappings for nested messages.
 
-    A nested message is made anew: its fields that are not given have their defaults. A whole number may stand for a
-    float, a number for a text, and text for a number if it is one.
+    A nested message is replaced: its fields that are not given have their defaults. An integer is accepted for a float,
+    a number for a text, and text for a number if it is one.
 
     Args:
         message: the message to change.
@@ -39,7 +39,7 @@ def set_fields(
         Functions that set the fields given as ``auto`` or ``now``, each to the Time it is called with.
 
     Raises:
-        UnknownFieldError: MSG301, a field that there is not; also an AttributeError.
+        UnknownFieldError: MSG301, a field that does not exist; also an AttributeError.
         WrongValueError: MSG302, a value that the field cannot have; also a TypeError.
     """
     setter = _Setter(expand_header=expand_header_auto, expand_time=expand_time_now)
@@ -51,7 +51,7 @@ def set_fields(
 
 
 class _Unfit(Exception):  # noqa: N818 - becomes a diagnostic
-    """A value does not fit a field; says what it should have been."""
+    """A value does not fit a field; the argument describes a value that would."""
 
 
 class _Setter:
@@ -193,7 +193,7 @@ def _as_byte(value: Any) -> bytes:
 
 def _described(kind: FieldType) -> Phrase:
     words = {
-        int: phrase("a whole number"),
+        int: phrase("an integer"),
         float: phrase("a number"),
         str: phrase("a text"),
         bool: phrase("true or false"),

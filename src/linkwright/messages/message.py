@@ -29,9 +29,9 @@ class _SlotTypes:
 class Message:
     """A ROS 2 message: an object with the fields of its definition, checked on assignment as rclpy's are.
 
-    The value of field ``x`` lies in the slot ``_x`` as in rosidl_generator_py's classes; the property ``x`` is the way
-    to it. A published message is handed to every subscriber of the process as it is, without a copy: whoever receives
-    one reads it and does not change it.
+    The value of field ``x`` is in the slot ``_x`` as in rosidl_generator_py's classes; the property ``x`` gives access
+    to it. A published message is handed to every subscriber of the process as it is, without a copy: a subscriber reads
+    it and does not change it.
     """
 
     __slots__: tuple[str, ...] = ()
@@ -116,7 +116,7 @@ class ServiceType:
     Request: ClassVar[type[Any]]
     Response: ClassVar[type[Any]]
     Event: ClassVar[type[Any]]
-    """What the topic of its introspection carries."""
+    """The message on the topic of its introspection."""
 
     def __init__(self) -> None:
         """Services are not made into objects.
@@ -128,12 +128,12 @@ class ServiceType:
 
 
 class ActionImplementation:
-    """The services and messages that an action is made of.
+    """The services and messages of an action.
 
     Attributes:
-        SendGoalService: asks to take a goal.
-        GetResultService: answers when a goal has come to its end.
-        FeedbackMessage: feedback, and of which goal.
+        SendGoalService: requests a goal.
+        GetResultService: answers when a goal has ended.
+        FeedbackMessage: feedback, and the id of its goal.
         CancelGoalService: ``action_msgs/srv/CancelGoal``.
         GoalStatusMessage: ``action_msgs/msg/GoalStatusArray``.
     """

@@ -35,7 +35,7 @@ def schema_of(type_name: str) -> str:
 
 
 def _text(type_name: str) -> str:
-    """The text of a message; of what rosidl makes of a service, which no file defines, one with its fields."""
+    """The text of a message; for a request or response, which no file defines, a text with its fields."""
     if "/msg/" in type_name:
         return definition_text(type_name)
     lines = []

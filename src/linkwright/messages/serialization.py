@@ -45,10 +45,10 @@ def serialize(message: Message) -> bytes:
 
 
 def deserialize(data: bytes | bytearray | memoryview, message_class: type[MessageT]) -> MessageT:
-    """The message that bytes are, header included; what stands behind its end is not looked at.
+    """The message in some bytes, header included; bytes behind its end are ignored.
 
     Raises:
-        MessageDataError: MSG201, the bytes are no message of this class.
+        MessageDataError: MSG201, the bytes are not a message of this class.
     """
     if type(data) is not bytes:
         data = bytes(data)
@@ -71,7 +71,7 @@ def _reader_for(data: bytes, message_class: type[Any]) -> Any:
             why = phrase("it begins with {hex} instead of the header of CDR", hex=data[:4].hex(" "))
         raise data_error(
             "MSG201",
-            phrase("this is no message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=why),
+            phrase("this is not a message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=why),
         )
     name = message_class.TYPE_NAME
     reader = _big_readers.get(name)
@@ -88,13 +88,14 @@ def _unreadable(message_class: type[Any], data: bytes, fault: Exception) -> Mess
     else:
         why = phrase("the data, {count} bytes, ends in the middle of the message", count=len(data))
     return data_error(
-        "MSG201", phrase("this is no message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=why)
+        "MSG201",
+        phrase("this is not a message of type '{type_name}': {why}", type_name=message_class.TYPE_NAME, why=why),
     )
 
 
 def _unwritable(message: object, fault: Exception) -> MessageDataError:
     if not isinstance(message, Message):
-        return data_error("MSG202", phrase("'{name}' is no message class", name=type(message).__name__))
+        return data_error("MSG202", phrase("'{name}' is not a message class", name=type(message).__name__))
     return data_error(
         "MSG202",
         phrase(

@@ -141,7 +141,7 @@ class TFMessage(Message):
 
     @property
     def batch(self) -> TransformBatch:
-        """The transforms as arrays. A message made of a batch gives that one, any other makes one of what it holds."""
+        """The transforms as arrays: the batch that the message was made of, or one made of its transforms."""
         if self._batch is not None:
             return self._batch
         if self._received is not None:

@@ -32,7 +32,7 @@ class _Nanoseconds(Message):
 
     @property
     def nanoseconds(self) -> int:
-        """The whole value in nanoseconds."""
+        """The time in nanoseconds."""
         count: int = self.sec * NANOSECONDS_PER_SECOND + self.nanosec
         return count
 

@@ -1,4 +1,4 @@
-"""The message classes that the rooms of Linkwright use by name. What they look like to mypy is in ``wellknown.pyi``."""
+"""The message classes that the rooms of Linkwright use by name. ``wellknown.pyi`` describes them to mypy."""
 
 from __future__ import annotations
 

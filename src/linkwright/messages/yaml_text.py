@@ -1,4 +1,4 @@
-"""Messages as YAML, character for character what PyYAML makes of them and ``ros2 topic echo`` shows.
+"""Messages as YAML, character for character as PyYAML writes them and ``ros2 topic echo`` shows.
 
 PyYAML takes milliseconds for a message of a few hundred numbers, too long to follow /tf. So the lines are written here,
 from a plan for each class; only for texts, whose quoting is an art, PyYAML is asked, and its answers are remembered.
@@ -35,9 +35,9 @@ def to_yaml(
     Args:
         message: any message.
         truncate_length: longer texts and lists are cut to this length and end with ``...``.
-        no_arr: say only of what kind and how long arrays and sequences are.
-        no_str: say only how long texts are.
-        flow_style: lists in brackets; what lies in them in braces.
+        no_arr: whether only the type and length of arrays and sequences are given.
+        no_str: whether only the length of texts is given.
+        flow_style: whether lists are in brackets, and their messages in braces.
     """
     if flow_style:
         return _dumped(to_dict(message, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str), flow_style=True)
@@ -149,7 +149,7 @@ def _float_text(value: float) -> str:
     if not isfinite(value):
         return ".nan" if value != value else ".inf" if value > 0 else "-.inf"
     text = repr(float(value))
-    # YAML 1.1 wants a point in a number with an exponent.
+    # YAML 1.1 requires a point in a number with an exponent.
     return text.replace("e", ".0e", 1) if "e" in text and "." not in text else text
 
 

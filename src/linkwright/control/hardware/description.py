@@ -199,7 +199,7 @@ class _Reader:
         except ValueError:
             if text.strip() in (*_TRUE, "false", "False"):
                 return float(text.strip() in _TRUE)
-            self._tell("CTL115", phrase("'{text}' is no number", text=text), element, None)
+            self._tell("CTL115", phrase("'{text}' is not a number", text=text), element, None)
             return nan
 
     def _tell(self, code: str, message: Phrase, element: Element, hint: Phrase | None) -> None:

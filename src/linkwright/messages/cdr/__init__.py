@@ -1,1 +1,1 @@
-"""CDR: how the bytes of a structure lie, and the functions that read and write them."""
+"""CDR: the layout of a structure's bytes, and the functions that read and write them."""

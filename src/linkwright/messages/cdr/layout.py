@@ -20,7 +20,7 @@ DEEPEST_LOOP = 5
 
 
 class Place(NamedTuple):
-    """What is known of a position: its remainder `rest` when divided by `modulus` (1, 2, 4 or 8)."""
+    """A position, as far as it is known: its remainder `rest` when divided by `modulus` (1, 2, 4 or 8)."""
 
     modulus: int
     rest: int
@@ -30,7 +30,7 @@ class Place(NamedTuple):
         return Place(self.modulus, (self.rest + size) % self.modulus)
 
     def padding(self, size: int) -> int | None:
-        """Bytes up to the next multiple of a size; None when that cannot be said beforehand."""
+        """Bytes up to the next multiple of a size; None when that is not known beforehand."""
         return (-self.rest) % size if self.modulus >= size else None
 
     def met(self, other: Place) -> Place:

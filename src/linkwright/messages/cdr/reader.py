@@ -47,7 +47,7 @@ def compile_reader(structure: Structure, class_of: ClassOf, order: Order = "<") 
     """Compile the function that makes a message of bytes, header included.
 
     Args:
-        structure: what is read.
+        structure: the structure to read.
         class_of: gives the class of each structure.
         order: ``<`` for little-endian data, ``>`` for big-endian.
     """

@@ -102,12 +102,12 @@ class TransformLayout:
         return not ((words ^ self._words) & self._mask).any()
 
     def poses_in(self, words: NDArray[np.uint64]) -> NDArray[np.float64]:
-        """The poses, shape (n, 7), that stand in a message."""
+        """The poses in a message, shape (n, 7)."""
         poses: NDArray[np.float64] = words.view(np.float64)[self._poses]
         return poses
 
     def stamps_in(self, words: NDArray[np.uint64]) -> NDArray[np.int64]:
-        """The stamps, nanoseconds since the epoch, that stand in a message."""
+        """The stamps in a message, nanoseconds since the epoch."""
         stamps = words.view(np.int32)[self._stamps].astype(np.int64)
         stamps *= _NS
         stamps += words.view(np.uint32)[self._stamps + 1]
@@ -118,7 +118,7 @@ class ReceivedTransforms(NamedTuple):
     """A message that was received, and the layout that it has.
 
     Attributes:
-        layout: where things stand.
+        layout: the positions of the values.
         data: the message, header included.
         words: the message without its header.
     """
@@ -169,6 +169,6 @@ def matching_layout(data: bytes) -> ReceivedTransforms | None:
 
 
 def _mask(text: str) -> bytes:
-    """Ones for the length and the text, zeros for the padding, which may be anything."""
+    """Ones for the length and the text, zeros for the padding, which may have any value."""
     length = 4 + len(text.encode()) + 1
     return b"\xff" * length + bytes(-length % 4)

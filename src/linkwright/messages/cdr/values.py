@@ -23,7 +23,7 @@ _LAST_UNIT = 0xFFFF
 
 
 class DataFaultError(ValueError):
-    """Bytes that are no message; says why. Never leaves this room."""
+    """Bytes are not a message; the text is the reason. Never leaves this room."""
 
 
 class Texts(dict[str, bytes]):
@@ -151,7 +151,9 @@ def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, i
         units.byteswap()
     most = max(units, default=0)
     if most > _LAST_UNIT:
-        raise DataFaultError(phrase("a wide text in it has a unit of {value}, and UTF-16 none above 65535", value=most))
+        raise DataFaultError(
+            phrase("a wide text in it has a unit of {value}; units of UTF-16 are 65535 at most", value=most)
+        )
     return str(array("H", units).tobytes(), "utf-16-le"), end
 
 
@@ -168,7 +170,7 @@ def truncated() -> None:
 
 def unterminated() -> None:
     """The error for a text without NUL at its end."""
-    raise DataFaultError(phrase("a text in it does not end where its length says"))
+    raise DataFaultError(phrase("the end of a text in it does not match its length"))
 
 
 def bad_bool(value: int) -> None:

@@ -1,7 +1,7 @@
 """Compiles, for a structure, the function that writes it as CDR.
 
 The function packs runs of fixed fields, through nested structures, with one `struct` call each, takes the pieces of
-texts from a memory of them, lets arrays stand for themselves, and joins everything in the end: nothing is copied twice.
+texts from a memory of them, uses arrays as they are, and joins everything in the end: nothing is copied twice.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _HEADER = 0x100
 
 
 class LengthFaultError(ValueError):
-    """A field that holds more or fewer values than its definition says."""
+    """A field that holds more or fewer values than its definition allows."""
 
 
 def _check_length(name: str, value: Any, size: int) -> None:
@@ -117,9 +117,9 @@ class _WriterCode:
         """Write the fields of a structure.
 
         Args:
-            structure: what is written.
+            structure: the structure to write.
             source: the expression for it.
-            following: the alignment of what comes behind it; 0 when that is not known.
+            following: the alignment of the data behind it; 0 when that is not known.
         """
         fields = structure.wire_fields
         for number, field in enumerate(fields):

@@ -19,13 +19,13 @@ _NEXT = re.compile(r"^={10,}\s*\n(MSG|IDL): *(\S+) *\n?", re.MULTILINE)
 def add_definitions(type_name: str, text: str, origin: str, *, idl: bool = False) -> None:
     """Register the definition of a message, and of those in it, from data.
 
-    Interfaces that come with Linkwright and those of the workspace go before, and of two texts for one name the first.
-    The texts are read when their messages are asked for, and what is wrong with them is told then.
+    Interfaces that come with Linkwright and those of the workspace take precedence, and of two texts for one name the
+    first. The texts are read when their messages are requested, and their mistakes are reported then.
 
     Args:
-        type_name: such as ``my_msgs/msg/Count``; what is no name of a message is passed over.
+        type_name: such as ``my_msgs/msg/Count``; a text that is not a name of a message is ignored.
         text: the definitions.
-        origin: what brought them, for messages about mistakes in them.
+        origin: the source of the texts, for messages about mistakes in them.
         idl: whether the first one is IDL.
     """
     first, *others = _NEXT.split(text)

@@ -66,7 +66,7 @@ def parse_idl(source: SourceText, type_name: str, known: KnownMessages) -> Defin
         known: which messages there are.
 
     Raises:
-        DefinitionError: MSG120 for what is not understood, MSG111, MSG114, MSG118 and MSG119 as for other files.
+        DefinitionError: MSG120 for text that is not understood, MSG111, MSG114, MSG118 and MSG119 as for other files.
     """
     reader = _Reader(source, known)
     reader.definitions(())
@@ -170,7 +170,7 @@ class _Reader:
         if kind.primitive is None or kind.container is not Container.ONE:
             self._fail(
                 "MSG114",
-                phrase("the constant '{name}' is of no primitive type", name=name),
+                phrase("the type of the constant '{name}' is not primitive", name=name),
                 value.start,
                 len(value.text),
             )
@@ -285,7 +285,7 @@ class _Reader:
         if not token.text.isdigit() or int(token.text) == 0:
             self._fail(
                 "MSG119",
-                phrase("'{text}' is no length: it is a whole number above 0", text=token.text),
+                phrase("'{text}' is not a length: write an integer above 0", text=token.text),
                 token.start,
                 len(token.text),
             )
@@ -324,7 +324,7 @@ class _Reader:
         found = quoted(token.text) if token.text else phrase("the end of the file")
         self._fail(
             "MSG120",
-            phrase("{found} stands where {wanted} is expected", found=found, wanted=wanted),
+            phrase("found {found} where {wanted} is expected", found=found, wanted=wanted),
             token.start,
             len(token.text),
         )

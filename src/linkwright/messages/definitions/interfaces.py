@@ -11,7 +11,7 @@ class Primitive(NamedTuple):
     """One primitive type.
 
     Attributes:
-        idl_name: what rosidl calls it, as `get_fields_and_field_types` shows.
+        idl_name: its name in rosidl, as `get_fields_and_field_types` shows.
         python: the type that a value must have.
         code: of `struct` for one value; None for text.
         size: bytes on the wire, which is the alignment too; of text, those of its length.
@@ -32,7 +32,7 @@ class Primitive(NamedTuple):
 
     @property
     def is_integer(self) -> bool:
-        """Whether values are whole numbers; bytes and bools are not counted as such."""
+        """Whether values are integers; bytes and bools are not counted as such."""
         return self.python is int
 
     @property
@@ -82,8 +82,8 @@ class FieldType(NamedTuple):
     """The type of a field.
 
     Attributes:
-        base: of one value: a primitive's name as in ``.msg`` files, or the type name of another structure.
-        string_bound: the most characters a string may have; None without a bound.
+        base: the type of one value: a primitive's name as in ``.msg`` files, or the type name of another structure.
+        string_bound: the most characters a string may have; None if there is no bound.
         container: one value, an array of fixed length, or a sequence.
         size: the length of an array or the most values of a bounded sequence; None otherwise.
     """
@@ -177,7 +177,7 @@ class Structure(NamedTuple):
 
     @property
     def references(self) -> Iterator[str]:
-        """The type names of the structures that fields are made of, each as often as it occurs."""
+        """The type names of the structures that fields use, each as often as it occurs."""
         return (field.type.base for field in self.fields if "/" in field.type.base)
 
 

@@ -67,8 +67,8 @@ class Library:
             kinds: which of ``msg``, ``srv`` and ``action`` are meant; any of them when left out.
 
         Raises:
-            InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is no name.
-            DefinitionError: what is wrong with the file.
+            InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is not a name.
+            DefinitionError: the file has mistakes.
         """
         found = self._definitions.get(name)
         if found is not None and (not kinds or name.split("/")[1] in kinds):
@@ -97,7 +97,7 @@ class Library:
 
         Args:
             type_name: the message's.
-            source: its text; ``.idl`` at the end of its name tells that it is IDL.
+            source: its text; a name that ends with ``.idl`` marks it as IDL.
         """
         with self._lock:
             self._carried.setdefault(type_name, source)
@@ -260,7 +260,7 @@ class Library:
 
 
 class _Trusted:
-    """Stands for the checks of files that come with Linkwright, which a test makes."""
+    """Takes the place of the checks for files that come with Linkwright; a test makes those checks."""
 
     def has_message(self, type_name: str) -> bool:
         """True."""
@@ -281,7 +281,7 @@ def _parsed(source: SourceText, base: str, known: KnownMessages) -> Definition:
 
 
 def not_of_kind(definition: Definition, kind: str) -> Diagnostic:
-    """A hint for an interface that exists but is no message, service or action, as was wanted."""
+    """A hint for an interface that exists but is not of the requested kind (message, service or action)."""
     name = definition.type_name
     is_a = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[type(definition)]
     return Diagnostic(
@@ -300,7 +300,7 @@ def _read(path: Path) -> SourceText:
             Diagnostic(
                 "MSG121",
                 phrase("'{name}' is not text in UTF-8", name=name),
-                hint=phrase("the byte at {start} begins no character", start=error.start),
+                hint=phrase("the byte at {start} does not begin a character", start=error.start),
             )
         ) from None
     except OSError as error:
@@ -316,7 +316,9 @@ def _not_a_name(text: str) -> Diagnostic:
     guess = re.sub(r"\.|::", "/", text)
     if guess != text and split_name(guess):
         hint = phrase("did you mean {names}?", names=quoted(guess))
-    return Diagnostic("MSG102", phrase("'{text}' is no name of a message, service or action", text=text), hint=hint)
+    return Diagnostic(
+        "MSG102", phrase("'{text}' is not the name of a message, service or action", text=text), hint=hint
+    )
 
 
 def _span_of(source: SourceText, reference: str, owner: str) -> Span:

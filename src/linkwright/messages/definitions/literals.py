@@ -17,14 +17,14 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": "\0", "\\": "\\", '"': '"', "'
 
 
 class LiteralFault(Exception):  # noqa: N818 - not an error of the program; the parser turns it into a diagnostic
-    """A text is no value of the type; says why."""
+    """A text is not a value of the type; the argument is the reason."""
 
 
 def read_default(text: str, kind: FieldType) -> object:
     """Parse the default value of a field's line: one value, or a tuple of them.
 
     Raises:
-        LiteralFault: the text is no value of the type.
+        LiteralFault: the text is not a value of the type.
     """
     primitive = kind.primitive
     if primitive is None:
@@ -59,7 +59,7 @@ def read_constant(text: str, type_name: str) -> Value:
     """Parse the value of a constant.
 
     Raises:
-        LiteralFault: the text is no value of the type.
+        LiteralFault: the text is not a value of the type.
     """
     return _read(text, type_name, PRIMITIVES[type_name])
 
@@ -70,7 +70,7 @@ def split_list(text: str) -> list[str]:
     at = 0
     while at < len(text):
         match = _ITEM.match(text, at)
-        if match is None:  # an unclosed quote: what is left is one item
+        if match is None:  # an unclosed quote: the rest is one item
             items.append(text[at:].strip())
             break
         items.append(match.group(1))
@@ -123,14 +123,14 @@ def _read_int(text: str) -> int:
     try:
         return int(text, 0 if digits[:1] == "0" and digits[1:2] in {"x", "X", "o", "O", "b", "B"} else 10)
     except ValueError:
-        raise LiteralFault(phrase("'{text}' is no whole number", text=text)) from None
+        raise LiteralFault(phrase("'{text}' is not an integer", text=text)) from None
 
 
 def _read_float(text: str, type_name: str, primitive: Primitive) -> float:
     try:
         number = float(text)
     except ValueError:
-        raise LiteralFault(phrase("'{text}' is no number", text=text)) from None
+        raise LiteralFault(phrase("'{text}' is not a number", text=text)) from None
     if math.isfinite(number) and abs(number) > primitive.high:
         raise LiteralFault(phrase("{text} is outside of {type_name}'s range", text=text, type_name=type_name))
     return number

@@ -168,7 +168,7 @@ class _Reader:
                 )
                 self._report(
                     "MSG119",
-                    phrase("'{base}' is no string and has no length to bound", base=match["base"]),
+                    phrase("'{base}' is not a string and has no length to bound", base=match["base"]),
                     start,
                     len(match["base"]),
                     hint,
@@ -196,7 +196,7 @@ class _Reader:
                 return self._message(f"{parts[0]}/msg/{parts[1]}", text, start)
             self._report(
                 "MSG111",
-                phrase("'{text}' is no type: another package's is written 'package/Name'", text=text),
+                phrase("'{text}' is not a type: write 'package/Name' for a type of another package", text=text),
                 start,
                 len(text),
             )
@@ -225,7 +225,7 @@ class _Reader:
             return int(text)
         self._report(
             "MSG119",
-            phrase("'{text}' is no length of {what}: it is a whole number above 0", text=text, what=what),
+            phrase("'{text}' is not a length of {what}: write an integer above 0", text=text, what=what),
             at,
             max(len(text), 1),
         )
@@ -241,7 +241,7 @@ class _Reader:
             near = re.sub(r"_+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()).strip("_")
             if is_field_name(near):
                 hint = phrase("field names are lower case with single underscores, such as '{near}'", near=near)
-            self._report("MSG112", phrase("'{name}' is no name for a field", name=name), at, len(name), hint)
+            self._report("MSG112", phrase("'{name}' is not a valid name for a field", name=name), at, len(name), hint)
             return
         if not self._is_new(section, name, at) or kind is None:
             return
@@ -269,7 +269,9 @@ class _Reader:
                     "constants are upper case with single underscores;"
                     " the default value of a field is written without '='"
                 )
-            self._report("MSG113", phrase("'{name}' is no name for a constant", name=name), at, len(name), hint)
+            self._report(
+                "MSG113", phrase("'{name}' is not a valid name for a constant", name=name), at, len(name), hint
+            )
             return
         if not self._is_new(section, name, at) or kind is None:
             return
@@ -321,5 +323,5 @@ def _without_comment(line: str) -> str:
             quote = character
         elif character == "#":
             return line[:at]
-    # An apostrophe that closes nothing ("string name  # the robot's") has hidden nothing: it stood in the comment.
+    # An apostrophe that closes nothing ("string name  # the robot's") has hidden nothing: it was in the comment.
     return line.partition("#")[0] if quote else line
