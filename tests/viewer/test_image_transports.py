@@ -121,8 +121,8 @@ def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
 @pytest.mark.parametrize(
     ("form", "data", "text"),
     [
-        ("jpeg", header() + png(MILLIMETRES), "The format of the depth image is 'jpeg'; read are 16UC1"),
-        ("16UC1; compressedDepth zip", header() + png(MILLIMETRES), "read are 16UC1, mono16 and 32FC1"),
+        ("jpeg", header() + png(MILLIMETRES), "The format of the depth image is 'jpeg'; supported are 16UC1"),
+        ("16UC1; compressedDepth zip", header() + png(MILLIMETRES), "supported are 16UC1, mono16 and 32FC1"),
         ("8UC1; compressedDepth png", header() + png(MILLIMETRES), "The format of the depth image is '8UC1;"),
         ("16UC1; compressedDepth png", header()[:7], "has 7 bytes, no more than its header"),
         ("16UC1; compressedDepth png", header() + b"depths", "neither a PNG nor a JPEG"),
@@ -144,9 +144,9 @@ def test_no_bytes_upset_the_reader_of_rvl_streams(data, pixels):
         (
             "16UC1; compressedDepth rvl",
             header() + sized_rvl(MILLIMETRES, says=(4_000_000_000, 4_000_000_000)),
-            "says that it has 4000000000 x 4000000000 pixels; 1 to 16777216 are unpacked",
+            "gives 4000000000 x 4000000000 pixels; 1 to 16777216 are unpacked",
         ),
-        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(0, 7)), "says that it has 0 x 7"),
+        ("16UC1; compressedDepth rvl", header() + sized_rvl(MILLIMETRES, says=(0, 7)), "gives 0 x 7"),
         (
             "16UC1; compressedDepth rvl",
             header() + sized_rvl(MILLIMETRES)[:-4],
@@ -268,7 +268,7 @@ async def test_an_image_display_shows_depths_as_greys():
         assert contents(display)[0].fields["data"].tolist() == [0, 63, 127]
         publisher.publish(packed("16UC1; compressedDepth rvl", header() + bytes(8)))
         await w.settle()
-        text = "The RVL depth image says that it has 0 x 0 pixels; 1 to 16777216 are unpacked"
+        text = "The header of the RVL depth image gives 0 x 0 pixels; 1 to 16777216 are unpacked"
         assert w.status("Image")["Image"] == ("error", text)
 
 

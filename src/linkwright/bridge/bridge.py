@@ -1,7 +1,7 @@
 """A bridge between two networks: each shows the nodes of the other one, with their topics and services.
 
-Two bridges between the same networks do not carry what the other one carries: nodes that a bridge has somewhere are
-known by their enclave, and what two could carry is carried by the one whose id comes first (decision 0066).
+Two bridges between the same networks do not carry the same traffic: nodes of a bridge are known by their enclave, and
+traffic that both could carry is carried by the bridge whose id comes first (decision 0066).
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ _TOGETHER = 0.02
 """Seconds for which news are collected before they are looked at."""
 
 _SOON = 0.02
-"""Seconds after which something that waits is looked at again."""
+"""Seconds after which waiting work is checked again."""
 
 _SELDOM = 0.25
 """The same when nothing waits."""
 
 _UNSETTLED = 3.0
-"""Seconds after news for which things are looked at as if something waited: who listens is known a moment later."""
+"""Seconds after news for which the bridge checks as if something waited: listeners are known a moment later."""
 
 _OF_THE_BRIDGE = ("wire", "dds", "zenoh", "bridge")
 
@@ -40,13 +40,13 @@ def new_bridge_id() -> str:
 async def run_bridge(
     networks: tuple[Network, Network], names: NameFilter, bridge_id: str, log: LogSink, ready: Callable[[], object]
 ) -> None:
-    """Carry what the names let through between two networks, both ways, until it is cancelled.
+    """Carry the traffic that the names let through between two networks, both ways, until it is cancelled.
 
     Args:
         networks: the networks.
         names: which topics and services are carried.
         bridge_id: its own.
-        log: takes what is logged.
+        log: receives the log.
         ready: called once both networks are joined.
 
     Raises:
@@ -88,7 +88,7 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
             news.clear()
             first.look()
             second.look()
-            # What both sides serve is carried neither way, so that no request goes round in a circle.
+            # A service that both sides serve is carried neither way, so that no request goes round in a circle.
             for direction in directions:
                 direction.withdraw()
             for direction in directions:

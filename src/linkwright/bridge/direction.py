@@ -25,9 +25,9 @@ _SHOWN_WITHIN = 1.0
 """Seconds within which a subscription is shown that hears no publisher there is."""
 
 _QUIET = 25
-"""How many times in a row nothing came or waits of what publishers said that have left, before their mirrors leave.
+"""How many checks in a row must find no message of publishers that have left before their mirrors leave.
 
-Every 20 ms: on a busy machine the thread that takes messages from DDS may stand still for a tenth of a second.
+A check comes every 20 ms: on a busy machine the thread that takes messages from DDS may pause for a tenth of a second.
 """
 
 
@@ -36,7 +36,7 @@ class Early(NamedTuple):
 
     Attributes:
         until: how long it is kept, by the steady clock.
-        tap: where it came from.
+        tap: the tap that received it.
         gid: its publisher's.
         data: the message.
     """
@@ -51,14 +51,14 @@ class Direction:
     """Carries messages, requests and responses from a source network to a target network.
 
     A node at the source has one of its name at the target, with the publishers and the services that it has at home;
-    its subscriptions and clients are only shown there, see `Presence`. The bridge's own node listens at the source, to
-    a topic that somebody at the target hears, and asks its services.
+    its subscriptions and clients are only shown there, see `Presence`. The bridge's own node subscribes at the source
+    to topics that have subscriptions at the target, and calls its services.
 
     Args:
-        source: where what is carried is at home.
-        target: where it is carried to.
-        names: which topics and services are.
-        logger: for what the user is told, once for each thing.
+        source: the network that the traffic comes from.
+        target: the network that it is carried to.
+        names: which topics and services are carried.
+        logger: notifies the user, once for each problem.
     """
 
     def __init__(self, source: Side, target: Side, names: NameFilter, logger: Logger) -> None:
@@ -72,11 +72,11 @@ class Direction:
         self._presences: dict[bytes, Presence] = {}
         self._taps: dict[Stream, Tap] = {}
         self._awaited: set[Stream] = set()
-        """What publishers may come to that somebody at the target hears."""
+        """The streams of publishers that may appear and that a subscription at the target hears."""
         self._early: deque[Early] = deque(maxlen=_MOST_EARLY)
         self._aliases: dict[bytes, bytes] = {}
         self._leaving: dict[bytes, int] = {}
-        """Publishers that have left, and how many times in a row nothing of theirs came or waited."""
+        """Publishers that have left, and how many times in a row no message of theirs arrived or waited."""
         self._wanted_nodes: dict[str, NodeIdentity] = {}
         self._wanted_publishers: dict[bytes, EndpointInfo] = {}
         self._wanted_services: dict[tuple[str, str, str], EndpointInfo] = {}
@@ -117,7 +117,7 @@ class Direction:
     def show(self, back: Direction) -> bool:
         """Show the subscriptions and clients of the source at the target; whether all are shown.
 
-        Publishers there may say something as soon as they see a subscription, and it has to be heard by then.
+        Publishers there may send a message as soon as they see a subscription, and it has to be heard by then.
 
         Args:
             back: the other way, which listens at the target.
@@ -147,7 +147,7 @@ class Direction:
         )
 
     def settle(self) -> bool:
-        """Go on with what had to wait (messages, removals, matching); whether nothing waits any more."""
+        """Continue with work that had to wait (messages, removals, matching); whether nothing waits any more."""
         is_settled = not self._leaving
         self._say_early()
         self._let_go()
@@ -219,7 +219,7 @@ class Direction:
         }
 
     def _is_expected(self, publisher: EndpointInfo) -> bool:
-        """Whether somebody at the target can hear a publisher."""
+        """Whether a subscription at the target can hear a publisher."""
         demanding = self._target.seen.demanded.get(publisher.name, ())
         return any(can_hear(endpoint, publisher, keyed=self._target.needs_hashes) for endpoint in demanding)
 
@@ -232,16 +232,16 @@ class Direction:
             whose = "publisher" if info.kind is EndpointKind.PUBLISHER else "server"
             self._logger.warning(
                 f"'{info.name}' is not carried from {self._source.label} to {self._target.label}: no package here has "
-                f"its type {info.type_name}, and its {whose} at {self._source.label} does not tell the hash of it. Run "
+                f"its type {info.type_name}, and its {whose} at {self._source.label} does not announce its hash. Run "
                 "the bridge where the package is found"
             )
         return False
 
     def _tap(self) -> None:
-        """Listen to what somebody at the target hears.
+        """Subscribe to the streams that have subscriptions at the target.
 
-        What lasts is listened to until its publishers are gone: heard once more, late joiners would get it twice. As
-        long as a topic has no publisher, and while the first is being met, all that might come is listened to.
+        A stream with history is kept until its publishers are gone: subscribed to again, it would reach late joiners
+        twice. As long as a topic has no publisher, and while the first is being matched, every possible stream is kept.
         """
         demanded = self._target.seen.demanded
         wanted = {
@@ -254,7 +254,7 @@ class Direction:
         wanted |= {stream for stream in self._awaited if stream.name not in met}
         for stream in self._taps.keys() - wanted:
             self._taps.pop(stream).close()
-        # Who sees one of several may say something at once: that by which most publishers are heard is made first.
+        # A publisher may send at once when it sees one of several: the one that most publishers match is made first.
         for stream in sorted(wanted - self._taps.keys(), key=lambda each: (each.history, each.reliability)):
             self._taps[stream] = Tap(self._source.own, stream, self._take)
 
@@ -273,7 +273,7 @@ class Direction:
             self._early.append(Early(time.monotonic() + _KNOWN_WITHIN, tap, info.publisher_gid, data))
 
     def _say_early(self) -> None:
-        """Carry the messages that came before their publisher was discovered."""
+        """Carry the messages that arrived before their publisher was discovered."""
         now = time.monotonic()
         for _ in range(len(self._early)):
             early = self._early.popleft()

@@ -1,7 +1,6 @@
 """Which topics and services a bridge carries, by patterns for their names.
 
-A pattern such as ``/robot1`` stands for that name and for all names below it; ``*`` in it stands for anything but a
-slash.
+A pattern such as ``/robot1`` matches that name and all names below it; ``*`` in it matches any text without a slash.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ class NameFilter:
         self._denied = [_compiled(each) for each in denied]
 
     def passes(self, name: str) -> bool:
-        """Whether a topic or service of an absolute name is carried; the parts of an action go by the action's name."""
+        """Whether a topic or service of an absolute name is carried; parts of an action follow the action's name."""
         name = name.partition(_ACTION)[0]
         if any(pattern.match(name) for pattern in self._denied):
             return False
@@ -44,7 +43,7 @@ def _compiled(pattern: str) -> re.Pattern[str]:
             Diagnostic(
                 "CLI453",
                 phrase("'{pattern}' is not a pattern for names of topics and services", pattern=pattern),
-                hint=phrase("write an absolute name, such as /robot1 for all below it, or /*/scan"),
+                hint=phrase("write an absolute name, such as /robot1 for all names below it, or /*/scan"),
             )
         )
     parts = "[^/]*".join(re.escape(part) for part in pattern.rstrip("/").split("*"))

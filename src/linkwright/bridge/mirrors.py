@@ -1,4 +1,4 @@
-"""Mirrors: the publishers, subscriptions and services of a bridge that stand for those of the other network."""
+"""Mirrors: the publishers, subscriptions and services of a bridge that represent those of the other network."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MATCHED_WITHIN = 10.0
 """Seconds within which publishers and subscriptions that know of each other match, on a machine that is very busy."""
 
 _KNOWN_WITHIN = 1.0
-"""Seconds for which what a new publisher says waits though nobody is known who can hear it."""
+"""Seconds for which messages of a new publisher wait though no subscription is known that can hear it."""
 
 _QUEUE = 100
 """Messages that wait for their turn on a topic without history; requests of a service, ten times as many."""
@@ -34,8 +34,8 @@ class Tap:
 
     Args:
         node: the bridge's own in the network that it listens to.
-        stream: what to listen to.
-        take: called with the tap and each message, as bytes, with what is known of it.
+        stream: the stream to listen to.
+        take: called with the tap, each message as bytes, and the message's info.
     """
 
     def __init__(self, node: NodeHandle, stream: Stream, take: Callable[[Tap, bytes, MessageInfo], None]) -> None:
@@ -65,17 +65,17 @@ class Tap:
 
 
 class MirroredPublisher:
-    """Publishes in one network what a publisher publishes in the other one.
+    """Publishes in one network the messages of a publisher in the other one.
 
-    What it is given before somebody listens to it waits: who is there has not met it yet.
+    Messages wait until a subscription matches it: present subscriptions have not met it yet.
 
     Args:
         node: the bridge's node that has the name of the publisher's.
         info: the publisher.
-        stream: what it is part of at home.
+        stream: its stream at home.
 
     Attributes:
-        expects_listeners: whether somebody is known who can hear it.
+        expects_listeners: whether a subscription is known that can hear it.
     """
 
     def __init__(self, node: NodeHandle, info: EndpointInfo, stream: Stream) -> None:
@@ -172,7 +172,7 @@ class MirroredService:
         return self._service is not None
 
     def close(self) -> None:
-        """Remove it; a caller who waits for a response is told by the network that the service has left."""
+        """Remove it; the network notifies a caller that waits for a response that the service has left."""
         if self._service is not None:
             self._service.destroy()
         self._client.destroy()

@@ -69,14 +69,14 @@ class Network:
 
     @property
     def label(self) -> str:
-        """What it is called in messages."""
+        """Its name in messages."""
         return f"{_KINDS[self.kind].label} (domain {self.domain_id})"
 
     async def join(self, bridge_id: str, log: LogSink) -> Side:
         """Join it.
 
         Raises:
-            LinkwrightError: CLI454, its package is not there; DDS101 to DDS112, it cannot be joined.
+            LinkwrightError: CLI454, its package is not installed; DDS101 to DDS112, it cannot be joined.
         """
         kind = _KINDS[self.kind]
         reason = kind.why_not()
@@ -107,7 +107,9 @@ def read_network(text: str) -> Network:
             Diagnostic(
                 "CLI451",
                 phrase("'{text}' is not a network that can be bridged", text=text),
-                hint=phrase("write dds or zenoh, with a domain after a colon where ROS_DOMAIN_ID is not meant: dds:5"),
+                hint=phrase(
+                    "write dds or zenoh, and add a domain after a colon for another one than ROS_DOMAIN_ID: dds:5"
+                ),
             )
         )
     refuse_enforced_security()

@@ -15,8 +15,8 @@ from linkwright.wire.living_threads import guarded
 class Outlet:
     """Publishes messages in order, in a thread of its own.
 
-    A publisher that keeps everything waits for a listener that has stopped, for seconds; all else that a bridge carries
-    goes on meanwhile.
+    A publisher that keeps everything waits for a listener that has stopped, for seconds; the rest of a bridge's traffic
+    continues meanwhile.
 
     Args:
         publish: publishes a message.
@@ -41,7 +41,7 @@ class Outlet:
         return bool(self._queue.unfinished_tasks)
 
     def close(self) -> None:
-        """Publish no more; what waits is lost."""
+        """Publish no more; waiting messages are lost."""
         self._queue.put(None)
 
     def _run(self) -> None:

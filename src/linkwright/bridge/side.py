@@ -15,10 +15,10 @@ from linkwright.wire.background import BackgroundTransport
 
 ENCLAVE = "/linkwright_bridge"
 """Nodes that a bridge has in a network are in the enclave ``/linkwright_bridge/<id of the bridge>``, by which other
-bridges tell them from those that are at home there. Nothing but security asks for a node's enclave."""
+bridges distinguish them from the network's own. Only security uses a node's enclave."""
 
 Provision = tuple[str, EndpointKind, str, str]
-"""Node, kind, name and type of what a node publishes or serves."""
+"""Node, kind, name and type of a publisher or service."""
 
 
 @dataclass
@@ -29,8 +29,8 @@ class Seen:
         nodes: the nodes.
         endpoints: the endpoints whose node is known.
         demanded: the subscriptions, by their topic.
-        served: names of services that somebody serves.
-        carried: what bridges that go before this one carry to here, which this one leaves to them.
+        served: names of services that have a server.
+        carried: the endpoints that bridges with precedence carry to here, which this one leaves to them.
         carried_nodes: full names of the nodes that they have here for those of the other side.
         by_bridges: the gids of publishers of other bridges.
     """
@@ -48,7 +48,7 @@ class Side:
     """A network.
 
     Args:
-        label: what it is called in messages.
+        label: its name in messages.
         graph: the bridge's graph there.
         transport: how it has joined.
         bridge_id: the bridge's own.
@@ -77,7 +77,7 @@ class Side:
             LinkwrightError: DDS102, DDS111, DDS112, it cannot be joined.
         """
         while not await asyncio.to_thread(self._transport.wait_until_ready, seconds) and self._transport.waits:
-            pass  # it says what it waits for
+            pass  # it logs the reason of the wait
         if self._transport.problem is not None:
             raise self._transport.problem
 
@@ -118,7 +118,7 @@ class Side:
 
 
 def provision_of(endpoint: EndpointInfo) -> Provision:
-    """What an endpoint is, whatever its gid."""
+    """The identity of an endpoint, whatever its gid."""
     assert endpoint.node is not None
     return endpoint.node.full_name, endpoint.kind, endpoint.name, endpoint.type_name
 

@@ -19,7 +19,7 @@ KEPT = 1000
 """Messages that are queued where none may be lost: the history for late joiners, and those of a new publisher."""
 
 _UNTOLD_DEPTH = 10
-"""What a publisher keeps that does not tell how much, as one of Fast DDS does not."""
+"""The history of a publisher that does not announce it, as one of Fast DDS does not."""
 
 
 class Stream(NamedTuple):
@@ -28,10 +28,10 @@ class Stream(NamedTuple):
     Attributes:
         name: the topic.
         type_name: its type.
-        type_hash: of the type; empty where it tells no topics apart: who listens hears of all hashes then.
-        reliability: what its publishers offer.
-        durability: what its publishers offer.
-        history: what its publishers offer.
+        type_hash: of the type; empty where it does not separate topics: a subscription hears all hashes then.
+        reliability: the reliability that its publishers offer.
+        durability: the durability that its publishers offer.
+        history: the history that its publishers offer.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Stream(NamedTuple):
 
     @property
     def lasts(self) -> bool:
-        """Whether late joiners get what was published before."""
+        """Whether late joiners get earlier messages."""
         return self.durability is DurabilityPolicy.TRANSIENT_LOCAL
 
 
@@ -52,8 +52,8 @@ def stream_of(publisher: EndpointInfo, *, keyed: bool) -> Stream:
 
     Args:
         publisher: the publisher.
-        keyed: whether topics are told apart by the hash of their type, and quality of service keeps nobody apart, as
-            over Zenoh.
+        keyed: whether the hash of their type separates topics, and quality of service separates no endpoints, as over
+            Zenoh.
     """
     qos = offered(publisher.qos)
     reliability = ReliabilityPolicy.RELIABLE if keyed else qos.reliability
@@ -61,11 +61,11 @@ def stream_of(publisher: EndpointInfo, *, keyed: bool) -> Stream:
 
 
 def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
-    """The streams by which a subscription might be reached: what volatile publishers say. What lasts comes later, too.
+    """The streams of volatile publishers that might reach a subscription. Streams with history are added later.
 
     Args:
         subscription: the subscription.
-        keyed: see `stream_of`; where it is not so, the history is told by hardly anybody.
+        keyed: see `stream_of`; where it is false, few subscriptions announce their history.
     """
     volatile, last = DurabilityPolicy.VOLATILE, HistoryPolicy.KEEP_LAST
     reliable = ReliabilityPolicy.RELIABLE
@@ -78,7 +78,7 @@ def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
 
 
 def can_hear(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool) -> bool:
-    """Whether a subscription will hear what is offered for a publisher of its topic.
+    """Whether a subscription will hear the profile that is offered for a publisher of its topic.
 
     Args:
         subscription: the subscription, in the network that is carried to.
@@ -93,7 +93,7 @@ def can_hear(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool
 
 
 def hash_of(endpoint: EndpointInfo) -> str:
-    """The hash of an endpoint's type, as it tells it or as the package here has it; empty where neither is so."""
+    """The hash of an endpoint's type, as it announces it or as the package here has it; empty where neither does."""
     return endpoint.type_hash or _known_hash(endpoint)
 
 
@@ -112,13 +112,13 @@ def _stream(
     *,
     keyed: bool,
 ) -> Stream:
-    # Whoever listens to a type that is not known here may not tell its hash, and hears its publishers all the same.
+    # An endpoint of a type that is not known here may not announce its hash, and hears its publishers all the same.
     hashed = hash_of(endpoint) if keyed and _known_hash(endpoint) else ""
     return Stream(endpoint.name, endpoint.type_name, hashed, reliability, durability, history)
 
 
 def offered(qos: QoSProfile) -> QoSProfile:
-    """The profile that a publisher offers, with ROS's defaults where discovery does not tell."""
+    """The profile that a publisher offers, with ROS's defaults where discovery does not give it."""
     lasts = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL
     told = qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL)

@@ -1,8 +1,8 @@
 """The transport `compressedDepth`: a header, and the depths as a PNG of 16 bits or packed with RVL.
 
 As compressed_depth_image_transport reads it. The header has an int32 that nothing depends on, and two float32. Depths
-that were float32 are there as whole numbers that grow with nearness: ``depth = first / (number - second)``, and 0 where
-there is none. Before an RVL stream stand its columns and rows, each a uint32.
+that were float32 are integers that grow with nearness: ``depth = first / (number - second)``, and 0 where there is
+none. Before an RVL stream are its columns and rows, each a uint32.
 
 RVL is the lossless compression of depth images by Wilson ("Fast Lossless Depth Image Compression", ISS 2017). A stream
 is a row of numbers in groups of four bits: three of the number, the lowest first, and one that says that more follow;
@@ -27,7 +27,7 @@ _HEADER = struct.Struct("<iff")
 _RVL_SIZE = struct.Struct("<II")
 _WHOLE, _FLOAT = ("16UC1", "mono16"), "32FC1"
 _PACKINGS = {"": "png", "compressedDepth": "png", "compressedDepth png": "png", "compressedDepth rvl": "rvl"}
-"""How the depths are packed, by what follows on the encoding in the format; older publishers know of PNG alone."""
+"""How the depths are packed, by the end of the format after the encoding; older publishers know only PNG."""
 
 
 def unpacked_depth(message: Any) -> RawImage:
@@ -44,8 +44,8 @@ def unpacked_depth(message: Any) -> RawImage:
     if packing is None or encoding not in (*_WHOLE, _FLOAT):
         raise BadImageError(
             phrase(
-                "The format of the depth image is '{format}'; read are 16UC1, mono16 and 32FC1, "
-                "each with 'compressedDepth png' or 'compressedDepth rvl'",
+                "The format of the depth image is '{format}'; supported are 16UC1, mono16 and 32FC1, each with "
+                "'compressedDepth png' or 'compressedDepth rvl'",
                 format=message.format,
             )
         )
@@ -74,7 +74,7 @@ def _of_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
     if not 0 < columns * rows <= MOST_PIXELS:
         raise BadImageError(
             phrase(
-                "The RVL depth image says that it has {columns} x {rows} pixels; 1 to {most} are unpacked",
+                "The header of the RVL depth image gives {columns} x {rows} pixels; 1 to {most} are unpacked",
                 columns=columns,
                 rows=rows,
                 most=MOST_PIXELS,
@@ -116,7 +116,7 @@ _MOST_GROUPS = 10
 
 
 class BadRvlError(ValueError):
-    """A stream is not what it should be; the text says what is wrong with it."""
+    """A stream is malformed; the text names the mistake."""
 
 
 def decoded(stream: NDArray[np.uint8], pixels: int) -> NDArray[np.uint16]:

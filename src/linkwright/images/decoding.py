@@ -58,7 +58,7 @@ class Picture:
         return self.pixels[..., :3]
 
     def reduced(self, step: int) -> Picture:
-        """One pixel for each square of so many by so many, the mean of them; what is left at the edges is left out.
+        """One pixel for each square of `step` by `step`, the mean of them; the rest at the edges is left out.
 
         Args:
             step: more than 16 counts as 16.
@@ -102,7 +102,7 @@ def picture_of(message: Any, ranges: RangeFinder) -> Picture:
 
     Args:
         message: sensor_msgs/msg/Image.
-        ranges: says what is black and what is white where values have more than 8 bits.
+        ranges: sets the black and white limits where values have more than 8 bits.
 
     Raises:
         BadImageError: the encoding is not known, or there are too few bytes.
@@ -196,7 +196,7 @@ class RangeFinder:
         self._largest.clear()
 
     def range_of(self, values: NDArray[Any]) -> Range:
-        """The range for an image; values that are no numbers do not count."""
+        """The range for an image; values that are not numbers do not count."""
         if self.fixed is not None:
             return self.fixed
         least, largest = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)

@@ -27,7 +27,7 @@ class RawImage:
     """An image that was unpacked, with the fields of a sensor_msgs/msg/Image.
 
     Attributes:
-        header: of the message it came in.
+        header: the header of its message.
         width: in pixels.
         height: in pixels.
         encoding: of the pixels.
@@ -101,14 +101,14 @@ def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
 
 
 def file_kind(start: bytes) -> str:
-    """What a file is, PNG or JPEG, by how it begins."""
+    """The kind of a file, PNG or JPEG, by how it begins."""
     return "PNG" if start.startswith(_PNG) else "JPEG"
 
 
 def unpacked(message: Any) -> RawImage:
     """The image of a message of the transport `compressed`.
 
-    The encoding is that of the file. Of pixels with 16 bits (depths), the format of the message says what they are, and
+    The encoding is that of the file. For pixels with 16 bits (depths) the format of the message names the encoding, and
     a JPEG has their upper 8 bits, as with compressed_image_transport.
 
     Args:
@@ -129,7 +129,7 @@ def unpacked(message: Any) -> RawImage:
 
 
 def encoding_of(message: Any) -> str:
-    """The encoding of the image that a sensor_msgs/msg/CompressedImage was made of, as its format says."""
+    """The encoding of the image that a sensor_msgs/msg/CompressedImage was made of, according to its format."""
     encoding: str = message.format.partition(";")[0].strip()
     return encoding
 

@@ -34,7 +34,7 @@ class ImageSource:
 
     @classmethod
     def of(cls, topic: str, hint: str = RAW) -> ImageSource:
-        """What a topic and a transport hint name; a transport at the end of the topic counts more than the hint."""
+        """The source that a topic and a hint name; a transport at the end of the topic counts more than the hint."""
         topic = topic.strip()
         base, slash, last = topic.rpartition("/")
         if slash and last in TRANSPORTS[1:]:
@@ -53,7 +53,7 @@ class ImageSource:
         return self.base if self.transport == RAW or self.is_renamed else f"{self.base}/{self.transport}"
 
     def transport_of(self, message: Any) -> str:
-        """The transport of a message: `format` says it of a CompressedImage on a topic whose name does not."""
+        """The transport of a message: `format` names it for a CompressedImage on a topic whose name does not."""
         if self.is_renamed and COMPRESSED_DEPTH in message.format:
             return COMPRESSED_DEPTH
         return self.transport
