@@ -124,8 +124,8 @@ class Node(NodeParameters, NodeQueries):
             if start_parameter_services:
                 ParameterServices(self, name, partial(Node.create_service, self))
             if STRICT in store.overrides:
-                said = "Let responses wait for the callback group of their client, as rclpy does."
-                handle.strict_callback_groups = self.__own(STRICT, False, said)
+                description = "Let responses wait for the callback group of their client, as rclpy does."
+                handle.strict_callback_groups = self.__own(STRICT, False, description)
             if self.__describes_types(store):
                 TypeDescriptions(handle, partial(Node.create_service, self))
             SimulatedTime(handle, self, self.__clock)
@@ -139,10 +139,12 @@ class Node(NodeParameters, NodeQueries):
             return False
         return self.__own(TYPE_DESCRIPTIONS, True, "Start the ~/get_type_description service for this node.")
 
-    def __own(self, name: str, usual: bool, said: str) -> bool:
+    def __own(self, name: str, usual: bool, description: str) -> bool:
         """The value of a parameter that the node itself obeys, declared unless it is."""
         if not NodeParameters.has_parameter(self, name):
-            NodeParameters.declare_parameter(self, name, usual, ParameterDescriptor(description=said, read_only=True))
+            NodeParameters.declare_parameter(
+                self, name, usual, ParameterDescriptor(description=description, read_only=True)
+            )
         return bool(NodeParameters.get_parameter(self, name).value)
 
     @cached_property

@@ -87,7 +87,7 @@ class Asking:
 @pytest.fixture
 def asking(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Makes an `Asking`."""
-    monkeypatch.setattr(self_waits, "_told", set())
+    monkeypatch.setattr(self_waits, "_reported", set())
     made: list[Asking] = []
 
     def make(**options: Any) -> Asking:

@@ -208,7 +208,7 @@ class ActionClient(ActionEndpoint):
         handed: Future[Any] = Future()
         answer = self._result_client.call_async(request)
         handed.source = self._result_client
-        answer.add_waiter(partial(self._result_came, answer, bytes(goal.goal_id.uuid), handed))
+        answer.add_waiter(partial(self._on_result, answer, bytes(goal.goal_id.uuid), handed))
         return handed
 
     def destroy(self) -> None:
@@ -233,7 +233,7 @@ class ActionClient(ActionEndpoint):
             self._feedback_callbacks.pop(key, None)
         handed.hand_over(handle, self._handle.dispatcher)
 
-    def _result_came(self, answer: Future[Any], key: bytes, handed: Future[Any]) -> None:
+    def _on_result(self, answer: Future[Any], key: bytes, handed: Future[Any]) -> None:
         if answer.cancelled():
             handed.cancel()
             return

@@ -60,7 +60,7 @@ def set_up(arguments: RosArguments, executable: str, levels: LogLevels | None = 
         sinks.append(file.write)
 
     def sink(record: LogRecord) -> None:
-        for each in sinks:
-            each(record)
+        for write in sinks:
+            write(record)
 
     return Logging(sink, levels, rosout=arguments.rosout_logs is not False, file=file)

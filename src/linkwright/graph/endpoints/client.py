@@ -146,7 +146,9 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         """Give a request up: its future will get no response."""
         with self._lock:
             forget = self._pending.pop(future, None)
-            self._unsent = deque((each for each in self._unsent if each[0] is not future), maxlen=self._unsent.maxlen)
+            self._unsent = deque(
+                (unsent for unsent in self._unsent if unsent[0] is not future), maxlen=self._unsent.maxlen
+            )
         if forget is not None:
             forget()
 
@@ -208,7 +210,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         request_id = RequestId(self.gid, next(self._numbers))
         answer = partial(self._receive, future, request_id)
         if self.service_events is not None:
-            self.service_events.tell(EventType.REQUEST_SENT, request_id, request=request)
+            self.service_events.publish_event(EventType.REQUEST_SENT, request_id, request=request)
         if server is not None:
             server.receive(request, answer, request_id)
         elif outside is not None:
@@ -228,7 +230,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
     def _hand_over(self, future: Future[Response], request_id: RequestId, response: Response) -> None:
         if self.service_events is not None:
-            self.service_events.tell(EventType.RESPONSE_RECEIVED, request_id, response=response)
+            self.service_events.publish_event(EventType.RESPONSE_RECEIVED, request_id, response=response)
         future.hand_over(response, self.dispatcher)
 
 

@@ -192,7 +192,9 @@ class _Parser:
     def _like(self, value: _Value, *, regular: bool) -> Condition:
         pattern = str(self._value()(None))
         try:
-            wanted = re.compile(pattern if regular else "".join(_WILD.get(each, re.escape(each)) for each in pattern))
+            wanted = re.compile(
+                pattern if regular else "".join(_WILD.get(character, re.escape(character)) for character in pattern)
+            )
         except re.error as error:
             raise self._error(f"'{pattern}' is not a regular expression: {error}") from error
         return lambda message: isinstance(text := value(message), str) and wanted.fullmatch(text) is not None

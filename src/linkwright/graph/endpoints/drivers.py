@@ -66,7 +66,7 @@ class Dispute:
         self._took[publisher] += 1
         if now_s - self._since < self._lasting_s:
             return False
-        parties = frozenset(each for each, times in self._took.items() if times >= self._times)
+        parties = frozenset(party for party, times in self._took.items() if times >= self._times)
         if len(parties) < 2 or parties <= self.parties:
             return False
         self.parties = parties
@@ -123,15 +123,15 @@ class DriverWatch:
         """Note a message; of a message with a header the twist counts."""
         command = getattr(message, "twist", message)
         if self._dispute.hear(info.publisher_gid, command, self._now_ns() / _NANOSECONDS):
-            self._tell()
+            self._warn()
 
-    def _tell(self) -> None:
+    def _warn(self) -> None:
         """Warn, if the nodes of at least two parties are known."""
         publishers = publishers_of(self._graph, self._dispute.parties)
         drivers = drivers_of(self._graph, publishers)
         if len(drivers) > 1:
             topics = sorted({publisher.name for publisher in publishers})
-            told = phrase(
+            warning = phrase(
                 "two drivers at once: {drivers} send commands on {topics}, and each message takes effect in "
                 "turn: the robot jerks between them. End one of them, remap its topic (-r {topic}:=...), or "
                 "let twist_mux choose by priority",
@@ -139,7 +139,7 @@ class DriverWatch:
                 topics=quoted_names(topics),
                 topic=topics[0],
             )
-            self._logger.warning(told)
+            self._logger.warning(warning)
 
 
 def publishers_of(graph: KnownEndpoints, gids: Collection[Hashable]) -> list[EndpointInfo]:

@@ -103,7 +103,7 @@ class EndpointEvents(Entity):
         """The number of endpoints that match changed."""
         self._current += change
         total = self._count("matched", max(change, 0))
-        self._tell(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._current, change))
+        self._notify(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._current, change))
 
     def incompatible(self, policy: str) -> bool:
         """An endpoint of the other side has incompatible QoS.
@@ -115,7 +115,7 @@ class EndpointEvents(Entity):
         if self._callbacks.incompatible_qos is None:
             return not self._callbacks.use_default_callbacks
         kind = QoSPolicyKind[policy.removesuffix("_QOS_POLICY")]
-        self._tell(self._callbacks.incompatible_qos, QoSRequestedIncompatibleQoSInfo(total, 1, kind))
+        self._notify(self._callbacks.incompatible_qos, QoSRequestedIncompatibleQoSInfo(total, 1, kind))
         return True
 
     def has_work(self) -> bool:
@@ -151,9 +151,9 @@ class EndpointEvents(Entity):
         return watch
 
     def _deadline_missed(self) -> None:
-        self._tell(self._callbacks.deadline, self._deadline_info(self._count("deadline", 1), 1))
+        self._notify(self._callbacks.deadline, self._deadline_info(self._count("deadline", 1), 1))
 
-    def _tell(self, callback: EventCallback | None, info: object) -> None:
+    def _notify(self, callback: EventCallback | None, info: object) -> None:
         if callback is not None and not self.destroyed:
             self._waiting.append(partial(callback, info))
             self.announce()
@@ -178,7 +178,7 @@ class SubscriptionEvents(EndpointEvents):
 
     def lost(self, count: int) -> None:
         """Messages were lost."""
-        self._tell(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
+        self._notify(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
 
     def outside(self, alive: int, not_alive: int) -> None:
         """How many publishers of other processes are alive, and how many have lost their liveliness."""
@@ -192,7 +192,7 @@ class SubscriptionEvents(EndpointEvents):
         self._alive += alive_change
         self._not_alive += not_alive_change
         info = QoSLivelinessChangedInfo(self._alive, self._not_alive, alive_change, not_alive_change)
-        self._tell(self._callbacks.liveliness, info)
+        self._notify(self._callbacks.liveliness, info)
 
 
 class PublisherEvents(EndpointEvents):
@@ -250,4 +250,4 @@ class PublisherEvents(EndpointEvents):
         if self._is_alive:
             self._is_alive = False
             self._liveliness_changed(-1)
-            self._tell(self._callbacks.liveliness, QoSLivelinessLostInfo(self._count("liveliness", 1), 1))
+            self._notify(self._callbacks.liveliness, QoSLivelinessLostInfo(self._count("liveliness", 1), 1))

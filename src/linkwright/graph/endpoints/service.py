@@ -108,7 +108,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     def _answer(self, request: Request, reply: Reply, request_id: RequestId) -> object:
         events = self.service_events
         if events is not None:
-            events.tell(EventType.REQUEST_RECEIVED, request_id, request=request)
+            events.publish_event(EventType.REQUEST_RECEIVED, request_id, request=request)
             reply = partial(self._reply_watched, reply, request_id)
         if self._replying:
             return self.callback(request, partial(self.send_response, header=reply))
@@ -125,7 +125,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         reply(response)
         events = self.service_events
         if events is not None:
-            events.tell(EventType.RESPONSE_SENT, request_id, response=response)
+            events.publish_event(EventType.RESPONSE_SENT, request_id, response=response)
 
 
 M = TypeVar("M")

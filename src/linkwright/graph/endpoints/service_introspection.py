@@ -68,7 +68,9 @@ class ServiceEvents:
         qos = best_available(QoSProfile.of(qos_profile), (), publisher=True)
         self._publisher: Publisher[Any] = node.add(Publisher(node, self._event_class, name, qos))
 
-    def tell(self, event_type: EventType, request_id: RequestId, *, request: Any = None, response: Any = None) -> None:
+    def publish_event(
+        self, event_type: EventType, request_id: RequestId, *, request: Any = None, response: Any = None
+    ) -> None:
         """Publish an event, with its request or response."""
         info = self._info_class(
             event_type=int(event_type),

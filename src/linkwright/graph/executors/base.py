@@ -23,7 +23,7 @@ from linkwright.graph.faults import (
 from linkwright.graph.loop.entity import Entity
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.loop.self_waits import tell_if_it_waits_for_itself
+from linkwright.graph.loop.self_waits import report_self_wait
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -164,7 +164,7 @@ class Executor:
 
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done or cancelled, or `timeout_sec` seconds have passed (None: no limit)."""
-        tell_if_it_waits_for_itself(future)
+        report_self_wait(future)
         future.add_waiter(self.wake)
         deadline_ns = deadline_after(timeout_sec)
         while not (future.ended() or self._is_shutdown) and self._context_ok():

@@ -63,7 +63,7 @@ class TopicEndpointInfo:
                 f"Topic type: {self.topic_type}",
                 *([f"Topic type hash: {self.topic_type_hash}"] if self.topic_type_hash else []),
                 f"Endpoint type: {self.endpoint_type.name}",
-                f"GID: {'.'.join(f'{each:02x}' for each in self.endpoint_gid)}",
+                f"GID: {'.'.join(f'{byte:02x}' for byte in self.endpoint_gid)}",
                 "QoS profile:",
                 f"  Reliability: {qos.reliability.name}",
                 f"  History (Depth): {qos.history.name}{depth}",

@@ -52,7 +52,7 @@ class GraphQueries:
 
     def publishers(self) -> list[EndpointInfo]:
         """The publishers of all topics, in this process and outside."""
-        return self._those(lambda each: each.kind is _PUBLISHER)
+        return self._those(lambda endpoint: endpoint.kind is _PUBLISHER)
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
         """The endpoints of other processes, as far as discovery has come."""
@@ -202,8 +202,8 @@ class GraphQueries:
             fully_qualified_node_name: its name, with or without the slash in front.
             timeout: seconds to wait at most; None or a negative number for any time.
         """
-        wanted = "/" + fully_qualified_node_name.removeprefix("/")
-        return self.wait_until(lambda: any(identity.full_name == wanted for identity in self.identities()), timeout)
+        full_name = "/" + fully_qualified_node_name.removeprefix("/")
+        return self.wait_until(lambda: any(identity.full_name == full_name for identity in self.identities()), timeout)
 
     def _of_node(self, name: str, namespace: str) -> list[EndpointInfo]:
         if not any((identity.name, identity.namespace) == (name, namespace) for identity in self.identities()):
@@ -215,7 +215,7 @@ class GraphQueries:
         ]
 
     def _of_name(self, name: str, kind: EndpointKind) -> list[EndpointInfo]:
-        return self._those(lambda each: each.kind is kind and each.name == name)
+        return self._those(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
 
     def _those(self, are_asked_for: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
         """Endpoints that are asked for, here and outside; only these are described, which takes the time."""
@@ -238,7 +238,7 @@ def _hashed(endpoint: EndpointInfo) -> EndpointInfo:
 def _mangled(found: NamesAndTypes, no_demangle: bool) -> NamesAndTypes:
     if not no_demangle:
         return found
-    return [(f"rt{name}", [_wire_type(each) for each in types]) for name, types in found]
+    return [(f"rt{name}", [_wire_type(type_name) for type_name in types]) for name, types in found]
 
 
 def _wire_type(type_name: str) -> str:

@@ -16,11 +16,11 @@ class Namesakes:
     """Tracks names of our nodes that nodes of other processes share, and reports changes.
 
     Args:
-        tell: receives the changes. When left out, each name is logged once by its node, as long as it is shared.
+        notify: receives the changes. When left out, each name is logged once by its node, as long as it is shared.
     """
 
-    def __init__(self, tell: OnNamesakes | None = None) -> None:
-        self._tell = tell
+    def __init__(self, notify: OnNamesakes | None = None) -> None:
+        self._notify = notify
         self._shared: frozenset[str] = frozenset()
         self._lock = threading.RLock()
 
@@ -34,8 +34,8 @@ class Namesakes:
             self._shared = frozenset(node.identity.full_name for node in ours) & there
             if self._shared == before:
                 return
-            if self._tell is not None:
-                self._tell(self._shared)
+            if self._notify is not None:
+                self._notify(self._shared)
                 return
             for node in ours:
                 name = node.identity.full_name

@@ -51,10 +51,12 @@ class TypeDescriptions:
         nested = described["referenced_type_descriptions"]
         response.type_description = _interface("TypeDescription")(
             type_description=_individual(described["type_description"]),
-            referenced_type_descriptions=[_individual(each) for each in nested],
+            referenced_type_descriptions=[_individual(nested_type) for nested_type in nested],
         )
         if request.include_type_sources:
-            response.type_sources = [_source(name) for name in (found, *(each["type_name"] for each in nested))]
+            response.type_sources = [
+                _source(name) for name in (found, *(nested_type["type_name"] for nested_type in nested))
+            ]
         response.successful = True
         return response
 
@@ -81,7 +83,7 @@ def _interface(name: str) -> Any:
 def _individual(described: Mapping[str, Any]) -> Any:
     """An IndividualTypeDescription; defaults are not in it, as they are not part of the hash."""
     field, field_type = _interface("Field"), _interface("FieldType")
-    fields = [field(name=each["name"], type=field_type(**each["type"])) for each in described["fields"]]
+    fields = [field(name=member["name"], type=field_type(**member["type"])) for member in described["fields"]]
     return _interface("IndividualTypeDescription")(type_name=described["type_name"], fields=fields)
 
 

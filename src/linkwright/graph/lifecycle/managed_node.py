@@ -40,12 +40,14 @@ _CALLBACKS = {
 class LifecycleTransitionError(LinkwrightError, RclError):
     """A transition is requested that does not start from the node's current state; the message is rcl's."""
 
-    def __init__(self, asked: object, state: LifecycleState, available: Iterable[str]) -> None:
+    def __init__(self, requested: object, state: LifecycleState, available: Iterable[str]) -> None:
         names = list(dict.fromkeys(available))
-        hint = did_you_mean(str(asked), names) or (phrase("from here: {names}", names=joined(names)) if names else None)
+        hint = did_you_mean(str(requested), names) or (
+            phrase("from here: {names}", names=joined(names)) if names else None
+        )
         text = phrase(
             "Transition is not registered: No transition matching {asked} found for current state {label}",
-            asked=asked,
+            asked=requested,
             label=state.label,
         )
         super().__init__(Diagnostic("GRAPH231", text, hint=hint))
@@ -174,7 +176,7 @@ class LifecycleNodeMixin(ManagedEntity):
     def _change_by_label(self, label: str) -> TransitionCallbackReturn:
         transition = self._state_machine.by_label(label)
         if transition is None:
-            available = [each.label for each in self._state_machine.available()]
+            available = [possible.label for possible in self._state_machine.available()]
             raise LifecycleTransitionError(label, self._state_machine.state, available)
         return self._change(transition)
 
@@ -221,13 +223,13 @@ class LifecycleNodeMixin(ManagedEntity):
         self._transition_events.publish(event)
 
     def _on_change_state(self, request: Any, response: Any) -> Any:
-        asked = request.transition
+        requested = request.transition
         machine = self._state_machine
-        transition = machine.by_label(asked.label) if asked.label else machine.by_id(asked.id)
+        transition = machine.by_label(requested.label) if requested.label else machine.by_id(requested.id)
         if transition is None or transition.start.state_id >= CONFIGURING.state_id:
             node: Any = self
-            available = [each.label for each in machine.available()]
-            error = LifecycleTransitionError(asked.label or asked.id, machine.state, available)
+            available = [possible.label for possible in machine.available()]
+            error = LifecycleTransitionError(requested.label or requested.id, machine.state, available)
             node.get_logger().warning(str(error))
             response.success = False
             return response
@@ -244,7 +246,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return response
 
     def _on_get_available_transitions(self, _request: Any, response: Any) -> Any:
-        response.available_transitions = [_description(each) for each in self._state_machine.available()]
+        response.available_transitions = [_description(possible) for possible in self._state_machine.available()]
         return response
 
     def _on_get_transition_graph(self, _request: Any, response: Any) -> Any:

@@ -125,8 +125,8 @@ class StateMachine:
 
     def by_id(self, transition_id: int) -> Transition | None:
         """The available transition of a number; None when there is none."""
-        return next((each for each in self.available() if each.transition_id == transition_id), None)
+        return next((transition for transition in self.available() if transition.transition_id == transition_id), None)
 
     def by_label(self, label: str) -> Transition | None:
         """The available transition of a label; None when there is none."""
-        return next((each for each in self.available() if each.label == label), None)
+        return next((transition for transition in self.available() if transition.label == label), None)

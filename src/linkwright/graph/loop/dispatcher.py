@@ -207,8 +207,8 @@ class LoopDispatcher:
         waiting, hold.waiting = hold.waiting, []
         if not hold.coroutines:
             del self._held[group]
-        for each in waiting:
-            self.ready(each)
+        for waiter in waiting:
+            self.ready(waiter)
 
 
 @dataclass(slots=True)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator
 from contextlib import suppress
 from typing import Any, Generic, TypeVar
 
-from linkwright.graph.loop.self_waits import tell_if_it_waits_for_itself
+from linkwright.graph.loop.self_waits import report_self_wait
 
 T = TypeVar("T")
 
@@ -77,7 +77,7 @@ class Future(Generic[T]):
             if self._done or self._cancelled:
                 return
             self._cancelled = True
-        self._tell()
+        self._notify()
 
     def result(self) -> T | None:
         """The result; None while there is none.
@@ -101,7 +101,7 @@ class Future(Generic[T]):
             self._result = result
             self._done = True
             self._cancelled = False
-        self._tell()
+        self._notify()
 
     def set_exception(self, exception: BaseException) -> None:
         """End with an exception."""
@@ -110,7 +110,7 @@ class Future(Generic[T]):
             self._exception_fetched = False
             self._done = True
             self._cancelled = False
-        self._tell()
+        self._notify()
 
     def add_done_callback(self, callback: Callable[[Any], object]) -> None:
         """Register a callback that gets this future when it is done; it is called at once if it is."""
@@ -123,7 +123,7 @@ class Future(Generic[T]):
     def remove_done_callback(self, callback: Callable[[Any], object]) -> int:
         """Take a callback back; how many times it was there."""
         with self._lock:
-            kept = [each for each in self._callbacks if each != callback]
+            kept = [registered for registered in self._callbacks if registered != callback]
             removed = len(self._callbacks) - len(kept)
             self._callbacks = kept
         return removed
@@ -173,7 +173,7 @@ class Future(Generic[T]):
     def wait(self, timeout_sec: float | None = None) -> bool:
         """Block the calling thread until it is done or cancelled; whether it is."""
         if self.source is not None:
-            tell_if_it_waits_for_itself(self)
+            report_self_wait(self)
         event = threading.Event()
         self.add_waiter(event.set)
         event.wait(timeout_sec)
@@ -206,7 +206,7 @@ class Future(Generic[T]):
         finally:
             self.remove_waiter(wake)
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         with self._lock:
             waiters, self._waiters = self._waiters, []
             callbacks, self._callbacks = self._callbacks, []

@@ -24,7 +24,7 @@ RUNNER = "callback_of"
 """The name of the local variable by which a function that runs callbacks holds the entity that it runs one of."""
 
 _OURS = str(Path(__file__).parents[2]) + os.sep
-_told: set[tuple[CodeType, str]] = set()
+_reported: set[tuple[CodeType, str]] = set()
 
 
 class Waited(Protocol):
@@ -40,7 +40,7 @@ class Waited(Protocol):
         """Whether there is nothing more to wait for."""
 
 
-def tell_if_it_waits_for_itself(future: Waited) -> None:
+def report_self_wait(future: Waited) -> None:
     """Log an error where the calling thread is in a callback that would wait for ever on a robot; once for each place.
 
     Args:
@@ -61,9 +61,9 @@ def tell_if_it_waits_for_itself(future: Waited) -> None:
         return
     call, callback = own[0], own[-1].f_code
     place = f"{call.f_code.co_filename}:{call.f_lineno}"
-    if (callback, place) in _told:
+    if (callback, place) in _reported:
         return
-    _told.add((callback, place))
+    _reported.add((callback, place))
     client.node.logger.error(
         f"callback '{callback.co_name}' ({callback.co_filename}:{callback.co_firstlineno}) waits at {place} for the "
         f"{client.what}, which is in the same mutually exclusive callback group: on a robot it waits for ever. Give "

@@ -90,7 +90,7 @@ def _taken_apart(source: str, target: str) -> _Rule:
     before, colon, rest = source.partition(":")
     if colon and not rest.startswith("//"):
         node, source = before, rest
-    kind = next((each for each in (_TOPIC, _SERVICE) if source.startswith(each)), "")
+    kind = next((prefix for prefix in (_TOPIC, _SERVICE) if source.startswith(prefix)), "")
     name = source[len(kind) :]
     if kind and target.startswith(kind):
         target = target[len(kind) :]

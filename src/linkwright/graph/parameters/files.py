@@ -47,7 +47,7 @@ def read_parameter_file(path: str | Path) -> ParameterRules:
     try:
         text = read_text(path)
     except FileNotFoundError:
-        near = [str(each) for each in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
+        near = [str(file) for file in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
         hint = did_you_mean(str(path), near)
         raise ParameterFileNotFoundError(
             Diagnostic("GRAPH211", phrase("parameter file '{shown}' does not exist", shown=shown), hint=hint)
@@ -340,7 +340,7 @@ def scalar_value(text: str, *, plain: bool) -> Any:
             return number
     if text in _SPECIAL or _FLOAT.fullmatch(text):
         return float(_SPECIAL.get(text, text))
-    if _HEXADECIMAL_FLOAT.fullmatch(text) and any(each.isdigit() for each in text):
+    if _HEXADECIMAL_FLOAT.fullmatch(text) and any(character.isdigit() for character in text):
         return _hexadecimal_float(text)
     return text
 

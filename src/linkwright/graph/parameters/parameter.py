@@ -48,7 +48,7 @@ class ParameterType(Enum):
                 )
             )
         for kind, element in _ARRAYS:
-            if all(isinstance(each, element) for each in parameter_value):
+            if all(isinstance(value, element) for value in parameter_value):
                 return kind
         raise TypeError(
             phrase(
@@ -66,7 +66,7 @@ class ParameterType(Enum):
                 return True
         for kind, element in _ARRAYS:
             if self is kind and isinstance(parameter_value, (list, tuple, array.array)):
-                return all(isinstance(each, element) for each in parameter_value)
+                return all(isinstance(value, element) for value in parameter_value)
         return False
 
     @property
@@ -176,7 +176,7 @@ class Parameter:
 
     def _message_value(self) -> Any:
         if self._type_ is ParameterType.BYTE_ARRAY:
-            return [bytes([each]) if isinstance(each, int) else each for each in self._value]
+            return [bytes([value]) if isinstance(value, int) else value for value in self._value]
         return list(self._value) if self._type_.is_array else self._value
 
     def __eq__(self, other: object) -> bool:
@@ -281,9 +281,9 @@ def descriptor_message(descriptor: Any) -> Any:
         read_only=descriptor.read_only,
         dynamic_typing=descriptor.dynamic_typing,
     )
-    message.integer_range = [_range("IntegerRange", each, int) for each in descriptor.integer_range]
+    message.integer_range = [_range("IntegerRange", limits, int) for limits in descriptor.integer_range]
     message.floating_point_range = [
-        _range("FloatingPointRange", each, float) for each in descriptor.floating_point_range
+        _range("FloatingPointRange", limits, float) for limits in descriptor.floating_point_range
     ]
     return message
 

@@ -95,8 +95,8 @@ def override_qos(
         if node.has_parameter(name):
             value = node.get_parameter(name).value
         else:
-            said = f"{policy} for {entity} `{topic}` with id `{options.entity_id}`"
-            descriptor = ParameterDescriptor(description=said, read_only=True)
+            description = f"{policy} for {entity} `{topic}` with id `{options.entity_id}`"
+            descriptor = ParameterDescriptor(description=description, read_only=True)
             value = node.declare_parameter(name, _to_parameter(profile, kind), descriptor).value
         setattr(profile, policy, _from_parameter(kind, value, name))
     verdict = True if options.callback is None else options.callback(profile)
@@ -128,7 +128,7 @@ def _from_parameter(kind: QoSPolicyKind, value: Any, name: str) -> Any:
     try:
         return policy[str(value).upper()]
     except KeyError:
-        known = [each.name.lower() for each in policy]
+        known = [value.name.lower() for value in policy]
         raise InvalidQosOverridesError(
             phrase(
                 "Unexpected QoS override for policy `{name}`: `{value}` (parameter '{other_name}')",

@@ -230,12 +230,12 @@ class Clock:
     def _generation(self) -> int:
         return 0
 
-    def _tell_before(self, handles: Iterable[JumpHandle]) -> None:
+    def _notify_before(self, handles: Iterable[JumpHandle]) -> None:
         for handle in handles:
             if handle.pre_callback is not None:
                 handle.pre_callback()
 
-    def _tell_after(self, handles: Iterable[JumpHandle], jump: TimeJump) -> None:
+    def _notify_after(self, handles: Iterable[JumpHandle], jump: TimeJump) -> None:
         for handle in handles:
             if handle.post_callback is not None:
                 handle.post_callback(jump)
@@ -321,7 +321,7 @@ class ROSClock(Clock):
                 return
             handles = [handle for handle in self._jump_handles if handle.threshold.on_clock_change]
             timers = tuple(self._timers)
-            self._tell_before(handles)
+            self._notify_before(handles)
             for timer in timers:
                 timer.before_switch()
             before_ns = self.now_ns()
@@ -331,7 +331,7 @@ class ROSClock(Clock):
             for timer in timers:
                 timer.after_switch()
             change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
-            self._tell_after(handles, TimeJump(change, Duration(nanoseconds=self.now_ns() - before_ns)))
+            self._notify_after(handles, TimeJump(change, Duration(nanoseconds=self.now_ns() - before_ns)))
             self._changed.notify_all()
 
     _set_ros_time_is_active = set_ros_time_is_active
@@ -369,13 +369,13 @@ class ROSClock(Clock):
         """Set simulated time, and call the jump callbacks that it exceeds, and timers if it goes back."""
         jump = TimeJump(ClockChange.ROS_TIME_NO_CHANGE, Duration(nanoseconds=now_ns - self._override_ns))
         handles = [handle for handle in self._jump_handles if handle.threshold.is_exceeded(jump)]
-        self._tell_before(handles)
+        self._notify_before(handles)
         self._override_ns = now_ns
         if jump.delta.nanoseconds < 0:
             self._alarms.clear()
             for timer in tuple(self._timers):
                 timer.after_jump_back()
-        self._tell_after(handles, jump)
+        self._notify_after(handles, jump)
 
     def interrupt(self) -> None:
         """Let sleepers look at their contexts."""

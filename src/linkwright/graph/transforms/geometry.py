@@ -83,9 +83,9 @@ def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
     point_class = get_message("geometry_msgs/msg/Point32")
     result = _new("PolygonStamped", transform)
     points = []
-    for each in polygon.polygon.points:
+    for corner in polygon.polygon.points:
         point = point_class()
-        _set_vector(point, _applied(transform, (each.x, each.y, each.z)))
+        _set_vector(point, _applied(transform, (corner.x, corner.y, corner.z)))
         points.append(point)
     result.polygon.points = points
     return result

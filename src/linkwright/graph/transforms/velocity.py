@@ -42,7 +42,7 @@ def velocity(
         TransformException: there are no poses for these times.
     """
     reference_frame, point, point_frame = reference
-    time_s, latest_s, interval_s = (each / 1e9 for each in times_ns)
+    time_s, latest_s, interval_s = (time_ns / 1e9 for time_ns in times_ns)
     end_s = min(time_s + interval_s * 0.5, latest_s)
     start_s = max(_EARLIEST_S + interval_s, end_s) - interval_s
     span_s = end_s - start_s
