@@ -28,11 +28,11 @@ class Scene:
         self.lost: list[EndpointInfo] = []
         if watched:
             self.departures.watch(self.lost.append)
-        self.remote.participant_came(participant or RemoteParticipant(PARTICIPANT))
+        self.remote.add_participant(participant or RemoteParticipant(PARTICIPANT))
         for guid in (WRITER, OTHER):
             topic = "rt/chatter" if guid == WRITER else "rr/flipReply"
             endpoint = RemoteEndpoint(guid, 1, PARTICIPANT, True, topic, "std_msgs::msg::dds_::String_", QoSProfile(1))
-            self.remote.endpoint_came(endpoint)
+            self.remote.add_endpoint(endpoint)
         self.announce(WRITER, OTHER)
 
     def announce(self, *writers: bytes) -> None:
@@ -47,7 +47,7 @@ class Scene:
 def test_who_withdraws_a_publisher_before_it_goes_has_left():
     scene = Scene()
     scene.announce(OTHER)
-    scene.remote.endpoint_went(WRITER)
+    scene.remote.remove_endpoint(WRITER)
     assert scene.after(0.0) is None
     assert scene.after(2 * FAREWELL_WITHIN) is None
     assert not scene.lost
@@ -55,7 +55,7 @@ def test_who_withdraws_a_publisher_before_it_goes_has_left():
 
 def test_a_farewell_may_be_heard_after_the_participant_has_gone():
     scene = Scene()
-    scene.remote.participant_went(PARTICIPANT)
+    scene.remote.remove_participant(PARTICIPANT)
     assert scene.after(10.0) is not None
     scene.announce()
     scene.after(2 * FAREWELL_WITHIN)
@@ -64,7 +64,7 @@ def test_a_farewell_may_be_heard_after_the_participant_has_gone():
 
 def test_a_participant_that_goes_without_a_farewell_is_lost_with_its_publishers():
     scene = Scene()
-    scene.remote.participant_went(PARTICIPANT)
+    scene.remote.remove_participant(PARTICIPANT)
     scene.after(10.0)  # what had come by then was not taken before
     assert not scene.lost
     scene.after(2 * FAREWELL_WITHIN)
@@ -84,7 +84,7 @@ def test_a_participant_whose_process_is_gone_is_lost_before_its_lease_is_over(mo
     assert not scene.lost
     scene.after(2 * GRACE)
     assert [each.name for each in scene.lost] == ["/chatter"]
-    scene.remote.participant_went(PARTICIPANT)
+    scene.remote.remove_participant(PARTICIPANT)
     assert scene.after(2 * FAREWELL_WITHIN) is None
     assert len(scene.lost) == 1
 
@@ -94,7 +94,7 @@ def test_a_process_that_ends_after_it_has_left_is_not_lost(monkeypatch):
     scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
     scene.after(0.0)
     scene.announce()
-    scene.remote.participant_went(PARTICIPANT)
+    scene.remote.remove_participant(PARTICIPANT)
     scene.after(2 * FAREWELL_WITHIN)
     assert not scene.lost
 

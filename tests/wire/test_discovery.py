@@ -82,7 +82,7 @@ def test_a_process_announces_its_nodes_when_all_it_has_is_made(processes, monkey
 
     monkeypatch.setattr(other.transport._remote, "entities_announced", listen)
     monkeypatch.setattr(engine, "Engine", Late)
-    monkeypatch.setattr(engine, "_FIRST_TELL_SPAN", float("inf"))
+    monkeypatch.setattr(engine, "_FIRST_ANNOUNCE_SPAN", float("inf"))
     us = processes("ours", join_now=False)
     publishers = [us.node.create_publisher(String, f"topic_{number}", 10) for number in range(50)]
     transport = join(us.graph)  # everything to be made is asked for now
@@ -113,9 +113,9 @@ def test_a_process_of_this_machine_is_known_by_the_name_and_the_id_of_the_machin
     monkeypatch.setattr(discovery, "machine_id", lambda: "3d12")
     for told in ("3d12", f"{here}:0", here):
         properties = {"fastdds.physical_data.host": told, "fastdds.physical_data.process": "42"}
-        assert next(discovery.told_processes(lambda name, told=properties: told.get(name, ""))) == (here, "42")
+        assert next(discovery.announced_processes(lambda name, told=properties: told.get(name, ""))) == (here, "42")
     elsewhere = {"__Hostname": "elsewhere", "__Pid": "42"}
-    assert list(discovery.told_processes(lambda name: elsewhere.get(name, ""))) == [("", ""), ("elsewhere", "42")]
+    assert list(discovery.announced_processes(lambda name: elsewhere.get(name, ""))) == [("", ""), ("elsewhere", "42")]
 
 
 def test_fifty_nodes_with_their_services_are_found(processes, programs):

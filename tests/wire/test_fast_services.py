@@ -121,7 +121,7 @@ def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypa
     service, participant = _Service(), _Heard(heard_at=None, last=7)
     server = FastServer(service, participant)
     for number, text in enumerate(["six", "seven"]):
-        server.came_early(EarlyRequest(b"w" * 16, serialize(says(text)), 1_000_000 * number, now))
+        server.on_early_request(EarlyRequest(b"w" * 16, serialize(says(text)), 1_000_000 * number, now))
     server.review()
     assert service.asked == []
     participant.heard_at = now
@@ -131,7 +131,7 @@ def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypa
     server.review()
     assert service.asked == [("six", 6), ("seven", 7)]
     assert not server.has_more_to_do
-    server.came_early(EarlyRequest(b"w" * 16, serialize(says("eight")), 9_000_000, now))
+    server.on_early_request(EarlyRequest(b"w" * 16, serialize(says("eight")), 9_000_000, now))
     assert not server.has_more_to_do  # what comes from now on comes with its number
 
 
@@ -140,7 +140,7 @@ def test_an_early_request_that_comes_late_with_its_number_is_carried_out_once(mo
     monkeypatch.setattr("linkwright.wire.dds.fast_services.time.monotonic", lambda: now)
     service, participant = _Service(), _Heard(heard_at=now, last=1)
     server = FastServer(service, participant)
-    server.came_early(EarlyRequest(b"w" * 16, serialize(says("first")), 5_000_000, now))
+    server.on_early_request(EarlyRequest(b"w" * 16, serialize(says("first")), 5_000_000, now))
     now += 0.2
     server.review()
     for number, text in enumerate(["first", "second"], 1):

@@ -18,7 +18,7 @@ TYPE_NAME = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
 @pytest.fixture
 def remote():
     graph = RemoteGraph()
-    graph.participant_came(RemoteParticipant(PARTICIPANT))
+    graph.add_participant(RemoteParticipant(PARTICIPANT))
     return graph
 
 
@@ -29,23 +29,23 @@ def endpoint(guid, *, is_writer, topic=DISCOVERY_TOPIC):
 def test_the_readers_of_a_node_may_be_heard_of_before_its_writers(remote):
     """Fast DDS tells one a second before the other."""
     assert not remote.is_complete()
-    remote.endpoint_came(endpoint(LISTENER, is_writer=False))
+    remote.add_endpoint(endpoint(LISTENER, is_writer=False))
     assert not remote.is_complete()
-    remote.endpoint_came(endpoint(SPEAKER, is_writer=True))
+    remote.add_endpoint(endpoint(SPEAKER, is_writer=True))
     assert not remote.is_complete()
     remote.entities_announced(ParticipantEntities(PARTICIPANT, [NodeEntities("/", "talker", writers=(TALKER,))]))
     assert not remote.is_complete()
-    remote.endpoint_came(endpoint(TALKER, is_writer=True, topic="rt/chatter"))
+    remote.add_endpoint(endpoint(TALKER, is_writer=True, topic="rt/chatter"))
     assert remote.is_complete()
 
 
 def test_who_never_speaks_is_not_waited_for_for_ever():
     remote = RemoteGraph()
-    remote.participant_came(RemoteParticipant(PARTICIPANT, came_at=time.monotonic() - 10.0))
-    remote.endpoint_came(endpoint(LISTENER, is_writer=False))
+    remote.add_participant(RemoteParticipant(PARTICIPANT, came_at=time.monotonic() - 10.0))
+    remote.add_endpoint(endpoint(LISTENER, is_writer=False))
     assert remote.is_complete()
 
 
 def test_other_programs_of_dds_are_not_waited_for(remote):
-    remote.endpoint_came(endpoint(LISTENER, is_writer=False, topic="temperature"))
+    remote.add_endpoint(endpoint(LISTENER, is_writer=False, topic="temperature"))
     assert remote.is_complete()

@@ -68,14 +68,14 @@ def test_nobody_joins_where_security_is_enforced():
 
 
 def test_each_setting_is_told_once_in_a_process(monkeypatch):
-    monkeypatch.setattr(unfollowed, "_told", set())
+    monkeypatch.setattr(unfollowed, "_reported", set())
     assert [untold_setting.code for untold_setting in untold_settings(SERVER)] == ["DDS123"]
     assert [untold_setting.code for untold_setting in untold_settings({**SERVER, **SECURE})] == ["DDS122"]
 
 
 @with_network
 def test_graphs_that_join_log_it(monkeypatch):
-    monkeypatch.setattr(unfollowed, "_told", set())
+    monkeypatch.setattr(unfollowed, "_reported", set())
     for name, value in SERVER.items():
         monkeypatch.setenv(name, value)
     log = []

@@ -221,10 +221,10 @@ class BackgroundTransport(ABC):
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for publishers outside that are lost, called with each from any thread."""
 
-        def tell(publisher: EndpointInfo) -> None:
+        def notify(publisher: EndpointInfo) -> None:
             run_logged(self._logger, "a callback for publishers that are lost", partial(lost, publisher))
 
-        self._departed.watch(tell)
+        self._departed.watch(notify)
         self._do(lambda _: None)  # processes are looked at from now on
 
     def close(self) -> None:
@@ -322,7 +322,7 @@ def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
     logger.error(f"{findings}\nThis process continues by itself: other processes do not see its nodes.")
 
 
-def say_alone(logger: Logger, reason: Phrase) -> None:
+def log_alone(logger: Logger, reason: Phrase) -> None:
     """Log that a process has no transport."""
     logger.warning(f"This process does not communicate with other processes: {reason}. Everything inside of it works.")
 
@@ -367,7 +367,7 @@ def join_with(
     reason = why_not(environment)
     if reason:
         if not is_switched_off(environment):
-            say_alone(logger, reason)
+            log_alone(logger, reason)
         return None
     try:
         transport = make(logger, options)

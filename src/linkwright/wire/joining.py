@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, install_hint, phrase, render
 from linkwright.wire import dds, zenoh
-from linkwright.wire.background import say_alone
+from linkwright.wire.background import log_alone
 from linkwright.wire.switch import is_switched_off
 from linkwright.wire.unfollowed import CYCLONE, MIDDLEWARE, ZENOH, refuse_enforced_security, untold_settings
 from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
@@ -33,9 +33,9 @@ def middleware(environment: Mapping[str, str] | None = None) -> str:
         environment: the environment variables; those of the process when left out.
     """
     variables = os.environ if environment is None else environment
-    asked = variables.get(MIDDLEWARE, "").strip()
-    if asked:
-        return ZENOH if asked == ZENOH else CYCLONE
+    requested = variables.get(MIDDLEWARE, "").strip()
+    if requested:
+        return ZENOH if requested == ZENOH else CYCLONE
     return ZENOH if find_spec("cyclonedds") is None and zenoh_is_installed() else CYCLONE
 
 
@@ -114,7 +114,7 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | 
     reason = why_not(environment)
     if reason:
         if not is_switched_off(environment):
-            say_alone(graph.get_logger("wire"), reason)
+            log_alone(graph.get_logger("wire"), reason)
         return None
     for finding in untold_settings(environment):
         graph.get_logger("wire").warning(render(finding))

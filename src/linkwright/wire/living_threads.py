@@ -25,13 +25,13 @@ def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None 
         return call()
     except Exception as error:  # noqa: BLE001 - see above
         if report is None:
-            _tell(error)
+            _report_unhandled(error)
         else:
             guarded(partial(report, error))
         return None
 
 
-def _tell(error: Exception) -> None:
+def _report_unhandled(error: Exception) -> None:
     threading.excepthook(
         threading.ExceptHookArgs((type(error), error, error.__traceback__, threading.current_thread()))
     )

@@ -29,7 +29,7 @@ _OTHER_DDS = (
 )
 _KNOWN = (CYCLONE, *_FAST, ZENOH, *_OTHER_DDS)
 
-_told: set[str] = set()
+_reported: set[str] = set()
 """Codes of the settings that were reported in this process."""
 
 
@@ -115,9 +115,9 @@ def untold_settings(environment: Mapping[str, str] | None = None) -> list[Diagno
     found = [
         unfollowed_setting
         for unfollowed_setting in unfollowed_settings(environment)
-        if unfollowed_setting.code not in _told
+        if unfollowed_setting.code not in _reported
     ]
-    _told.update(diagnostic.code for diagnostic in found)
+    _reported.update(diagnostic.code for diagnostic in found)
     return found
 
 

@@ -100,12 +100,12 @@ def test_news_that_was_overtaken_is_not_believed_and_a_token_that_came_back_is(p
     talker.node.destroy_publisher(publisher)
     ear.spin_until(lambda: subscription.get_publisher_count() == 0)
     late = SimpleNamespace(kind=zenoh.SampleKind.PUT, key_expr=key)
-    ear.transport._zenoh_engine._hear(late)
+    ear.transport._zenoh_engine._on_token(late)
     talker.node.create_publisher(String, "chatter", 10)
     ear.spin_until(lambda: subscription.get_publisher_count() > 0)
     assert subscription.get_publisher_count() == 1
     monkeypatch.setattr(remote, "_GONE_FOR", 0.0)
-    ear.transport._zenoh_engine._hear(late)
+    ear.transport._zenoh_engine._on_token(late)
     ear.spin_until(lambda: subscription.get_publisher_count() == 2)
 
 

@@ -36,11 +36,11 @@ class Scene:
         self.remote = RemoteGraph()
         self.departures = Departures(self.remote, lambda: self.time)
         self.departures.watch(self.lost.append)
-        self.remote.came(PUBLISHER.key, PUBLISHER)
+        self.remote.add(PUBLISHER.key, PUBLISHER)
 
     def went(self, token: Token) -> None:
-        if self.remote.went(token.key) is not None:
-            self.departures.went(token.key, token)
+        if self.remote.remove(token.key) is not None:
+            self.departures.token_removed(token.key, token)
 
     def names_lost(self) -> list[str]:
         """Those that are lost once all is judged."""
@@ -54,9 +54,9 @@ class Scene:
 def test_the_end_of_its_session_is_enough(leaves, knows_node):
     """Which a client is told of before the node: it may be killed in between."""
     scene = Scene()
-    scene.departures.session_came(SESSION)
+    scene.departures.session_started(SESSION)
     if knows_node:
-        scene.remote.came(NODE.key, NODE)
+        scene.remote.add(NODE.key, NODE)
     if leaves:
         scene.departures.session_leaves(SESSION)
     scene.departures.session_ended(SESSION)
@@ -67,8 +67,8 @@ def test_the_end_of_its_session_is_enough(leaves, knows_node):
 
 def test_a_publisher_whose_session_and_node_stay_was_withdrawn():
     scene = Scene()
-    scene.departures.session_came(SESSION)
-    scene.remote.came(NODE.key, NODE)
+    scene.departures.session_started(SESSION)
+    scene.remote.add(NODE.key, NODE)
     scene.went(PUBLISHER)
     assert scene.names_lost() == []
 
@@ -76,7 +76,7 @@ def test_a_publisher_whose_session_and_node_stay_was_withdrawn():
 @pytest.mark.parametrize("first", [NODE, PUBLISHER], ids=["node", "publisher"])
 def test_in_a_session_of_others_it_is_lost_when_its_node_went_first(first):
     scene = Scene()
-    scene.remote.came(NODE.key, NODE)
+    scene.remote.add(NODE.key, NODE)
     scene.went(first)
     scene.went(NODE)
     scene.went(PUBLISHER)

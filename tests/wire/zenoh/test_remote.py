@@ -22,10 +22,10 @@ def test_robots_that_come_and_go_leave_nothing(monkeypatch):
     remote = RemoteGraph()
     empty = {name: len(value) for name, value in vars(remote).items() if hasattr(value, "__len__")}
     for token in TOKENS:
-        assert remote.came(token.key, token)
+        assert remote.add(token.key, token)
         assert remote.count(token.kind, token.data_key) == 1
         now += 1.0
-        assert remote.went(token.key) is token
+        assert remote.remove(token.key) is token
         assert remote.count(token.kind, token.data_key) == 0
     left = {name: len(value) for name, value in vars(remote).items() if hasattr(value, "__len__")}
     assert left == {**empty, "_gone": 1}  # when the last one went

@@ -48,7 +48,7 @@ class Departures:
     """Judges how publishers left; everything except `watch` happens in the thread of discovery.
 
     Args:
-        remote: the graph outside; it calls `endpoint_went` and `announced`.
+        remote: the graph outside; it calls `endpoint_left` and `announced`.
         now: the steady clock, in seconds.
     """
 
@@ -58,16 +58,16 @@ class Departures:
         self._watchers: list[Callable[[EndpointInfo], None]] = []
         self._gone: list[_Gone] = []
         self._dead_since: dict[bytes, float] = {}
-        self._told: set[bytes] = set()
+        self._reported: set[bytes] = set()
         remote.departures = self
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers, called with each in the thread of discovery."""
         self._watchers.append(lost)
 
-    def endpoint_went(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
+    def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         """Note that an endpoint disappeared; `node` still announces it, or is None where it was withdrawn."""
-        if self._watchers and endpoint.is_writer and node is not None and endpoint.participant not in self._told:
+        if self._watchers and endpoint.is_writer and node is not None and endpoint.participant not in self._reported:
             self._gone.append(_Gone(endpoint, node))
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
@@ -92,7 +92,7 @@ class Departures:
             if now < gone.due:
                 waiting.append(gone)
             else:
-                self._tell(gone.endpoint, gone.node)
+                self._report(gone.endpoint, gone.node)
         self._gone = waiting
 
     def _review_processes(self) -> bool:
@@ -101,15 +101,15 @@ class Departures:
         here = [participant for participant in self._remote.participants() if participant.process is not None]
         dead = {participant.guid for participant in here if participant.has_died()}
         self._dead_since = {guid: self._dead_since.get(guid, now) for guid in dead}
-        self._told &= dead | {gone.endpoint.participant for gone in self._gone}
+        self._reported &= dead | {gone.endpoint.participant for gone in self._gone}
         for guid, since in self._dead_since.items():
-            if now - since >= GRACE and guid not in self._told:
-                self._told.add(guid)
+            if now - since >= GRACE and guid not in self._reported:
+                self._reported.add(guid)
                 for endpoint, node in self._remote.writers_of(guid):
-                    self._tell(endpoint, node)
+                    self._report(endpoint, node)
         return bool(here)
 
-    def _tell(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
+    def _report(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         info = endpoint.described(node)
         if info is not None and info.kind is EndpointKind.PUBLISHER:
             for lost in self._watchers:

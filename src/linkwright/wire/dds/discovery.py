@@ -126,18 +126,18 @@ class Discovery:
             return
         self.changed = True
         if info.instance_state != INSTANCE_ALIVE:
-            self._remote.participant_went(guid)
+            self._remote.remove_participant(guid)
             self._forget_evidence(guid)
             return
         facts = parse_user_data(self._dds.user_data(qos))
         name, process, host = self._dds.entity_name(qos), self._process_of(qos), self._host_of(qos)
         if name == SERVICES_NAME:
             return
-        self._remote.participant_came(RemoteParticipant(guid, facts.get("enclave", "/"), name, process, host))
+        self._remote.add_participant(RemoteParticipant(guid, facts.get("enclave", "/"), name, process, host))
 
     def _host_of(self, qos: int) -> str:
         """The machine of a participant, as Fast DDS and Cyclone announce it; empty where neither does."""
-        return next((host for host, _ in told_processes(partial(self._dds.property, qos)) if host), "")
+        return next((host for host, _ in announced_processes(partial(self._dds.property, qos)) if host), "")
 
     def _process_of(self, qos: int) -> int | None:
         """The process of a participant, as Fast DDS and Cyclone announce it; None unless it runs on this machine.
@@ -146,7 +146,7 @@ class Discovery:
         """
         if not process_namespace():
             return None
-        for host, number in told_processes(partial(self._dds.property, qos)):
+        for host, number in announced_processes(partial(self._dds.property, qos)):
             if host == _HOST and number.isdecimal() and runs(int(number)):
                 return int(number)
         return None
@@ -158,12 +158,12 @@ class Discovery:
             return
         self.changed = True
         if info.instance_state != INSTANCE_ALIVE:
-            self._remote.endpoint_went(guid)
+            self._remote.remove_endpoint(guid)
             return
         facts = parse_user_data(self._dds.user_data(qos))
         profile = profile_of(qos, tells_history=not is_fast(guid))
         endpoint = RemoteEndpoint(guid, info.instance_handle, owner, is_writer, topic, type_name, profile, facts)
-        self._remote.endpoint_came(endpoint)
+        self._remote.add_endpoint(endpoint)
         if is_writer and topic == DISCOVERY_TOPIC:
             self._note_evidence(endpoint)
 
@@ -219,7 +219,7 @@ class Discovery:
         self._evidence.pop(participant, None)
 
 
-def told_processes(property_of: Callable[[str], str]) -> Iterator[tuple[str, str]]:
+def announced_processes(property_of: Callable[[str], str]) -> Iterator[tuple[str, str]]:
     """The host and the number of a participant's process, as each vendor announces them.
 
     Fast DDS 3 names its machine by the machine's id, for which this machine's name stands here.

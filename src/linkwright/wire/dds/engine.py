@@ -36,10 +36,10 @@ _LOOK_AGAIN = 0.01
 _NAMED_WITHIN = 1.0
 """Seconds within which a participant announces which node an endpoint belongs to."""
 
-_TELL_SPAN = 0.1
+_ANNOUNCE_SPAN = 0.1
 """Seconds after which new nodes are announced though more of them are being made."""
 
-_FIRST_TELL_SPAN = 1.0
+_FIRST_ANNOUNCE_SPAN = 1.0
 """The same for the first announcement, from which others conclude that they know all of a process."""
 
 
@@ -89,9 +89,9 @@ class Engine(AnyEngine):
         self._presences: dict[Any, QuietReader | QuietClient] = {}
         self._leaving: dict[OutgoingTopic, float] = {}
         self._waiting: dict[OutgoingTopic, None] = {}
-        self._is_told = False
-        self._told_at = time.monotonic()
-        self._tell_span = _FIRST_TELL_SPAN
+        self._is_announced = False
+        self._announced_at = time.monotonic()
+        self._announce_span = _FIRST_ANNOUNCE_SPAN
         self._matches_changed = False
         self._mismatched: dict[OutgoingTopic | IncomingTopic, float] = {}
 
@@ -136,14 +136,14 @@ class Engine(AnyEngine):
     def add_node(self, node: NodeIdentity) -> None:
         """Announce a node."""
         self._nodes[node] = self._nodes.get(node, 0) + 1
-        self._is_told = False
+        self._is_announced = False
 
     def remove_node(self, node: NodeIdentity) -> None:
         """Withdraw a node."""
         count = self._nodes.pop(node, 0) - 1
         if count > 0:
             self._nodes[node] = count
-        self._is_told = False
+        self._is_announced = False
 
     def open_publisher(self, publisher: Any) -> None:
         """Mirror a publisher."""
@@ -154,7 +154,7 @@ class Engine(AnyEngine):
             raise
         self._outgoing[publisher] = topic
         self._control.attach(topic.entity, topic.on_status)
-        self._is_told = False
+        self._is_announced = False
 
     def close_publisher(self, publisher: Any) -> None:
         """Delete a publisher's writer when all readers have acknowledged its samples, or after a second."""
@@ -163,14 +163,14 @@ class Engine(AnyEngine):
             self._control.detach(topic.entity)
             topic.abandon()
             self._leaving[topic] = time.monotonic() + CLOSING_TIME
-            self._is_told = False
+            self._is_announced = False
 
     def open_subscription(self, subscription: Any) -> None:
         """Mirror a subscription."""
         topic = IncomingTopic(subscription, self._domain, self._on_mismatch)
         self._incoming[subscription] = topic
         self._reception.attach(topic.entity, topic.on_status)
-        self._is_told = False
+        self._is_announced = False
 
     def open_service(self, service: Any) -> None:
         """Mirror a service."""
@@ -178,7 +178,7 @@ class Engine(AnyEngine):
         self._services[service] = incoming
         self._meet_fast(incoming)
         self._reception.attach(incoming.pair.reader, incoming.on_data)
-        self._is_told = False
+        self._is_announced = False
 
     def open_client(self, client: Any) -> None:
         """Mirror a client."""
@@ -187,16 +187,16 @@ class Engine(AnyEngine):
         self._meet_fast(outside)
         self._reception.attach(outside.pair.reader, outside.on_data)
         self._control.attach(outside.pair.writer, outside.on_writer_status)
-        self._is_told = False
+        self._is_announced = False
 
     def open_presence(self, presence: Any) -> None:
         """Show an endpoint that takes no part."""
         self._presences[presence] = open_presence(presence, self._domain)
-        self._is_told = False
+        self._is_announced = False
 
     def close_endpoint(self, endpoint: Any) -> None:
         """Delete the mirror of a subscription, a service, a client or a presence."""
-        self._is_told = False
+        self._is_announced = False
         presence = self._presences.pop(endpoint, None)
         if presence is not None:
             presence.close()
@@ -220,14 +220,14 @@ class Engine(AnyEngine):
         self._end_leaving()
         self._write_waiting()
         late = self._review_replies()
-        self._tell_mismatches()
-        self._tell()
+        self._log_mismatches()
+        self._announce()
         asking, departing = self._discovery.ask_silent(), self._departures.review()
         if self._work:
             return 0.0
         if self._leaving or self._waiting or self._mismatched or late:
             return _LOOK_AGAIN
-        return min((each for each in (asking, departing) if each is not None), default=None)
+        return min((seconds for seconds in (asking, departing) if seconds is not None), default=None)
 
     def _look_outside(self) -> None:
         matches_changed, self._matches_changed = self._matches_changed, False
@@ -290,11 +290,11 @@ class Engine(AnyEngine):
         self._mismatched[topic] = time.monotonic() + _NAMED_WITHIN
         self._control.wake()
 
-    def _tell_mismatches(self) -> None:
+    def _log_mismatches(self) -> None:
         """Report incompatible QoS with the names of the nodes, which are known a moment after the mismatch."""
         for topic, due in tuple(self._mismatched.items()):
             is_due = time.monotonic() >= due
-            topic.tell_mismatches(finally_=is_due)
+            topic.log_mismatches(finally_=is_due)
             if is_due:
                 self._mismatched.pop(topic, None)
 
@@ -312,13 +312,13 @@ class Engine(AnyEngine):
                 self._waiting.pop(topic, None)
                 topic.close()
 
-    def _tell(self) -> None:
+    def _announce(self) -> None:
         """Announce our nodes when something changed; many changes in a row are announced together."""
-        if not self._is_told and (not self._work or time.monotonic() - self._told_at > self._tell_span):
+        if not self._is_announced and (not self._work or time.monotonic() - self._announced_at > self._announce_span):
             self._discovery.publish(self._described_nodes())
-            self._is_told = True
-            self._tell_span = _TELL_SPAN
-            self._told_at = time.monotonic()
+            self._is_announced = True
+            self._announce_span = _ANNOUNCE_SPAN
+            self._announced_at = time.monotonic()
 
     def _described_nodes(self) -> list[NodeEntities]:
         readers: dict[NodeIdentity, list[bytes]] = {node: [] for node in self._nodes}

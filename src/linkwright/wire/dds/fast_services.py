@@ -65,8 +65,8 @@ class FastServer:
     """A service of this process, as clients on Fast DDS call it.
 
     A client there takes a service for ready as soon as it knows one reader and one writer of it, which may be those of
-    Cyclone. Its request then reaches Cyclone's reader alone, which hands on no number; `came_early` takes it, and it
-    gets its number when the client is heard here.
+    Cyclone. Its request then reaches Cyclone's reader alone, which hands on no number; `on_early_request` takes it, and
+    it gets its number when the client is heard here.
 
     Args:
         service: the service.
@@ -87,7 +87,7 @@ class FastServer:
         self._replies = participant.add_writer(dds_topic(Role.REPLY, service.name), response, facts)
         self._requests = participant.add_reader(dds_topic(Role.REQUEST, service.name), request, facts, self._on_data)
 
-    def came_early(self, request: EarlyRequest) -> None:
+    def on_early_request(self, request: EarlyRequest) -> None:
         """Take a request from Cyclone's reader; it is dropped when it arrives here too."""
         heard_at = self._participant.matched_writers(self._requests).get(request.writer)
         if heard_at is None or time.monotonic() < heard_at + _SETTLED:
@@ -118,13 +118,13 @@ class FastServer:
     def _on_data(self, sample: Data) -> None:
         with self._lock:
             self._first.setdefault(sample.writer, (sample.number, sample.time))
-            asked = self._numbered.get(sample.writer, ())
-            if any(number == sample.number and abs(time_ - sample.time) < _SAME_TIME for number, time_ in asked):
+            numbered = self._numbered.get(sample.writer, ())
+            if any(number == sample.number and abs(time_ - sample.time) < _SAME_TIME for number, time_ in numbered):
                 return  # it arrived so late here that it was taken from Cyclone's reader
-        told = read_related_identity(sample.inline, sample.order)
+        identity = read_related_identity(sample.inline, sample.order)
         client = sample.writer
-        if told is not None and is_reader(told[0]) and told[0].startswith(sample.source):
-            client = told[0]
+        if identity is not None and is_reader(identity[0]) and identity[0].startswith(sample.source):
+            client = identity[0]
         self._ask(sample.payload or b"", sample.writer, client, sample.number)
 
     def _ask(self, body: bytes, writer: bytes, client: bytes, number: int) -> None:
@@ -230,11 +230,11 @@ class FastClient:
         self._answers.pop(number, None)
 
     def _on_data(self, sample: Data) -> None:
-        told = read_related_identity(sample.inline, sample.order)
-        if told is None or told[0] not in self._identities:
+        identity = read_related_identity(sample.inline, sample.order)
+        if identity is None or identity[0] not in self._identities:
             return
         with self._lock:
-            answer = self._answers.pop(told[1], None)
+            answer = self._answers.pop(identity[1], None)
         if answer is not None:
             hand_response_on(sample.payload or b"", self._client, answer)
 

@@ -59,13 +59,13 @@ def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | Non
     Returns:
         The bytes, 0 also where no socket listens; None where the system does not report them.
     """
-    wanted = b":%04X" % port
+    pattern = b":%04X" % port
     most = 0
     try:
         for line in (tables / _TABLES[0]).read_bytes().splitlines():
-            if wanted in line:
+            if pattern in line:
                 words = line.split()
-                if words[1].endswith(wanted):
+                if words[1].endswith(pattern):
                     most = max(most, int(words[4].rpartition(b":")[2], 16))
     except (OSError, ValueError, IndexError):
         return None

@@ -148,7 +148,7 @@ class RemoteEndpoint:
 class DepartureWatch(Protocol):
     """Is notified of endpoints that disappear; see `linkwright.wire.dds.departures.Departures`."""
 
-    def endpoint_went(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
+    def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         """Note that an endpoint disappeared; `node` still announces it, or is None where it was withdrawn."""
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
@@ -171,18 +171,18 @@ class RemoteGraph(Outside):
 
     # --- from discovery -----------------------------------------------------------------------------------------
 
-    def participant_came(self, participant: RemoteParticipant) -> None:
+    def add_participant(self, participant: RemoteParticipant) -> None:
         """Record a participant."""
         with self._lock:
             known = self._participants.get(participant.guid)
-            said = self._early.pop(participant.guid, None)
-            participant.entities = known.entities if known else said
+            early = self._early.pop(participant.guid, None)
+            participant.entities = known.entities if known else early
             if known is not None:
                 participant.came_at, participant.peer_process = known.came_at, known.peer_process
                 participant.host = participant.host or known.host
             self._participants[participant.guid] = participant
 
-    def participant_went(self, guid: bytes) -> None:
+    def remove_participant(self, guid: bytes) -> None:
         """Remove a participant and its endpoints."""
         with self._lock:
             for endpoint in [endpoint for endpoint in self._endpoints.values() if endpoint.participant == guid]:
@@ -190,13 +190,13 @@ class RemoteGraph(Outside):
             self._participants.pop(guid, None)
             self._early.pop(guid, None)
 
-    def endpoint_came(self, endpoint: RemoteEndpoint) -> None:
+    def add_endpoint(self, endpoint: RemoteEndpoint) -> None:
         """Record a reader or writer."""
         with self._lock:
             self._endpoints[endpoint.guid] = endpoint
             self._by_handle[endpoint.handle] = endpoint
 
-    def endpoint_went(self, guid: bytes) -> None:
+    def remove_endpoint(self, guid: bytes) -> None:
         """Remove a reader or writer."""
         with self._lock:
             endpoint = self._endpoints.get(guid)
@@ -216,7 +216,7 @@ class RemoteGraph(Outside):
 
     def _forget(self, endpoint: RemoteEndpoint) -> None:
         if self.departures is not None:
-            self.departures.endpoint_went(endpoint, self._owner_of(endpoint))
+            self.departures.endpoint_left(endpoint, self._owner_of(endpoint))
         self._endpoints.pop(endpoint.guid, None)
         self._by_handle.pop(endpoint.handle, None)
 

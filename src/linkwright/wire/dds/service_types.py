@@ -16,8 +16,8 @@ def service_facts(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> by
         is_server: which of the two.
     """
     key = "serviceid" if is_server else "clientid"
-    told = _hash_of(endpoint)
-    return (f"{key}={endpoint_id(identity)};" + (f"typehash={told};" if told else "")).encode()
+    hash_text = _hash_of(endpoint)
+    return (f"{key}={endpoint_id(identity)};" + (f"typehash={hash_text};" if hash_text else "")).encode()
 
 
 def halves(service_type: str) -> tuple[str, str]:

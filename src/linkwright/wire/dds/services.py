@@ -96,7 +96,7 @@ class Pair:
     def samples(self) -> Iterator[tuple[bytes, Any]]:
         """The samples that have come, as CDR, and Cyclone's information on each."""
         taken = self._dds.take_bytes(self.reader, ANY_STATE, _AT_ONCE)
-        return (each for each in (taken if isinstance(taken, list) else ()) if each[1].valid_data)
+        return (sample for sample in (taken if isinstance(taken, list) else ()) if sample[1].valid_data)
 
     def write(self, client_id: int, number: int, message: Any) -> None:
         """Write a request or a reply."""
@@ -183,9 +183,9 @@ class OutsideServer:
         self._answers.pop(number, None)
 
     def _server_is_there(self) -> bool:
-        listening = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.writer, writer=True)]
+        listening = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True)]
         ours = [endpoint for endpoint in listening if endpoint is not None and not endpoint.is_fast]
-        replying = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.reader, writer=False)]
+        replying = [self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.reader, writer=False)]
         return any(_belong_together(a, b, "serviceid") for a in ours for b in replying)
 
 
@@ -229,7 +229,7 @@ class IncomingService:
         self._fast = FastServer(self._service, participant)
         early, self._early = self._early, []
         for request in early:
-            self._fast.came_early(request)
+            self._fast.on_early_request(request)
 
     def review(self) -> None:
         """Write the replies whose client can be reached by now, or could not for too long."""
@@ -263,7 +263,7 @@ class IncomingService:
         if self._fast is None:
             self._early = [*self._early[-_AT_ONCE:], request]
         else:
-            self._fast.came_early(request)
+            self._fast.on_early_request(request)
             self._waits()
         return True
 
@@ -278,7 +278,7 @@ class IncomingService:
 
     def _can_reach(self, sender: RemoteEndpoint | None) -> bool:
         """Whether the client's reader is connected with our writer: before that it would miss the reply."""
-        readers = (self._remote.endpoint(each) for each in self._dds.matched(self.pair.writer, writer=True))
+        readers = (self._remote.endpoint(handle) for handle in self._dds.matched(self.pair.writer, writer=True))
         return any(_belong_together(sender, reader, "clientid") for reader in readers)
 
 

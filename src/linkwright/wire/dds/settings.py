@@ -109,7 +109,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     return Settings(
         domain_id=domain_id,
         range=reach,
-        configurations=tuple(",".join(part for part in (each, user) if part) for each in own),
+        configurations=tuple(",".join(part for part in (configuration, user) if part) for configuration in own),
         gid_size=OLD_GID_SIZE if is_before_iron(variables) else GID_SIZE,
         warnings=tuple(warnings),
         user_configuration=user,
@@ -126,7 +126,7 @@ def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
         return Range.LOCALHOST
     named = variables.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "")
     if named:
-        choices = [each.value for each in Range if each is not Range.MACHINE]
+        choices = [choice.value for choice in Range if choice is not Range.MACHINE]
         if named in choices:
             return Range(named)
         hint = did_you_mean(named, choices)

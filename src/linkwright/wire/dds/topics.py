@@ -99,20 +99,20 @@ class MirroredTopic(ABC):
         self.guid = self._dds.guid(self.entity)
         endpoint.gid = self.guid
         self._dds.dds_set_status_mask(self.entity, self._STATUS)
-        self._told = _Told()
+        self._log_limits = _LogLimits()
 
     def _describe_type(self, endpoint: Endpoint, domain: Domain) -> tuple[Any, bytes]:
         """The type's description for Cyclone, and its hash for others in USER_DATA.
 
         A type that is in no package here has only a name, which suffices where bytes are carried.
         """
-        told = f"typehash={endpoint.type_hash};".encode() if endpoint.type_hash else b""
+        announced = f"typehash={endpoint.type_hash};".encode() if endpoint.type_hash else b""
         try:
-            return domain.types.message(endpoint.interface), told or type_facts(endpoint.interface)
+            return domain.types.message(endpoint.interface), announced or type_facts(endpoint.interface)
         except InterfaceNotFoundError:
             if not endpoint.raw:
                 raise
-            return domain.types.by_name(endpoint.type_name), told
+            return domain.types.by_name(endpoint.type_name), announced
 
     def _profile_of(self, endpoint: Any) -> QoSProfile:
         """The quality of service that is offered or asked for."""
@@ -281,14 +281,14 @@ class OutgoingTopic(MirroredTopic):
 
     def _failed(self, code: int) -> None:
         """Log that messages are not sent: once, and again after some time."""
-        if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._told.is_due("failed"):
+        if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._log_limits.is_due("failed"):
             return
         reason = "the subscribers outside do not keep up" if code == TIMEOUT else describe(code)
         self._publisher.node.logger.warning(
             f"A message of topic '{self._publisher.name}' was not sent out of this process: {reason}"
         )
 
-    def tell_mismatches(self, *, finally_: bool) -> None:
+    def log_mismatches(self, *, finally_: bool) -> None:
         """Report the subscriptions of other processes that request more than this publisher offers.
 
         Args:
@@ -298,7 +298,7 @@ class OutgoingTopic(MirroredTopic):
         for reader in self._remote.endpoints_of(self.topic_name, writers=False):
             policies = incompatible_policies(offered, reader.qos)
             name = self._remote.node_name(reader)
-            if policies and (name or finally_) and self._told.is_new(reader.guid):
+            if policies and (name or finally_) and self._log_limits.is_new(reader.guid):
                 sides = describe_mismatch(self._publisher.node_name, offered, name or _NAMELESS, reader.qos, policies)
                 report_to_publisher(self._publisher, policies[-1].name, sides)
 
@@ -318,7 +318,7 @@ class IncomingTopic(MirroredTopic):
         self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS & ~DATA_AVAILABLE)
         if status.value:
             self._on_change(status.value)
-        return self._take()
+        return self._receive()
 
     def close(self) -> None:
         """Delete the reader."""
@@ -327,7 +327,7 @@ class IncomingTopic(MirroredTopic):
     def _create(self, qos: Any) -> int:
         return self._participant.create_reader(self._topic, qos)
 
-    def _take(self) -> bool:
+    def _receive(self) -> bool:
         samples = self._dds.take_bytes(self.entity, ANY_STATE, AT_ONCE)
         if not isinstance(samples, list):
             return False
@@ -368,27 +368,27 @@ class IncomingTopic(MirroredTopic):
         if changed & REQUESTED_INCOMPATIBLE_QOS:
             self._mismatch(self)
 
-    def tell_mismatches(self, *, finally_: bool) -> None:
+    def log_mismatches(self, *, finally_: bool) -> None:
         """Report the publishers of other processes that offer less than this subscription requests."""
         requested = self._subscription.qos_profile
         for writer in self._remote.endpoints_of(self.topic_name, writers=True):
             policies = incompatible_policies(writer.qos, requested)
             name = self._remote.node_name(writer)
-            if policies and (name or finally_) and self._told.is_new(writer.guid):
+            if policies and (name or finally_) and self._log_limits.is_new(writer.guid):
                 sides = describe_mismatch(
                     name or _NAMELESS, writer.qos, self._subscription.node_name, requested, policies
                 )
                 report_to_subscription(self._subscription, policies[-1].name, sides)
 
 
-class _Told:
+class _LogLimits:
     """Remembers logged messages."""
 
     _AGAIN_AFTER = 30.0
 
     def __init__(self) -> None:
         self._guids: set[bytes] = set()
-        self._said: dict[str, float] = {}
+        self._logged: dict[str, float] = {}
 
     def is_new(self, guid: bytes) -> bool:
         """Whether nothing was logged about an endpoint so far."""
@@ -399,9 +399,9 @@ class _Told:
     def is_due(self, what: str) -> bool:
         """Whether it is time to log a message, for the first time or again."""
         now = time.monotonic()
-        is_due = now - self._said.get(what, -self._AGAIN_AFTER) >= self._AGAIN_AFTER
+        is_due = now - self._logged.get(what, -self._AGAIN_AFTER) >= self._AGAIN_AFTER
         if is_due:
-            self._said[what] = now
+            self._logged[what] = now
         return is_due
 
 

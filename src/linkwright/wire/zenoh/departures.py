@@ -75,7 +75,7 @@ class Departures:
         """The live sessions of Linkwright, which announce their end."""
         return self._here
 
-    def session_came(self, session: str) -> None:
+    def session_started(self, session: str) -> None:
         """Note a session of Linkwright's."""
         self._here.add(session)
 
@@ -88,7 +88,7 @@ class Departures:
         self._here.discard(session)
         self._ended[session] = self._now()
 
-    def went(self, key: str, token: Token) -> None:
+    def token_removed(self, key: str, token: Token) -> None:
         """Note a token that is gone."""
         if token.kind is None:
             self._nodes_gone[token.node_key] = self._now()

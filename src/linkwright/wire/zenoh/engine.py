@@ -82,7 +82,7 @@ class Engine(AnyEngine):
         self._follows = False
         self._thread = threading.Thread(target=self._run, name="linkwright-zenoh", daemon=True)
         self._here: Any = None
-        self._interests = Interests(self._session, settings.domain_id, self._hear)
+        self._interests = Interests(self._session, settings.domain_id, self._on_token)
 
     def start(self) -> None:
         """Begin."""
@@ -111,7 +111,7 @@ class Engine(AnyEngine):
             if hasattr(mirrored, "abandon"):
                 mirrored.abandon()
         if not ends_by_error():
-            self._say_farewell()
+            self._announce_departure()
         for mirrored in self._mirrored.values():
             mirrored.close()
         self._interests.close()
@@ -244,21 +244,21 @@ class Engine(AnyEngine):
                 return tokens.NO_HASH
             raise
 
-    def look_around(self, seconds: float, told: Callable[[], None]) -> None:
+    def look_around(self, seconds: float, answered: Callable[[], None]) -> None:
         """Discover the whole graph from now on.
 
         Args:
             seconds: the time after which every process has announced itself at the latest.
-            told: called then, from any thread.
+            answered: called then, from any thread.
         """
-        self._interests.ask_all(seconds, told)
+        self._interests.ask_all(seconds, answered)
         self._interests.add_all()
 
     def note_news(self) -> None:
         """Process the tokens that were heard of."""
         while self._news:
-            came, key = self._news.popleft()
-            self._has_changed = self._note(came=came, key=key) or self._has_changed
+            appeared, key = self._news.popleft()
+            self._has_changed = self._note(appeared=appeared, key=key) or self._has_changed
         follows = self._departures.is_watched and not self._interests.in_all
         if follows and (self._has_changed or not self._follows):
             there = self._remote.sessions() | self._departures.here
@@ -272,7 +272,7 @@ class Engine(AnyEngine):
 
     # --- news, from threads of Zenoh ---------------------------------------------------------------------------------
 
-    def _hear(self, sample: zenoh.Sample) -> None:
+    def _on_token(self, sample: zenoh.Sample) -> None:
         self._news.append((sample.kind == zenoh.SampleKind.PUT, str(sample.key_expr)))
         self._wake.set()
 
@@ -287,11 +287,11 @@ class Engine(AnyEngine):
         while not self._ended.is_set():
             self._wake.clear()
             self._do_some_work()
-            guarded(self._take_news, self._report)
+            guarded(self._handle_news, self._report)
             again = 0.0 if self._work else guarded(self._departures.review, self._report)
             self._wake.wait(again)
 
-    def _take_news(self) -> None:
+    def _handle_news(self) -> None:
         self.note_news()
         changed, self._has_changed = self._has_changed, False
         if changed or self._is_stale:
@@ -301,30 +301,30 @@ class Engine(AnyEngine):
         if changed:
             self._remote.announce()
 
-    def _note(self, *, came: bool, key: str) -> bool:
+    def _note(self, *, appeared: bool, key: str) -> bool:
         """Note a token; whether that changes the graph outside."""
         if key.startswith(OURS):
-            self._note_session(came=came, key=key)
+            self._note_session(appeared=appeared, key=key)
             return False
         token = tokens.read(key)
         if token is None or token.session == self._session_id:
             return False
-        if came:
-            return not (self._is_client and self._remote.has_just_gone(key)) and self._remote.came(key, token)
-        if self._remote.went(key) is None:
+        if appeared:
+            return not (self._is_client and self._remote.has_just_gone(key)) and self._remote.add(key, token)
+        if self._remote.remove(key) is None:
             return False
-        self._departures.went(key, token)
+        self._departures.token_removed(key, token)
         return True
 
-    def _note_session(self, *, came: bool, key: str) -> None:
+    def _note_session(self, *, appeared: bool, key: str) -> None:
         """Note a token of a session of Linkwright's."""
         _, _, session, what = key.split("/")
-        if what == "here" and came:
-            self._departures.session_came(session)
+        if what == "here" and appeared:
+            self._departures.session_started(session)
         elif what == "here":
             self._departures.session_ended(session)
             self._follows = False  # no more tokens are to be heard of
-        elif came:
+        elif appeared:
             self._departures.session_leaves(session)
 
     def _review(self, mirrored: Any) -> None:
@@ -347,7 +347,7 @@ class Engine(AnyEngine):
                 "'linkwright run rmw_zenoh_cpp rmw_zenohd', or 'ros2 run rmw_zenoh_cpp rmw_zenohd'"
             )
 
-    def _say_farewell(self) -> None:
+    def _announce_departure(self) -> None:
         """Announce that this session leaves, and withdraw endpoints, then nodes."""
         left = self._session.liveliness().declare_token(self._own_token("left"))
         for token in self._tokens.values():

@@ -87,19 +87,19 @@ class Interests:
         for declared in before.values():
             declared.undeclare()
 
-    def ask_all(self, seconds: float, told: Callable[[], None]) -> None:
+    def ask_all(self, seconds: float, answered: Callable[[], None]) -> None:
         """Ask for the live tokens of the domain; before `add_all`, after which Zenoh answers from its own memory.
 
         Args:
             seconds: the longest wait.
-            told: called from a thread of Zenoh when all have answered, or the time is over.
+            answered: called from a thread of Zenoh when all have answered, or the time is over.
         """
 
-        def take(reply: zenoh.Reply) -> None:
+        def receive(reply: zenoh.Reply) -> None:
             if reply.ok is not None:
                 self._hear(reply.ok)
 
-        handler: Any = Callback(take, told, indirect=False)
+        handler: Any = Callback(receive, answered, indirect=False)
         self._liveliness.get(self._all, handler, timeout=seconds)
 
     def close(self) -> None:

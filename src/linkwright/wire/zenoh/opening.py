@@ -17,10 +17,10 @@ from linkwright.wire.zenoh.session import could_not_connect, open_with, refusal
 _AGAIN = 1.0
 """Seconds after which the addresses are called again."""
 
-_SAID_AFTER = 1.0
+_LOGGED_AFTER = 1.0
 """Seconds after which the log names the reason of a wait."""
 
-_SAID_AGAIN_AFTER = 10.0
+_LOGGED_AGAIN_AFTER = 10.0
 
 
 class Patience:
@@ -50,12 +50,12 @@ class Patience:
             return open_with(config)
         config.insert_json5("connect/timeout_ms", "0")
         self.waits = True
-        telling = Telling(config, self._say)
+        obstacle_log = Telling(config, self._log_wait)
         try:
-            telling.start()
+            obstacle_log.start()
             return self._open_until(config, time.monotonic() + seconds)
         finally:
-            telling.end()
+            obstacle_log.end()
             self.waits = False
 
     def _open_until(self, config: zenoh.Config, until: float) -> zenoh.Session:
@@ -67,7 +67,7 @@ class Patience:
             if not could_not_connect(opened) or rest <= 0 or self._given_up.wait(min(_AGAIN, rest)):
                 raise refusal(opened, config) from opened
 
-    def _say(self, reasons: str) -> None:
+    def _log_wait(self, reasons: str) -> None:
         self._logger.warning(f"Waiting for a Zenoh router: {reasons}")
 
 
@@ -76,15 +76,15 @@ class Telling:
 
     Args:
         config: the session's.
-        say: called from a thread with the obstacles.
+        log: called from a thread with the obstacles.
         linked: whether there is nothing to report for now.
     """
 
     def __init__(
-        self, config: zenoh.Config, say: Callable[[str], None], linked: Callable[[], bool] = lambda: False
+        self, config: zenoh.Config, log: Callable[[str], None], linked: Callable[[], bool] = lambda: False
     ) -> None:
         self._config = config
-        self._say = say
+        self._log = log
         self._linked = linked
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="linkwright-zenoh-waits", daemon=True)
@@ -98,17 +98,17 @@ class Telling:
         self._over.set()
 
     def _run(self) -> None:
-        pause = _SAID_AFTER
+        pause = _LOGGED_AFTER
         while not self._over.wait(pause):
             if self._linked():
-                pause = _SAID_AFTER
+                pause = _LOGGED_AFTER
                 continue
             reasons = (
                 joined(obstacles(self._config), "; ") or f"{', '.join(asked_for(self._config))} accepts no session"
             )
             if not self._over.is_set() and not self._linked():
-                self._say(reasons)
-            pause = _SAID_AGAIN_AFTER
+                self._log(reasons)
+            pause = _LOGGED_AGAIN_AFTER
 
 
 def _try(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:

@@ -29,8 +29,8 @@ _CALLED = ("tcp", "tls")
 def asked_for(config: zenoh.Config) -> list[str]:
     """The addresses that a configuration has a session connect to."""
     addresses = of_mode(config, "connect/endpoints", default=[])
-    flat = [each for group in addresses for each in (group if isinstance(group, list) else [group])]
-    return [str(each) for each in flat]
+    flat = [address for group in addresses for address in (group if isinstance(group, list) else [group])]
+    return [str(address) for address in flat]
 
 
 def of_mode(config: zenoh.Config, key: str, *, default: Any) -> Any:
@@ -44,7 +44,7 @@ def of_mode(config: zenoh.Config, key: str, *, default: Any) -> Any:
 def obstacles(config: zenoh.Config) -> list[Phrase]:
     """The reasons why a session cannot connect to its addresses, as far as they are found."""
     tls = json.loads(config.get_json("transport/link/tls")) or {}
-    found = [found for each in asked_for(config) if (found := obstacle(each, tls))]
+    found = [found for address in asked_for(config) if (found := obstacle(address, tls))]
     if not found and json.loads(config.get_json("id")) is not None:
         found.append(phrase("the process there may have the same 'id': leave 'id' out of the configuration"))
     return found
@@ -71,7 +71,7 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
         with socket.create_connection((host, port), _PATIENCE) as called:
             return _tls_obstacle(address, called, host, tls) if parts["kind"] == "tls" else _silence(address, called)
     except socket.gaierror as error:
-        return phrase("the name of {address} is not known here: {reason}", address=address, reason=_said(error))
+        return phrase("the name of {address} is not known here: {reason}", address=address, reason=_reason(error))
     except ConnectionRefusedError:
         return phrase("nothing listens at {address}: start a router there, or correct the port", address=address)
     except TimeoutError:
@@ -80,7 +80,7 @@ def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
             address=address,
         )
     except OSError as error:
-        return phrase("{address} is out of reach: {reason}", address=address, reason=_said(error))
+        return phrase("{address} is out of reach: {reason}", address=address, reason=_reason(error))
 
 
 def _silence(address: str, called: socket.socket) -> Phrase:
@@ -100,13 +100,16 @@ def _silence(address: str, called: socket.socket) -> Phrase:
 
 
 def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[str, Any]) -> Phrase:
-    if any(tls.get(f"{each}_base64") for each in ("root_ca_certificate", "connect_certificate", "connect_private_key")):
+    if any(
+        tls.get(f"{setting}_base64")
+        for setting in ("root_ca_certificate", "connect_certificate", "connect_private_key")
+    ):
         return Phrase("")
     context = ssl.create_default_context()
     context.verify_flags &= ~ssl.VERIFY_X509_STRICT  # which Python sets from 3.13 on, and Zenoh does not ask for
     context.check_hostname = tls.get("verify_name_on_connect") is not False
     authority, certificate, key = (
-        tls.get(each) or "" for each in ("root_ca_certificate", "connect_certificate", "connect_private_key")
+        tls.get(setting) or "" for setting in ("root_ca_certificate", "connect_certificate", "connect_private_key")
     )
     for path in (authority, certificate, key):
         problem = _unreadable(path)
@@ -142,7 +145,7 @@ def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[s
     except ssl.SSLError as error:
         return _refused(address, certificate, str(error.reason or error))
     except OSError as error:
-        return phrase("{address} hangs up during TLS: {reason}", address=address, reason=_said(error))
+        return phrase("{address} hangs up during TLS: {reason}", address=address, reason=_reason(error))
     return Phrase("")
 
 
@@ -175,9 +178,9 @@ def _unreadable(path: str) -> Phrase:
             with Path(path).open("rb"):
                 pass
     except OSError as error:
-        return phrase("'{path}' cannot be read: {reason}", path=path, reason=_said(error))
+        return phrase("'{path}' cannot be read: {reason}", path=path, reason=_reason(error))
     return Phrase("")
 
 
-def _said(error: OSError) -> Phrase:
+def _reason(error: OSError) -> Phrase:
     return foreign(error.strerror or error)

@@ -28,7 +28,7 @@ class RemoteGraph(Outside):
 
     # --- from discovery ----------------------------------------------------------------------------------------------
 
-    def came(self, key: str, token: Token) -> bool:
+    def add(self, key: str, token: Token) -> bool:
         """Record a token by its key expression, to which newer distributions may have added; whether it is new."""
         with self._lock:
             if key in self._tokens:
@@ -46,10 +46,10 @@ class RemoteGraph(Outside):
         """
         return key in self._gone and time.monotonic() - self._gone[key] < _GONE_FOR
 
-    def went(self, key: str) -> Token | None:
+    def remove(self, key: str) -> Token | None:
         """Remove a token; None when it was not known."""
         now = time.monotonic()
-        for old in [each for each in islice(self._gone, 2) if now - self._gone[each] > _GONE_FOR]:
+        for old in [gone_key for gone_key in islice(self._gone, 2) if now - self._gone[gone_key] > _GONE_FOR]:
             del self._gone[old]  # of those in order of their going two for each, so that few remain
         self._gone.pop(key, None)
         self._gone[key] = now
@@ -65,7 +65,7 @@ class RemoteGraph(Outside):
     def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:
         """Remove the endpoints of a kind at a key that is not heard of any more."""
         with self._lock:
-            gone = [key for key, each in self._tokens.items() if (each.kind, each.data_key) == (kind, data_key)]
+            gone = [key for key, token in self._tokens.items() if (token.kind, token.data_key) == (kind, data_key)]
             for key in gone:
                 del self._tokens[key]
             self._counts.pop((kind, data_key), None)
@@ -73,7 +73,7 @@ class RemoteGraph(Outside):
     def forget_nodes(self, full_name: str) -> None:
         """Remove the nodes of a name that is not heard of any more."""
         with self._lock:
-            for key in [key for key, each in self._tokens.items() if each.kind is None]:
+            for key in [key for key, token in self._tokens.items() if token.kind is None]:
                 if self._tokens[key].node.full_name == full_name:
                     del self._tokens[key]
 

@@ -46,7 +46,7 @@ class OutsideServer:
         self.token = token
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._is_ready = False
-        self._told = False
+        self._warned = False
         client.gid = token.gid
         self._querier: Any = session.declare_querier(
             token.data_key,
@@ -99,8 +99,8 @@ class OutsideServer:
 
     def _end(self, number: int) -> None:
         """Log once that a request has ended without a reply: its future stays open, as rclpy's does."""
-        if self._answers.pop(number, None) is not None and not self._told and not self._client.destroyed:
-            self._told = True
+        if self._answers.pop(number, None) is not None and not self._warned and not self._client.destroyed:
+            self._warned = True
             self._client.node.logger.warning(
                 f"A request to service '{self._client.name}' was not answered: its server has left, failed, or took "
                 "too long"

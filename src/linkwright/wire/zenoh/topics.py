@@ -127,7 +127,7 @@ class IncomingTopic:
         self.token = token
         self._own = own
         self._last: dict[bytes, int] = {}
-        self._told = False
+        self._warned = False
         subscription.gid = token.gid
         profile = subscription.qos_profile
         handler: Any = Callback(self._receive, indirect=False)
@@ -175,8 +175,8 @@ class IncomingTopic:
             self._subscription.report(error)
 
     def _refuse(self) -> None:
-        if not self._told:
-            self._told = True
+        if not self._warned:
+            self._warned = True
             self._subscription.node.logger.warning(
                 f"Dropped a message of topic '{self._subscription.name}': it does not name its sender and time, as "
                 "those of ROS 2 do over Zenoh"

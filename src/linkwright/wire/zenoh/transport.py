@@ -66,10 +66,10 @@ class ZenohTransport(BackgroundTransport):
             if waits and not self._looked.is_set():
                 self._looked.wait(_ANSWERED_WITHIN)
             return
-        told = Event()
-        self._do(lambda engine: cast("ZenohEngine", engine).look_around(_ANSWERED_WITHIN, told.set))
+        answered = Event()
+        self._do(lambda engine: cast("ZenohEngine", engine).look_around(_ANSWERED_WITHIN, answered.set))
         if waits:  # otherwise the graph outside arrives as news
-            self._wait_until_told(told)
+            self._wait_for_answer(answered)
             self._do(self._note_news)
             self._looked.wait(_ANSWERED_WITHIN)
         self._looked.set()
@@ -79,9 +79,9 @@ class ZenohTransport(BackgroundTransport):
         """Whether it waits for a router without which the session is not to be opened."""
         return self._patience is not None and self._patience.waits
 
-    def _wait_until_told(self, told: Event) -> None:
+    def _wait_for_answer(self, answered: Event) -> None:
         """Wait for the answer, and until no more of it comes, which now and then it does."""
-        told.wait(_ANSWERED_WITHIN)
+        answered.wait(_ANSWERED_WITHIN)
         begin = time.monotonic()
         while time.monotonic() < min(begin + _ANSWERED_WITHIN, max(self._remote.changed_at, begin) + _QUIET):
             time.sleep(_QUIET / 10)

@@ -141,7 +141,9 @@ class Network:
     def best_of(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
         """The address to send to for a receiver at some addresses: one of this machine is enough."""
         known = tuple(dict.fromkeys(addresses))
-        here = sorted((each for each in known if self.is_here(each[0])), key=lambda each: each[0] != _LOOPBACK)
+        here = sorted(
+            (address for address in known if self.is_here(address[0])), key=lambda address: address[0] != _LOOPBACK
+        )
         if here:
             return (here[0],)
         return () if self._places.only_here else known

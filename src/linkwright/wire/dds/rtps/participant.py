@@ -61,7 +61,7 @@ _IDLE = 1.0
 
 @dataclass(slots=True)
 class _Peer:
-    told: ParticipantData
+    participant: ParticipantData
     until: float
     discovery: tuple[Address, ...]
     user: tuple[Address, ...]
@@ -114,7 +114,7 @@ class RtpsParticipant:
         self._look_at = 0.0
         self._announce_at = 0.0
         self._announced = 0
-        self._made = 0
+        self._last_entity = 0
         self._count = 0
         self._publications = Writer(self.prefix + v.PUBLICATIONS_WRITER, lasting=True)
         self._subscriptions = Writer(self.prefix + v.SUBSCRIPTIONS_WRITER, lasting=True)
@@ -166,12 +166,12 @@ class RtpsParticipant:
         """Delete a reader or writer."""
         is_reader = isinstance(local, LocalReader)
         guid = local.reader.guid if isinstance(local, LocalReader) else local.writer.guid
-        telling = self._subscriptions if is_reader else self._publications
+        announcer = self._subscriptions if is_reader else self._publications
         with self._lock:
             self._readers.pop(guid[v.PREFIX :], None)
             self._writers.pop(guid[v.PREFIX :], None)
-            telling.withdraw(local.announced)
-            packets = telling.write(None, inline=key_of(guid, gone=True))
+            announcer.withdraw(local.announced)
+            packets = announcer.write(None, inline=key_of(guid, gone=True))
         self._network.send(packets)
 
     def write(self, local: LocalWriter, payload: bytes, *, inline: bytes = b"", to: bytes = b"") -> int:
@@ -201,10 +201,10 @@ class RtpsParticipant:
         """Where a reader of another participant listens on this machine; None where that is not known."""
         with self._lock:
             peer = self._peers.get(reader[: v.PREFIX])
-            told = peer.endpoints.get(reader) if peer is not None else None
-            if peer is None or told is None:
+            endpoint = peer.endpoints.get(reader) if peer is not None else None
+            if peer is None or endpoint is None:
                 return None
-            addresses = self._network.best_of(told.addresses) or peer.user
+            addresses = self._network.best_of(endpoint.addresses) or peer.user
         return next((address for address in addresses if self._network.is_here(address[0])), None)
 
     def last_of(self, local: LocalReader, writer: bytes) -> int:
@@ -227,7 +227,7 @@ class RtpsParticipant:
         self._ring()
         if threading.current_thread() is not self._thread:
             self._thread.join()
-        self._tell_peers(self._spdp(gone=True))
+        self._send_to_peers(self._spdp(gone=True))
         self._network.close()
         self._bell.close()
         self._ringer.close()
@@ -266,30 +266,30 @@ class RtpsParticipant:
         now = time.monotonic()
         packets: list[Packet] = []
         with self._lock:
-            lost = [each for each, peer in self._peers.items() if peer.until < now]
+            lost = [prefix for prefix, peer in self._peers.items() if peer.until < now]
             for prefix in lost:
                 self._forget_peer(prefix)
-            looking = bool(self._expected - self._peers.keys()) and now >= self._look_at
-            if looking:
+            looks = bool(self._expected - self._peers.keys()) and now >= self._look_at
+            if looks:
                 self._look_at = now + _LOOKED_FOR_AFTER[min(self._looked + 1, len(_LOOKED_FOR_AFTER) - 1)]
                 self._looked += 1
-            telling = now >= self._announce_at
-            if telling:
+            announces = now >= self._announce_at
+            if announces:
                 self._announce_at = now + _ANNOUNCED_EVERY
             entities = self._entities()
             for entity in entities:
                 packets += entity.remind(now)
-            due = [each for entity in entities if (each := entity.next_reminder()) is not None]
+            due = [reminder for entity in entities if (reminder := entity.next_reminder()) is not None]
             due.append(self._announce_at)
             if self._expected - self._peers.keys():
                 due.append(self._look_at)
         self._network.send(packets)
         if lost:
             self.changed()
-        if looking:
+        if looks:
             self._network.send_everywhere(self._spdp())
-        if telling:
-            self._tell_peers(self._spdp())
+        if announces:
+            self._send_to_peers(self._spdp())
         return max(0.0, min(_IDLE, min(due) - time.monotonic()))
 
     def _entities(self) -> list[Reader | Writer]:
@@ -309,41 +309,41 @@ class RtpsParticipant:
         payload = None if gone else self._self
         return message(self.prefix, data(v.SPDP_READER, v.SPDP_WRITER, self._announced, payload, inline))
 
-    def _tell_peers(self, packet: bytes) -> None:
+    def _send_to_peers(self, packet: bytes) -> None:
         with self._lock:
             peers = list(self._peers.values())
         self._network.send((packet, peer.discovery) for peer in peers)
 
-    def _participant_said(self, sample: Data, vendor: bytes, calls: list[Callable[[], None]]) -> list[Packet]:
+    def _on_participant(self, sample: Data, vendor: bytes, calls: list[Callable[[], None]]) -> list[Packet]:
         if gone_guid(sample):
             self._forget_peer(gone_guid(sample)[: v.PREFIX])
             calls.append(self.changed)
             return []
         if sample.payload is None:
             return []
-        told = read_participant(sample.payload)
-        if told.vendor != v.FAST_DDS or vendor != v.FAST_DDS:
+        participant = read_participant(sample.payload)
+        if participant.vendor != v.FAST_DDS or vendor != v.FAST_DDS:
             return []
-        discovery, user = self._network.best_of(told.discovery), self._network.best_of(told.user)
-        until = time.monotonic() + told.lease
-        known = self._peers.get(told.prefix)
-        if known is not None and known.told == told:
-            known.until = until
+        discovery, user = self._network.best_of(participant.discovery), self._network.best_of(participant.user)
+        until = time.monotonic() + participant.lease
+        peer = self._peers.get(participant.prefix)
+        if peer is not None and peer.participant == participant:
+            peer.until = until
             return []
         if not discovery or not user:
             return []
-        self._peers[told.prefix] = _Peer(told, until, discovery, user, known.endpoints if known else {})
+        self._peers[participant.prefix] = _Peer(participant, until, discovery, user, peer.endpoints if peer else {})
         packets: list[Packet] = [(self._spdp(), discovery)]
         for reader, entity in (
             (self._heard_publications, v.PUBLICATIONS_WRITER),
             (self._heard_subscriptions, v.SUBSCRIPTIONS_WRITER),
         ):
-            packets += reader.match(told.prefix + entity, discovery)
+            packets += reader.match(participant.prefix + entity, discovery)
         for writer, entity in (
             (self._publications, v.PUBLICATIONS_READER),
             (self._subscriptions, v.SUBSCRIPTIONS_READER),
         ):
-            packets += writer.match(told.prefix + entity, discovery)
+            packets += writer.match(participant.prefix + entity, discovery)
         return packets
 
     def _forget_peer(self, prefix: bytes) -> None:
@@ -357,7 +357,7 @@ class RtpsParticipant:
         self._publications.unmatch(prefix + v.PUBLICATIONS_READER)
         self._subscriptions.unmatch(prefix + v.SUBSCRIPTIONS_READER)
 
-    def _endpoint_said(self, sample: Data, *, is_writer: bool) -> list[Packet]:
+    def _on_endpoint(self, sample: Data, *, is_writer: bool) -> list[Packet]:
         peer = self._peers[sample.source]
         gone = gone_guid(sample)
         if gone:
@@ -366,41 +366,41 @@ class RtpsParticipant:
             return []
         if sample.payload is None:
             return []
-        told = read_endpoint(sample.payload, is_writer=is_writer)
-        if not told.guid.startswith(sample.source):
+        endpoint = read_endpoint(sample.payload, is_writer=is_writer)
+        if not endpoint.guid.startswith(sample.source):
             return []
-        peer.endpoints[told.guid] = told
-        return self._match(told, peer)
+        peer.endpoints[endpoint.guid] = endpoint
+        return self._match(endpoint, peer)
 
     def _match_all(self, topic: str) -> list[Packet]:
         return [
             packet
             for peer in self._peers.values()
-            for told in peer.endpoints.values()
-            if told.topic == topic
-            for packet in self._match(told, peer)
+            for endpoint in peer.endpoints.values()
+            if endpoint.topic == topic
+            for packet in self._match(endpoint, peer)
         ]
 
-    def _match(self, told: EndpointData, peer: _Peer) -> list[Packet]:
-        if not told.is_reliable:
+    def _match(self, endpoint: EndpointData, peer: _Peer) -> list[Packet]:
+        if not endpoint.is_reliable:
             return []
-        addresses = self._network.best_of(told.addresses) or peer.user
+        addresses = self._network.best_of(endpoint.addresses) or peer.user
         packets = []
-        if v.is_reader(told.guid):
+        if v.is_reader(endpoint.guid):
             for local in self._writers.values():
-                if (local.topic, local.type_name) == (told.topic, told.type_name):
-                    packets += local.writer.match(told.guid, addresses)
+                if (local.topic, local.type_name) == (endpoint.topic, endpoint.type_name):
+                    packets += local.writer.match(endpoint.guid, addresses)
         else:
-            for listening in self._readers.values():
-                if (listening.topic, listening.type_name) == (told.topic, told.type_name):
-                    packets += listening.reader.match(told.guid, addresses)
+            for local_reader in self._readers.values():
+                if (local_reader.topic, local_reader.type_name) == (endpoint.topic, endpoint.type_name):
+                    packets += local_reader.reader.match(endpoint.guid, addresses)
         return packets
 
     def _unmatch(self, guid: bytes) -> None:
         for local in self._writers.values():
             local.writer.unmatch(guid)
-        for listening in self._readers.values():
-            listening.reader.unmatch(guid)
+        for local_reader in self._readers.values():
+            local_reader.reader.unmatch(guid)
 
     # --- incoming packets ---------------------------------------------------------------------------------------------
 
@@ -408,104 +408,107 @@ class RtpsParticipant:
         """The packets that answer one; callbacks to be made without the lock are appended to `calls`."""
         packets: list[Packet] = []
         vendor = vendor_of(packet)
-        for said in parse(packet, self.prefix):
-            if said.source == self.prefix:
+        for submessage in parse(packet, self.prefix):
+            if submessage.source == self.prefix:
                 return []
-            peer = self._peers.get(said.source)
+            peer = self._peers.get(submessage.source)
             if peer is not None:
-                peer.until = time.monotonic() + peer.told.lease
+                peer.until = time.monotonic() + peer.participant.lease
             try:
-                if isinstance(said, Data) and said.writer[v.PREFIX :] == v.SPDP_WRITER:
-                    packets += self._participant_said(said, vendor, calls)
+                if isinstance(submessage, Data) and submessage.writer[v.PREFIX :] == v.SPDP_WRITER:
+                    packets += self._on_participant(submessage, vendor, calls)
                 elif peer is not None:
-                    packets += self._peer_said(said, calls)
+                    packets += self._on_submessage(submessage, calls)
                 else:
-                    packets += self._stranger_said(said, source)
+                    packets += self._on_stranger(submessage, source)
             except MalformedError:
                 break
         return packets
 
-    def _stranger_said(self, said: Submessage, source: Address) -> list[Packet]:
+    def _on_stranger(self, submessage: Submessage, source: Address) -> list[Packet]:
         """Answer a participant that is not matched, so that it does not repeat itself: neither side lacks anything."""
         self._count += 1
-        if isinstance(said, AckNack) and said.writer in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):
-            answer = heartbeat(said.reader[v.PREFIX :], said.writer, 1, 0, self._count, final=True)
-        elif isinstance(said, Heartbeat) and said.writer[v.PREFIX :] in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):
-            answer = acknack(said.reader, said.writer[v.PREFIX :], said.last + 1, (), self._count)
+        if isinstance(submessage, AckNack) and submessage.writer in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):
+            answer = heartbeat(submessage.reader[v.PREFIX :], submessage.writer, 1, 0, self._count, final=True)
+        elif isinstance(submessage, Heartbeat) and submessage.writer[v.PREFIX :] in (
+            v.PUBLICATIONS_WRITER,
+            v.SUBSCRIPTIONS_WRITER,
+        ):
+            answer = acknack(submessage.reader, submessage.writer[v.PREFIX :], submessage.last + 1, (), self._count)
         else:
             return []
-        return [(message(self.prefix, answer, to=said.source), (source,))]
+        return [(message(self.prefix, answer, to=submessage.source), (source,))]
 
-    def _peer_said(self, said: Submessage, calls: list[Callable[[], None]]) -> list[Packet]:
-        if isinstance(said, AckNack | NackFrag):
-            writer = self._writer(said.writer)
+    def _on_submessage(self, submessage: Submessage, calls: list[Callable[[], None]]) -> list[Packet]:
+        if isinstance(submessage, AckNack | NackFrag):
+            writer = self._writer(submessage.writer)
             if writer is None:
                 return []
-            if isinstance(said, NackFrag):
-                return writer.on_nack_frag(said)
-            was_heard = writer.has_heard(said.reader)
-            packets = writer.on_acknack(said)
-            if not was_heard and writer.has_heard(said.reader):
+            if isinstance(submessage, NackFrag):
+                return writer.on_nack_frag(submessage)
+            was_heard = writer.has_heard(submessage.reader)
+            packets = writer.on_acknack(submessage)
+            if not was_heard and writer.has_heard(submessage.reader):
                 calls.append(self.changed)
             return packets
-        if isinstance(said, Data):
-            return self._sample_came(said, calls)
+        if isinstance(submessage, Data):
+            return self._on_sample(submessage, calls)
         packets = []
-        for reader in self._readers_for(said):
-            if isinstance(said, Gap):
-                reader.on_gap(said)
+        for reader in self._readers_for(submessage):
+            if isinstance(submessage, Gap):
+                reader.on_gap(submessage)
                 continue
-            heard_before = reader.heard_at(said.writer)
-            packets += reader.on_heartbeat(said)
-            if heard_before is None and reader.heard_at(said.writer) is not None:
+            heard_before = reader.heard_at(submessage.writer)
+            packets += reader.on_heartbeat(submessage)
+            if heard_before is None and reader.heard_at(submessage.writer) is not None:
                 calls.append(self.changed)
         return packets
 
-    def _sample_came(self, said: Data, calls: list[Callable[[], None]]) -> list[Packet]:
+    def _on_sample(self, sample: Data, calls: list[Callable[[], None]]) -> list[Packet]:
         builtin = {
             v.PUBLICATIONS_WRITER: (self._heard_publications, True),
             v.SUBSCRIPTIONS_WRITER: (self._heard_subscriptions, False),
-        }.get(said.writer[v.PREFIX :])
+        }.get(sample.writer[v.PREFIX :])
         if builtin is not None:
             reader, is_writer = builtin
-            whole = reader.on_data(said)
-            packets = [] if whole is None else self._endpoint_said(whole, is_writer=is_writer)
-            if whole is not None:
+            complete = reader.on_data(sample)
+            packets = [] if complete is None else self._on_endpoint(complete, is_writer=is_writer)
+            if complete is not None:
                 self._replay(calls)
                 calls.append(self.changed)
             return packets
-        if said.writer not in self._peers[said.source].endpoints:
-            self._early = [*self._early[-_EARLY:], said]
+        if sample.writer not in self._peers[sample.source].endpoints:
+            self._early = [*self._early[-_EARLY:], sample]
             return []
-        self._hand_on(said, calls)
+        self._hand_on(sample, calls)
         return []
 
-    def _hand_on(self, said: Data, calls: list[Callable[[], None]]) -> None:
+    def _hand_on(self, sample: Data, calls: list[Callable[[], None]]) -> None:
         for local in self._readers.values():
-            if said.reader in (v.UNKNOWN, local.reader.guid[v.PREFIX :]):
-                whole = local.reader.on_data(said)
-                if whole is not None:
-                    calls.append(partial(local.on_data, whole))
+            if sample.reader in (v.UNKNOWN, local.reader.guid[v.PREFIX :]):
+                complete = local.reader.on_data(sample)
+                if complete is not None:
+                    calls.append(partial(local.on_data, complete))
 
     def _replay(self, calls: list[Callable[[], None]]) -> None:
         """Hand on the samples that came before their writer was known."""
         early, self._early = self._early, []
-        for said in early:
-            peer = self._peers.get(said.source)
-            if peer is not None and said.writer in peer.endpoints:
-                self._hand_on(said, calls)
+        for sample in early:
+            peer = self._peers.get(sample.source)
+            if peer is not None and sample.writer in peer.endpoints:
+                self._hand_on(sample, calls)
             elif peer is not None:
-                self._early.append(said)
+                self._early.append(sample)
 
-    def _readers_for(self, said: Heartbeat | Gap) -> Iterable[Reader]:
-        entity = said.writer[v.PREFIX :]
+    def _readers_for(self, submessage: Heartbeat | Gap) -> Iterable[Reader]:
+        entity = submessage.writer[v.PREFIX :]
         if entity == v.PUBLICATIONS_WRITER:
             return (self._heard_publications,)
         if entity == v.SUBSCRIPTIONS_WRITER:
             return (self._heard_subscriptions,)
-        if said.reader == v.UNKNOWN:
+        if submessage.reader == v.UNKNOWN:
             return tuple(reader.reader for reader in self._readers.values())
-        local = self._readers.get(said.reader)
+        local = self._readers.get(submessage.reader)
         return () if local is None else (local.reader,)
 
     def _writer(self, entity: bytes) -> Writer | None:
@@ -517,5 +520,5 @@ class RtpsParticipant:
         return local.writer if local is not None else None
 
     def _new_guid(self, kind: bytes) -> bytes:
-        self._made += 1
-        return self.prefix + self._made.to_bytes(3, "big") + kind
+        self._last_entity += 1
+        return self.prefix + self._last_entity.to_bytes(3, "big") + kind

@@ -101,96 +101,96 @@ class Reader:
 
     def heard_at(self, writer: bytes) -> float | None:
         """When the first heartbeat of a writer arrived, by the steady clock: it has matched this reader."""
-        known = self._writers.get(writer)
-        return known.heard_at if known is not None else None
+        matched = self._writers.get(writer)
+        return matched.heard_at if matched is not None else None
 
     def last_of(self, writer: bytes) -> int:
         """The highest number that a writer has announced."""
-        known = self._writers.get(writer)
-        return known.last if known is not None else 0
+        matched = self._writers.get(writer)
+        return matched.last if matched is not None else 0
 
     def match(self, writer: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
         """Match a writer; returns the packets that ask it for its samples."""
         if writer in self._writers:
             self._writers[writer].addresses = addresses
             return []
-        known = self._writers[writer] = _Writer(addresses)
-        return [self._ask(writer, known, time.monotonic())]
+        matched = self._writers[writer] = _Writer(addresses)
+        return [self._ask(writer, matched, time.monotonic())]
 
     def unmatch(self, writer: bytes) -> None:
         """Unmatch a writer."""
         self._writers.pop(writer, None)
 
-    def on_data(self, said: Data) -> Data | None:
+    def on_data(self, sample: Data) -> Data | None:
         """A sample that is new and complete, else None."""
-        known = self._writers.get(said.writer)
-        if known is None or known.has(said.number) or said.number > max(known.low, known.last) + _FURTHEST:
+        matched = self._writers.get(sample.writer)
+        if matched is None or matched.has(sample.number) or sample.number > max(matched.low, matched.last) + _FURTHEST:
             return None
-        whole: Data | None = said
-        if said.first:
-            payload = self._complete(known, said)
-            whole = None if payload is None else replace(said, payload=payload, first=0)
-        if whole is not None:
-            known.add(said.number)
-            known.last = max(known.last, said.number)
-        return whole
+        complete: Data | None = sample
+        if sample.first:
+            payload = self._complete(matched, sample)
+            complete = None if payload is None else replace(sample, payload=payload, first=0)
+        if complete is not None:
+            matched.add(sample.number)
+            matched.last = max(matched.last, sample.number)
+        return complete
 
-    def on_heartbeat(self, said: Heartbeat) -> list[Packet]:
+    def on_heartbeat(self, heartbeat: Heartbeat) -> list[Packet]:
         """The acknowledgement, with the numbers of missing samples."""
-        known = self._writers.get(said.writer)
-        if known is None:
+        matched = self._writers.get(heartbeat.writer)
+        if matched is None:
             return []
-        if known.heard_at is None:
-            known.heard_at = time.monotonic()
-        known.last = max(known.last, said.last)
-        known.start_at(said.first)
-        if said.final and not known.missing():
+        if matched.heard_at is None:
+            matched.heard_at = time.monotonic()
+        matched.last = max(matched.last, heartbeat.last)
+        matched.start_at(heartbeat.first)
+        if heartbeat.final and not matched.missing():
             return []
-        return [self._answer(said.writer, known)]
+        return [self._answer(heartbeat.writer, matched)]
 
-    def on_gap(self, said: Gap) -> None:
+    def on_gap(self, gap: Gap) -> None:
         """Handle a GAP: samples that the writer no longer has, or that are not for this reader, count as received."""
-        known = self._writers.get(said.writer)
-        if known is None:
+        matched = self._writers.get(gap.writer)
+        if matched is None:
             return
-        if said.start <= known.low:
-            known.start_at(said.base)
+        if gap.start <= matched.low:
+            matched.start_at(gap.base)
         else:
-            for number in range(said.start, min(said.base, said.start + _FURTHEST)):
-                known.add(number)
-        for number in said.others:
-            if not known.has(number):
-                known.add(number)
+            for number in range(gap.start, min(gap.base, gap.start + _FURTHEST)):
+                matched.add(number)
+        for number in gap.others:
+            if not matched.has(number):
+                matched.add(number)
 
     def remind(self, now: float) -> list[Packet]:
         """The packets that ask silent writers again, where it is time."""
         silent = [item for item in self._writers.items() if item[1].heard_at is None and now >= item[1].due]
-        return [self._ask(writer, known, now) for writer, known in silent]
+        return [self._ask(writer, matched, now) for writer, matched in silent]
 
     def next_reminder(self) -> float | None:
         """When `remind` is to be called; None while all have been heard."""
-        return min((known.due for known in self._writers.values() if known.heard_at is None), default=None)
+        return min((matched.due for matched in self._writers.values() if matched.heard_at is None), default=None)
 
     @staticmethod
-    def _complete(known: _Writer, said: Data) -> bytes | None:
-        if said.payload is None or said.size > _LARGEST:
+    def _complete(matched: _Writer, sample: Data) -> bytes | None:
+        if sample.payload is None or sample.size > _LARGEST:
             return None
-        part = known.incomplete.get(said.number)
-        if part is None or (part.size, part.fragment) != (said.size, said.fragment):
-            while len(known.incomplete) >= _MOST_INCOMPLETE:
-                known.incomplete.pop(min(known.incomplete))
-            part = known.incomplete[said.number] = _Incomplete(said.size, said.fragment)
-        return part.add(said.first, said.payload)
+        part = matched.incomplete.get(sample.number)
+        if part is None or (part.size, part.fragment) != (sample.size, sample.fragment):
+            while len(matched.incomplete) >= _MOST_INCOMPLETE:
+                matched.incomplete.pop(min(matched.incomplete))
+            part = matched.incomplete[sample.number] = _Incomplete(sample.size, sample.fragment)
+        return part.add(sample.first, sample.payload)
 
-    def _ask(self, writer: bytes, known: _Writer, now: float) -> Packet:
+    def _ask(self, writer: bytes, matched: _Writer, now: float) -> Packet:
         """An acknowledgement of nothing, base 0, which Fast DDS answers with a heartbeat; not one with base 1."""
-        known.due, known.repeat = now + known.repeat, min(known.repeat * 2, _LAST_REPEAT)
-        return self._acknack(writer, known, 0, [], final=False)
+        matched.due, matched.repeat = now + matched.repeat, min(matched.repeat * 2, _LAST_REPEAT)
+        return self._acknack(writer, matched, 0, [], final=False)
 
-    def _answer(self, writer: bytes, known: _Writer) -> Packet:
-        return self._acknack(writer, known, known.low, known.missing(), final=True)
+    def _answer(self, writer: bytes, matched: _Writer) -> Packet:
+        return self._acknack(writer, matched, matched.low, matched.missing(), final=True)
 
-    def _acknack(self, writer: bytes, known: _Writer, base: int, missing: list[int], *, final: bool) -> Packet:
-        known.count += 1
-        answer = acknack(self.guid[PREFIX:], writer[PREFIX:], base, missing, known.count, final=final)
-        return message(self.guid[:PREFIX], answer, to=writer[:PREFIX]), known.addresses
+    def _acknack(self, writer: bytes, matched: _Writer, base: int, missing: list[int], *, final: bool) -> Packet:
+        matched.count += 1
+        answer = acknack(self.guid[PREFIX:], writer[PREFIX:], base, missing, matched.count, final=final)
+        return message(self.guid[:PREFIX], answer, to=writer[:PREFIX]), matched.addresses

@@ -76,18 +76,18 @@ class Writer:
 
     def has_heard(self, reader: bytes) -> bool:
         """Whether a reader has answered, and so has matched this writer."""
-        known = self._readers.get(reader)
-        return known is not None and known.heard
+        matched = self._readers.get(reader)
+        return matched is not None and matched.heard
 
     def match(self, reader: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
         """Match a reader; returns the first packets for it: the history if this writer keeps it, else a heartbeat."""
         if reader in self._readers:
             self._readers[reader].addresses = addresses
             return []
-        known = self._readers[reader] = _Reader(addresses, 1 if self._lasting else self._last + 1)
+        matched = self._readers[reader] = _Reader(addresses, 1 if self._lasting else self._last + 1)
         if not self._lasting:
-            return [self._packet(reader, known, self._beat(reader, known))]
-        return self._everything(reader, known)
+            return [self._packet(reader, matched, self._beat(reader, matched))]
+        return self._everything(reader, matched)
 
     def unmatch(self, reader: bytes) -> None:
         """Write no longer for a reader."""
@@ -112,9 +112,9 @@ class Writer:
         while len(self._changes) > 1 and (len(self._changes) > _MOST or self._bytes > _MOST_BYTES):
             self._drop(min(self._changes))
         packets: list[Packet] = []
-        for reader, known in self._readers.items():
-            known.due, known.repeat = time.monotonic() + _FIRST_REPEAT, _FIRST_REPEAT
-            packets += self._sample(reader, known, number)
+        for reader, matched in self._readers.items():
+            matched.due, matched.repeat = time.monotonic() + _FIRST_REPEAT, _FIRST_REPEAT
+            packets += self._sample(reader, matched, number)
         return packets
 
     def withdraw(self, number: int) -> None:
@@ -126,89 +126,92 @@ class Writer:
         """The number of the newest sample."""
         return self._last
 
-    def on_acknack(self, said: AckNack) -> list[Packet]:
+    def on_acknack(self, acknack: AckNack) -> list[Packet]:
         """Handle an ACKNACK; returns the packets that repeat the samples that the reader lacks."""
-        known = self._readers.get(said.reader)
-        if known is None:
+        matched = self._readers.get(acknack.reader)
+        if matched is None:
             return []
-        known.heard = True
-        if said.base > known.base:
-            known.base = min(said.base, self._last + 1)
-            known.repeat = _FIRST_REPEAT
-            known.due = time.monotonic() + known.repeat
+        matched.heard = True
+        if acknack.base > matched.base:
+            matched.base = min(acknack.base, self._last + 1)
+            matched.repeat = _FIRST_REPEAT
+            matched.due = time.monotonic() + matched.repeat
             self._forget_acknowledged()
-        packets = [each for number in said.missing for each in self._again(said.reader, known, number)]
-        if packets or (not said.final and not said.missing):
-            packets.append(self._packet(said.reader, known, self._beat(said.reader, known)))
+        packets = [packet for number in acknack.missing for packet in self._again(acknack.reader, matched, number)]
+        if packets or (not acknack.final and not acknack.missing):
+            packets.append(self._packet(acknack.reader, matched, self._beat(acknack.reader, matched)))
         return packets
 
-    def on_nack_frag(self, said: NackFrag) -> list[Packet]:
+    def on_nack_frag(self, nack: NackFrag) -> list[Packet]:
         """The fragments that a reader lacks."""
-        known, change = self._readers.get(said.reader), self._changes.get(said.number)
-        if known is None or change is None or change.payload is None or not change.is_for(said.reader):
+        matched, change = self._readers.get(nack.reader), self._changes.get(nack.number)
+        if matched is None or change is None or change.payload is None or not change.is_for(nack.reader):
             return []
         most = fragments_of(change.payload)
-        wanted = [each for each in said.missing if 1 <= each <= most]
-        packets = [self._fragment(said.reader, known, said.number, change, change.payload, each) for each in wanted]
-        return [*packets, self._packet(said.reader, known, self._beat(said.reader, known))]
+        fragments = [fragment for fragment in nack.missing if 1 <= fragment <= most]
+        packets = [
+            self._fragment(nack.reader, matched, nack.number, change, change.payload, fragment)
+            for fragment in fragments
+        ]
+        return [*packets, self._packet(nack.reader, matched, self._beat(nack.reader, matched))]
 
     def remind(self, now: float) -> list[Packet]:
         """Heartbeats for the readers that have not acknowledged for some time."""
         packets = []
-        for reader, known in self._readers.items():
-            if known.base <= self._last and now >= known.due:
-                known.due = now + known.repeat
-                known.repeat = min(known.repeat * 2, _LAST_REPEAT)
-                packets.append(self._packet(reader, known, self._beat(reader, known)))
+        for reader, matched in self._readers.items():
+            if matched.base <= self._last and now >= matched.due:
+                matched.due = now + matched.repeat
+                matched.repeat = min(matched.repeat * 2, _LAST_REPEAT)
+                packets.append(self._packet(reader, matched, self._beat(reader, matched)))
         return packets
 
     def next_reminder(self) -> float | None:
         """When `remind` is to be called; None while everything was acknowledged."""
-        return min((known.due for known in self._readers.values() if known.base <= self._last), default=None)
+        return min((matched.due for matched in self._readers.values() if matched.base <= self._last), default=None)
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
-    def _everything(self, reader: bytes, known: _Reader) -> list[Packet]:
-        known.due = time.monotonic() + _FIRST_REPEAT
-        packets = [each for number in sorted(self._changes) for each in self._sample(reader, known, number)]
-        return packets or [self._packet(reader, known, self._beat(reader, known))]
+    def _everything(self, reader: bytes, matched: _Reader) -> list[Packet]:
+        matched.due = time.monotonic() + _FIRST_REPEAT
+        packets = [packet for number in sorted(self._changes) for packet in self._sample(reader, matched, number)]
+        return packets or [self._packet(reader, matched, self._beat(reader, matched))]
 
-    def _sample(self, reader: bytes, known: _Reader, number: int) -> Iterator[Packet]:
+    def _sample(self, reader: bytes, matched: _Reader, number: int) -> Iterator[Packet]:
         change = self._changes[number]
-        beat = self._beat(reader, known)
+        beat = self._beat(reader, matched)
         entity = reader[PREFIX:]
         if not change.is_for(reader):
-            yield self._packet(reader, known, gap(entity, self.guid[PREFIX:], number, number + 1), beat)
+            yield self._packet(reader, matched, gap(entity, self.guid[PREFIX:], number, number + 1), beat)
         elif change.payload is not None and len(change.payload) > FRAGMENT:
             for which in range(1, fragments_of(change.payload) + 1):
-                yield self._fragment(reader, known, number, change, change.payload, which)
-            yield self._packet(reader, known, beat)
+                yield self._fragment(reader, matched, number, change, change.payload, which)
+            yield self._packet(reader, matched, beat)
         else:
             sample = data(entity, self.guid[PREFIX:], number, change.payload, change.inline)
-            yield self._packet(reader, known, info_timestamp(change.time), sample, beat)
+            yield self._packet(reader, matched, info_timestamp(change.time), sample, beat)
 
-    def _again(self, reader: bytes, known: _Reader, number: int) -> Iterator[Packet]:
+    def _again(self, reader: bytes, matched: _Reader, number: int) -> Iterator[Packet]:
         if number in self._changes:
-            yield from self._sample(reader, known, number)
+            yield from self._sample(reader, matched, number)
         elif number <= self._last:
-            yield self._packet(reader, known, gap(reader[PREFIX:], self.guid[PREFIX:], number, number + 1))
+            yield self._packet(reader, matched, gap(reader[PREFIX:], self.guid[PREFIX:], number, number + 1))
 
     def _fragment(
-        self, reader: bytes, known: _Reader, number: int, change: _Change, payload: bytes, which: int
+        self, reader: bytes, matched: _Reader, number: int, change: _Change, payload: bytes, which: int
     ) -> Packet:
         part = data_fragment(reader[PREFIX:], self.guid[PREFIX:], number, payload, which, change.inline)
-        return self._packet(reader, known, info_timestamp(change.time), part)
+        return self._packet(reader, matched, info_timestamp(change.time), part)
 
-    def _beat(self, reader: bytes, known: _Reader) -> bytes:
+    def _beat(self, reader: bytes, matched: _Reader) -> bytes:
         self._count += 1
-        first = min(self._changes, default=self._last + 1) if self._lasting else min(known.base, self._last + 1)
+        first = min(self._changes, default=self._last + 1) if self._lasting else min(matched.base, self._last + 1)
         return heartbeat(reader[PREFIX:], self.guid[PREFIX:], first, self._last, self._count)
 
-    def _packet(self, reader: bytes, known: _Reader, *submessages: bytes) -> Packet:
-        return message(self.guid[:PREFIX], *submessages, to=reader[:PREFIX]), known.addresses
+    def _packet(self, reader: bytes, matched: _Reader, *submessages: bytes) -> Packet:
+        return message(self.guid[:PREFIX], *submessages, to=reader[:PREFIX]), matched.addresses
 
     def _forget_acknowledged(self) -> None:
-        base = min((known.base for known in self._readers.values()), default=self._last + 1)
+        base = min((matched.base for matched in self._readers.values()), default=self._last + 1)
         for number in [change for change in self._changes if change < base]:
             if not self._lasting or self._changes[number].payload is None:
                 self._drop(number)
