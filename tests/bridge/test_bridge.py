@@ -407,7 +407,7 @@ def test_what_a_new_publisher_says_waits_for_who_is_known_to_be_able_to_hear_it(
     publisher = MirroredPublisher(node, info, stream_of(info, keyed=False))
     publisher.expects_listeners = expects
     now[0] += seconds - 0.1
-    publisher.say(b"first")
+    publisher.put(b"first")
     assert publisher.waits
     now[0] += 0.1
     assert publisher.settle()

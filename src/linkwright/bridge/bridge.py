@@ -86,8 +86,8 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
         if news.is_set():
             await asyncio.sleep(_TOGETHER)
             news.clear()
-            first.look()
-            second.look()
+            first.update()
+            second.update()
             # A service that both sides serve is carried neither way, so that no request goes round in a circle.
             for direction in directions:
                 direction.withdraw()

@@ -83,7 +83,7 @@ class Direction:
         self._wanted_presences: dict[bytes, EndpointInfo] = {}
         self._unseen: dict[bytes, float] = {}
         """When presences that are not shown yet are, by the steady clock."""
-        self._told: set[str] = set()
+        self._warned: set[str] = set()
 
     # --- after changes -----------------------------------------------------------------------------------------------
 
@@ -97,7 +97,7 @@ class Direction:
             self._services.pop(key).close()
         for gid in self._presences.keys() - self._wanted_presences.keys():
             self._presences.pop(gid).destroy()
-        self._let_go()
+        self._remove_departed()
 
     def add(self) -> None:
         """Mirror new nodes, publishers and services at the target."""
@@ -149,8 +149,8 @@ class Direction:
     def settle(self) -> bool:
         """Continue with work that had to wait (messages, removals, matching); whether nothing waits any more."""
         is_settled = not self._leaving
-        self._say_early()
-        self._let_go()
+        self._publish_early()
+        self._remove_departed()
         for publisher in self._publishers.values():
             is_settled = publisher.settle() and is_settled
         for service in self._services.values():
@@ -165,7 +165,7 @@ class Direction:
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
-    def _let_go(self) -> None:
+    def _remove_departed(self) -> None:
         """Remove the mirrors of publishers that have left, once their last messages were carried, and empty nodes."""
         for gid, quiet in tuple(self._leaving.items()):
             publisher = self._publishers[gid]
@@ -227,8 +227,8 @@ class Direction:
         """Whether a topic or service of this type can be made at the target; once for each, a warning if not."""
         if not self._target.needs_hashes or hash_of(info):
             return True
-        if info.name not in self._told:
-            self._told.add(info.name)
+        if info.name not in self._warned:
+            self._warned.add(info.name)
             whose = "publisher" if info.kind is EndpointKind.PUBLISHER else "server"
             self._logger.warning(
                 f"'{info.name}' is not carried from {self._source.label} to {self._target.label}: no package here has "
@@ -255,24 +255,24 @@ class Direction:
         for stream in self._taps.keys() - wanted:
             self._taps.pop(stream).close()
         # A publisher may send at once when it sees one of several: the one that most publishers match is made first.
-        for stream in sorted(wanted - self._taps.keys(), key=lambda each: (each.history, each.reliability)):
-            self._taps[stream] = Tap(self._source.own, stream, self._take)
+        for stream in sorted(wanted - self._taps.keys(), key=lambda stream: (stream.history, stream.reliability)):
+            self._taps[stream] = Tap(self._source.own, stream, self._carry)
 
-    def _take(self, tap: Tap, data: bytes, info: MessageInfo) -> None:
+    def _carry(self, tap: Tap, data: bytes, info: MessageInfo) -> None:
         """Carry a message, unless a bridge published it."""
         if not info.from_outside:
             return
         publisher = self._publisher(info.publisher_gid)
         if publisher is not None:
             if publisher.stream == tap.stream:
-                self._say_early()
-                publisher.say(data)
+                self._publish_early()
+                publisher.put(data)
                 if publisher.info.gid in self._leaving:
                     self._leaving[publisher.info.gid] = 0
         elif info.publisher_gid not in self._source.seen.by_bridges:
             self._early.append(Early(time.monotonic() + _KNOWN_WITHIN, tap, info.publisher_gid, data))
 
-    def _say_early(self) -> None:
+    def _publish_early(self) -> None:
         """Carry the messages that arrived before their publisher was discovered."""
         now = time.monotonic()
         for _ in range(len(self._early)):
@@ -285,7 +285,7 @@ class Direction:
                 continue
             publisher = publisher or self._any_of(early)
             if publisher is not None and publisher.stream == early.tap.stream:
-                publisher.say(early.data)
+                publisher.put(early.data)
 
     def _publisher(self, gid: bytes) -> MirroredPublisher | None:
         return self._publishers.get(self._aliases.get(gid, gid))

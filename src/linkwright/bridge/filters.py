@@ -26,8 +26,8 @@ class NameFilter:
     """
 
     def __init__(self, allowed: Iterable[str] = (), denied: Iterable[str] = ()) -> None:
-        self._allowed = [_compiled(each) for each in allowed]
-        self._denied = [_compiled(each) for each in denied]
+        self._allowed = [_compiled(pattern) for pattern in allowed]
+        self._denied = [_compiled(pattern) for pattern in denied]
 
     def passes(self, name: str) -> bool:
         """Whether a topic or service of an absolute name is carried; parts of an action follow the action's name."""

@@ -105,7 +105,7 @@ class MirroredPublisher:
         """Whether its messages are held back until a subscription matches."""
         return self._waiting is not None
 
-    def say(self, data: bytes) -> None:
+    def put(self, data: bytes) -> None:
         """Publish a message."""
         if self._waiting is None:
             self._publish(data)

@@ -46,9 +46,9 @@ class Outlet:
 
     def _run(self) -> None:
         while (data := self._queue.get()) is not None:
-            guarded(partial(self._say, data), self._failed)
+            guarded(partial(self._publish_one, data), self._failed)
             self._queue.task_done()
 
-    def _say(self, data: bytes) -> None:
+    def _publish_one(self, data: bytes) -> None:
         with suppress(InvalidHandleError):  # the publisher was taken away
             self._publish(data)

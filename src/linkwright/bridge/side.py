@@ -91,7 +91,7 @@ class Side:
         self._transport.watch_lost(lambda _publisher: changed())
         self._transport.look_around()
 
-    def look(self) -> None:
+    def update(self) -> None:
         """Take a new snapshot, `seen`."""
         seen = Seen()
         for node in self._transport.remote_nodes():

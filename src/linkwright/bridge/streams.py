@@ -18,7 +18,7 @@ from linkwright.messages import InterfaceNotFoundError, type_hash
 KEPT = 1000
 """Messages that are queued where none may be lost: the history for late joiners, and those of a new publisher."""
 
-_UNTOLD_DEPTH = 10
+_ASSUMED_DEPTH = 10
 """The history of a publisher that does not announce it, as one of Fast DDS does not."""
 
 
@@ -121,11 +121,11 @@ def offered(qos: QoSProfile) -> QoSProfile:
     """The profile that a publisher offers, with ROS's defaults where discovery does not give it."""
     lasts = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL
-    told = qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL)
+    is_announced = qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL)
     best_effort = qos.reliability is ReliabilityPolicy.BEST_EFFORT
     manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
     return QoSProfile(
-        depth=qos.depth if told else KEPT if lasts else _UNTOLD_DEPTH,
+        depth=qos.depth if is_announced else KEPT if lasts else _ASSUMED_DEPTH,
         history=HistoryPolicy.KEEP_ALL if keeps_all else HistoryPolicy.KEEP_LAST,
         reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if lasts else DurabilityPolicy.VOLATILE,

@@ -67,10 +67,10 @@ class Picture:
         height, width = self.height // step, self.width // step
         if step == 1 or height == 0 or width == 0:
             return self
-        whole = self.pixels[: height * step, : width * step]
-        rows = whole[::step].astype(np.uint16)
+        pixels = self.pixels[: height * step, : width * step]
+        rows = pixels[::step].astype(np.uint16)
         for row in range(1, step):
-            rows += whole[row::step]
+            rows += pixels[row::step]
         total = rows[:, ::step].copy()
         for column in range(1, step):
             total += rows[:, column::step]

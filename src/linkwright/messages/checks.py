@@ -112,8 +112,8 @@ def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
     if not (
         _is_collection(value)
         and _length_fits(value, kind)
-        and (set(map(type, value)) <= {cls} or all(isinstance(each, cls) for each in value))
-        and (kind.string_bound is None or all(len(each) <= kind.string_bound for each in value))
+        and (set(map(type, value)) <= {cls} or all(isinstance(item, cls) for item in value))
+        and (kind.string_bound is None or all(len(item) <= kind.string_bound for item in value))
     ):
         raise AssertionError(f"The '{name}' field must be {_wanted(kind, cls)}")
     return value
@@ -223,7 +223,7 @@ def _checked_numbers(name: str, value: Any, kind: FieldType, primitive: Primitiv
     if not (
         _is_collection(value)
         and _length_fits(value, kind)
-        and (set(map(type, value)) <= {primitive.python} or all(isinstance(each, primitive.python) for each in value))
+        and (set(map(type, value)) <= {primitive.python} or all(isinstance(item, primitive.python) for item in value))
         and _in_range(value, primitive)
     ):
         raise AssertionError(f"The '{name}' field must be {_wanted(kind, primitive.python)}")

@@ -133,7 +133,7 @@ def _csv(value: Any, shown: Abridgement) -> str:
         return str(value)
     if isinstance(value, (list, tuple, array)) or is_array(value):
         length = shown.truncate_length
-        words = [_csv(each, shown) for each in list(value)[:length]]
+        words = [_csv(item, shown) for item in list(value)[:length]]
         if length is not None and len(value) > length:
             words.append(CUT)
         return ",".join(words)

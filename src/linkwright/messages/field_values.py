@@ -119,7 +119,7 @@ class _Setter:
         if not (isinstance(value, (Sequence, array)) or is_array(value)) or isinstance(value, (str, bytes)):
             raise _Unfit(_described(kind))
         one = FieldType(kind.base, kind.string_bound)
-        values = [self._value(one, each, f"{path}[{number}]") for number, each in enumerate(value)]
+        values = [self._value(one, item, f"{path}[{number}]") for number, item in enumerate(value)]
         exact = kind.container is Container.ARRAY
         if kind.size is not None and (len(values) > kind.size or (exact and len(values) < kind.size)):
             raise _Unfit(phrase("{list}, not of {count} values", list=_described(kind), count=len(values)))

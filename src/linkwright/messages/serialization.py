@@ -118,8 +118,8 @@ def _bad_field(message: Message, path: str) -> str | None:
         except AssertionError as error:
             return str(error).replace(f"'{field.name}'", f"'{here}'", 1)
         within = [value] if isinstance(value, Message) else value if "/" in field.type.base else ()
-        for number, each in enumerate(within):
-            found = _bad_field(each, here if each is value else f"{here}[{number}]")
+        for number, item in enumerate(within):
+            found = _bad_field(item, here if item is value else f"{here}[{number}]")
             if found:
                 return found
     return None

@@ -88,11 +88,11 @@ class _Writer:
         number = _number_text(kind)
         if number is not None:
             numbers = shown.tolist() if isinstance(shown, array) or is_array(shown) else shown
-            lines.extend([f"{bullet}{number(each)}\n" for each in numbers])
+            lines.extend([f"{bullet}{number(item)}\n" for item in numbers])
         else:
             way = (*way, "s")
-            for each in shown:
-                self._item(each, indent, bullet, way)
+            for item in shown:
+                self._item(item, indent, bullet, way)
         if len(shown) < len(values):
             lines.append(f"{bullet}'{CUT}'\n")
 

@@ -66,8 +66,8 @@ def facts(structure: Structure) -> Facts:
     """The facts on a structure."""
     found = _facts.get(structure.type_name)
     if found is None:
-        each = [field_facts(field) for field in structure.wire_fields]
-        found = Facts(sum(f.least for f in each), sum(f.leaves for f in each), each[0].first)
+        parts = [field_facts(field) for field in structure.wire_fields]
+        found = Facts(sum(f.least for f in parts), sum(f.leaves for f in parts), parts[0].first)
         _facts[structure.type_name] = found
     return found
 

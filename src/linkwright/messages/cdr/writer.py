@@ -216,14 +216,14 @@ class _WriterCode:
             self._small_values(primitive, values)
         elif kind.base == "string" and kind.container is Container.SEQUENCE:
             if kind.string_bound is not None:
-                with self._loop("e", values) as each:
-                    self._line(f"check_bound({field.name!r}, {each}, {kind.string_bound})")
+                with self._loop("e", values) as item:
+                    self._line(f"check_bound({field.name!r}, {item}, {kind.string_bound})")
             self.align(4)
             pieces, place = ("LIST4", Place(4, 0)) if following >= 4 else ("LIST1", ANYWHERE)
             self._piece(self._named(f"{pieces}[tuple({values})]"), place)
         else:
             one = FieldType(kind.base, kind.string_bound)
-            self._repeated(values, lambda each: self._one(field.name, one, each, 0))
+            self._repeated(values, lambda item: self._one(field.name, one, item, 0))
 
     def _small_values(self, primitive: Primitive, values: str) -> None:
         piece = f"bytes(map(bool, {values}))" if primitive.python is bool else f"join({values})"
@@ -237,8 +237,8 @@ class _WriterCode:
         while True:
             lines, unsynced, names = len(self._lines), list(self._unsynced), self._names
             self.place = before
-            with self._loop("e", values) as each:
-                write(each)
+            with self._loop("e", values) as item:
+                write(item)
                 self.flush()
                 self.sync()
             met = before.met(self.place)
@@ -283,8 +283,8 @@ class _WriterCode:
     def sync(self) -> None:
         """Set the variable `p` to the position."""
         if self._unsynced:
-            numbers = sum(int(each) for each in self._unsynced if each.isdigit())
-            terms = [each for each in self._unsynced if not each.isdigit()]
+            numbers = sum(int(term) for term in self._unsynced if term.isdigit())
+            terms = [term for term in self._unsynced if not term.isdigit()]
             self._line("p += " + " + ".join(terms + ([str(numbers)] if numbers else [])))
             self._unsynced = []
 

@@ -117,9 +117,9 @@ class _Reader:
         """Parse the content of a module, or of the file."""
         while self._now.kind != "end" and self._now.text != "}":
             self._annotations()
-            word = self._take("name")
+            word = self._expect_kind("name")
             if word.text == "module":
-                name = self._take("name").text
+                name = self._expect_kind("name").text
                 self._expect("{")
                 self.definitions((*scope, name))
                 self._expect("}")
@@ -143,7 +143,7 @@ class _Reader:
                 )
 
     def _structure(self, scope: tuple[str, ...]) -> None:
-        name = "/".join((*scope, self._take("name").text))
+        name = "/".join((*scope, self._expect_kind("name").text))
         fields: list[Field] = []
         self._expect("{")
         while self._now.text != "}":
@@ -162,7 +162,7 @@ class _Reader:
 
     def _constant(self, scope: tuple[str, ...]) -> None:
         kind = self._type()
-        name = self._take("name").text
+        name = self._expect_kind("name").text
         self._expect("=")
         value = self._value()
         self._expect(";")
@@ -190,7 +190,7 @@ class _Reader:
         default = None
         while self._now.text == "@":
             self._expect("@")
-            name = self._take("name").text
+            name = self._expect_kind("name").text
             if self._now.text != "(":
                 continue
             self._expect("(")
@@ -222,10 +222,10 @@ class _Reader:
     # --- types ----------------------------------------------------------------------------------------------
 
     def _type(self) -> FieldType:
-        token = self._take("name")
+        token = self._expect_kind("name")
         words = [token.text]
         while words[-1] in _WORDS_OF_PRIMITIVES and self._now.text in _WORDS_OF_PRIMITIVES:
-            words.append(self._take("name").text)
+            words.append(self._expect_kind("name").text)
         text = " ".join(words)
         if text in _PRIMITIVES:
             return FieldType(_PRIMITIVES[text])
@@ -263,7 +263,7 @@ class _Reader:
 
     def _declared(self, kind: FieldType) -> tuple[str, FieldType]:
         """A declared name, and its type with the array size behind the name, if there is one."""
-        token = self._take("name")
+        token = self._expect_kind("name")
         if self._now.text != "[":
             return token.text, kind
         self._expect("[")
@@ -303,7 +303,7 @@ class _Reader:
             self._at += 1
         return token
 
-    def _take(self, kind: str) -> _Token:
+    def _expect_kind(self, kind: str) -> _Token:
         token = self._next()
         if token.kind != kind:
             self._unexpected(token, phrase("a {kind}", kind=term(kind)))
