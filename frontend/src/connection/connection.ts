@@ -10,7 +10,7 @@ import type { Tokens } from "./tokens";
 import { unpackTransforms, type Transforms } from "./transforms";
 
 /**
- * `ended`: the program said goodbye; one with the same token may still come back. `refused`: the page has no token, or
+ * `ended`: the program said goodbye; one with the same token may still return. `refused`: the page has no token, or
  * there is a program that does not know it. `outdated`: a reload did not help.
  */
 export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "refused" | "outdated";
@@ -42,7 +42,7 @@ export class Connection {
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private current: ConnectionState = "connecting";
 
-  /** `url` is where the server's WebSocket is, but for the token; null where there is none to show any. */
+  /** `url` is the address of the server's WebSocket, without the token; `tokens` is null without a server that asks for one. */
   constructor(
     private readonly url: string,
     readonly tokens: Tokens | null = null,
@@ -81,12 +81,12 @@ export class Connection {
     else this.connect();
   }
 
-  /** Tries now what it would try some time later. */
+  /** Makes the next attempt now. */
   hurry(): void {
     if (this.socket === null && this.attempts > 0 && this.current !== "connected" && this.current !== "outdated") this.open();
   }
 
-  /** Shows the token to the program that this page knows, and to nobody else who listens in its place. */
+  /** Shows the token to the program that this page knows, and to no other program at its address. */
   private async comeBack(token: string, attempt: number): Promise<void> {
     const proof = await askForProof(this.url, token);
     if (attempt !== this.attempts) return;
@@ -115,7 +115,7 @@ export class Connection {
     this.open();
   }
 
-  /** Sends now or not at all: what the user did while there was no server is not replayed later. */
+  /** Sends now or not at all: the user's actions without a server are not replayed later. */
   send(message: PageMessage): void {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
@@ -184,7 +184,7 @@ export class Connection {
     return url;
   }
 
-  /** A socket that does not open does not tell why; an ordinary request for it does. */
+  /** A socket that does not open gives no reason; an ordinary request for it does. */
   private async askWhy(): Promise<void> {
     const url = this.address;
     url.protocol = url.protocol === "wss:" ? "https:" : "http:";
@@ -193,7 +193,7 @@ export class Connection {
       if (status !== UNAUTHORIZED || this.socket?.readyState === WebSocket.OPEN) return;
       if (this.tokens?.refused() !== true) this.become("refused");
     } catch {
-      // Nobody is there.
+      // No server answers.
     }
   }
 

@@ -17,7 +17,7 @@ export interface DisplayData {
   content: DataContent;
 }
 
-/** Reads what `pack_data` of `viewer/protocol/binary.py` wrote; null when the bytes are something else. */
+/** Reads what `pack_data` of `viewer/protocol/binary.py` wrote; null for any other bytes. */
 export function unpackData(buffer: ArrayBuffer): DisplayData | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const header = new DataView(buffer);
@@ -34,12 +34,12 @@ type Restore = (reference: Reference) => ArrayBufferView;
 
 /**
  * Puts the arrays where references to them are. A frame may hold thousands of markers: the reviver of `JSON.parse`
- * would look at each of their numbers.
+ * would visit each of their numbers.
  */
 function restored(value: unknown, restore: Restore): unknown {
   if (typeof value !== "object" || value === null) return value;
   if (Array.isArray(value)) {
-    // Lists hold things of one kind.
+    // Lists contain items of one kind.
     if (typeof value[0] === "object") value.forEach((each, index) => (value[index] = restored(each, restore)));
     return value;
   }

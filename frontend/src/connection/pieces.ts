@@ -2,12 +2,12 @@ import { PIECE_KIND } from "../protocol";
 
 const HEADER_BYTES = 16;
 
-/** Puts binary frames together that come in pieces, as `pack_piece` of `viewer/protocol/binary.py` cuts them. */
+/** Joins binary frames that arrive in pieces, as `pack_piece` of `viewer/protocol/binary.py` cuts them. */
 export class Pieces {
   private number = 0;
   private whole = new Uint8Array();
 
-  /** Takes a piece; returns the frame that it completes, or null while there is more to come. */
+  /** Takes a piece; returns the frame that it completes, or null while pieces are missing. */
   take(piece: ArrayBuffer): ArrayBuffer | null {
     const header = new DataView(piece);
     const [number, offset, length] = [4, 8, 12].map((at) => header.getUint32(at, true)) as [number, number, number];

@@ -1,9 +1,9 @@
-/** Whether a server knows a token, without telling it: "silent" where nobody answers. */
+/** Whether a server knows a token, without sending it: "silent" if no server answers. */
 export type Proof = "known" | "unknown" | "silent";
 
 /**
- * Asks the server of a socket's address to prove that it knows a token. Where a program has ended, whoever else listens
- * at its port next would be told the token otherwise, and could open the page of the program that comes after.
+ * Asks the server of a socket's address to prove that it knows a token. After a program has ended, the next program
+ * at its port would otherwise receive the token, and could open the page of a later one.
  *
  * Browsers compute for pages of this machine, or by HTTPS, only. Elsewhere the server is believed: there no program keeps
  * its token.

@@ -1,4 +1,4 @@
-/** A recording that this page shows in place of what the program shows: `?recording=` in its address names it. */
+/** A recording that this page shows instead of the program's present: `?recording=` in its address names it. */
 const PARAMETER = "recording";
 
 /** The recording that an address names; null for none. */

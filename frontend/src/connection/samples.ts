@@ -14,7 +14,7 @@ export interface SeriesSamples {
   values: Float64Array;
 }
 
-/** Reads what `pack_samples` of `viewer/protocol/monitor.py` wrote; null when the bytes are something else. */
+/** Reads what `pack_samples` of `viewer/protocol/monitor.py` wrote; null for any other bytes. */
 export function unpackSamples(buffer: ArrayBuffer): SeriesSamples[] | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const view = new DataView(buffer);

@@ -10,8 +10,8 @@ export interface AddressBar {
 }
 
 /**
- * The token that the page shows the server: the one in its address, and the one with which a page of this browser was
- * let in last. The browser's storage belongs to this host and port alone, so that no other server is told it.
+ * The token that the page shows the server: the one in its address, and the last one that let a page of this browser
+ * in. The browser's storage belongs to this host and port alone, so no other server receives it.
  */
 export class Tokens {
   private own: string | null;
@@ -24,7 +24,7 @@ export class Tokens {
     this.own = tokenIn(address.href);
   }
 
-  /** The one to show now; they take turns where one was refused. */
+  /** The one to show now; they alternate after a refusal. */
   get current(): string | null {
     const { known } = this;
     return known[this.refusals % Math.max(1, known.length)] ?? null;

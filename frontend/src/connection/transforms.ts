@@ -9,13 +9,13 @@ export interface Transforms {
   revision: number;
   /** Time of the newest transform, seconds. */
   stamp: number;
-  /** count x 7: x y z (m) qx qy qz qw; NaN rows where there is no transform. */
+  /** count x 7: x y z (m) qx qy qz qw; NaN rows without a transform. */
   poses: Float32Array;
   /** Seconds since each frame was last heard of; 0 for static frames. */
   ages: Float32Array;
 }
 
-/** Reads what `pack_transforms` of `viewer/protocol/binary.py` wrote; null when the bytes are something else. */
+/** Reads what `pack_transforms` of `viewer/protocol/binary.py` wrote; null for any other bytes. */
 export function unpackTransforms(buffer: ArrayBuffer): Transforms | null {
   if (buffer.byteLength < HEADER_BYTES) return null;
   const header = new DataView(buffer);

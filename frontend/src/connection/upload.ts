@@ -6,7 +6,7 @@ export interface NamedFile {
   file: Blob;
 }
 
-/** The server does not take it; the text says why. */
+/** The server refuses it; the text is the reason. */
 export class RefusedError extends Error {}
 
 /** Sends the files of a recording to the server, one after the other, and has it shown; or one that the server has. */
@@ -17,8 +17,8 @@ export class Upload {
 
   /**
    * @param base - the address of the page.
-   * @param language - what refusals are told in.
-   * @param progress - told how many bytes were sent.
+   * @param language - of refusals.
+   * @param progress - receives the number of bytes sent.
    */
   constructor(
     private readonly base: string,
@@ -27,7 +27,7 @@ export class Upload {
     private readonly progress: (sent: number) => void,
   ) {}
 
-  /** Uploads a recording and returns the server's name for it; null where it was cancelled. */
+  /** Uploads a recording and returns the server's name for it; null if it was cancelled. */
   async send(name: string, files: readonly NamedFile[]): Promise<string | null> {
     const announced = { name, files: files.map((each) => ({ name: each.name, size: each.file.size })) };
     this.key = (await this.ask("POST", "recordings", JSON.stringify(announced)))?.key ?? "";

@@ -6,7 +6,7 @@ type Positions = Readonly<Record<string, number>>;
 
 const MOST_FOLLOWED = 64;
 
-/** A frame below another: where it stands in it, and the joint that moves it, at the position of the one that leads it. */
+/** A frame below another: its place in the parent, and the joint that moves it, at the position of its leading joint. */
 interface Frame {
   readonly parent: number;
   readonly fixed: Matrix4;

@@ -9,7 +9,7 @@ const TF = "rviz_default_plugins/TF";
 /** Length of an axis of TF at Marker Scale 1, m. */
 const AXIS = 0.2;
 
-/** Takes the server's place in an exported page: tells what was recorded, and moves the robot's joints. */
+/** Takes the server's place in an exported page: sends the recorded messages, and moves the robot's joints. */
 export class RecordedConnection extends Connection {
   private controls: readonly JointControl[] = [];
   private robot: MovingRobot | null = null;
@@ -34,7 +34,7 @@ export class RecordedConnection extends Connection {
     this.moved();
   }
 
-  /** Moves joints; what else the page asks for needs a server, and its own edits it shows by itself. */
+  /** Moves joints; other requests of the page need a server, and the page shows its own edits by itself. */
   override send(message: PageMessage): void {
     const { controls } = this;
     if (message.type === "set_joint") this.move({ [message.name]: message.position });
@@ -50,7 +50,7 @@ export class RecordedConnection extends Connection {
     this.moved();
   }
 
-  /** Puts the grid on the ground that the robot stands on, in cells of its size, with axes that suit it, as the server of `view` does where nobody chose. */
+  /** Puts the grid on the ground below the robot, in cells of its size, with axes that suit it, as the server of `view` does by default. */
   private fitSizes({ diagonal, ground }: RobotMeasured): void {
     const { messages, awaits_size, spacing } = this.recording;
     const displays = messages.find((message) => message.type === "tree")?.displays ?? [];

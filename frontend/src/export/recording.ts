@@ -6,7 +6,7 @@ export interface Recording {
   program: string;
   /** The RobotModel display whose joints can be moved. */
   display: string;
-  /** Whether grid and axes are to have the size of the robot: nobody chose one, and nobody has drawn the robot. */
+  /** Whether grid and axes get the size of the robot: none is configured, and the robot is not drawn yet. */
   awaits_size: boolean;
   /** The usual distance of a link's frame from its parent's, m; null where that is not known. */
   spacing: number | null;

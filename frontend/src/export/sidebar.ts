@@ -16,12 +16,12 @@ const SIDES: readonly Side[] = ["iso", "front", "left", "top"];
 /** The actions of the sidebar. */
 export interface SidebarActions {
   lookFrom(side: Side): void;
-  /** Looks at all of what is selected. */
+  /** Looks at the whole selection. */
   fit(): void;
   reset(): void;
 }
 
-/** Beside the robot of an exported page: what is shown, views, and a slider for each joint. */
+/** Beside the robot of an exported page: its displays, views, and a slider for each joint. */
 export class Sidebar {
   readonly element: HTMLElement;
 

@@ -11,7 +11,7 @@ const CONTENT_TYPE = "application/yaml";
 
 /** The commands on the configuration file, with the questions that keep work from being lost. */
 export class FileCommands {
-  /** What was asked for, to be asked for again when the user says that changes may be lost. */
+  /** The pending request, repeated when the user accepts that changes are lost. */
   private pending: ((discard: boolean) => void) | null = null;
   /** Runs when the file is saved. */
   private afterSaving: (() => void) | null = null;

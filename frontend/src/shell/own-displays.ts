@@ -15,7 +15,7 @@ export function addressFor(address: string, own: boolean): string {
   return url.href;
 }
 
-/** By what this tab names its displays, so that they are there again when it loads anew. */
+/** The key of this tab's own displays, so that they exist again after a reload. */
 export function ownKey(storage: Pick<Storage, "getItem" | "setItem">): string {
   const known = storage.getItem(KEY);
   if (known !== null) return known;

@@ -62,7 +62,7 @@ export class RecordingDrop {
     return this.open(name, whole, (upload) => upload.send(name, files));
   }
 
-  /** Goes to the page of a recording when the server shows it; until then a dialog says how far it is. `whole` are bytes. */
+  /** Opens the page of a recording when the server shows it; until then a dialog shows the progress. `whole` are bytes. */
   private async open(name: string, whole: number, bring: (upload: Upload) => Promise<string | null>): Promise<void> {
     const words = strings.recording;
     if (this.sending) return;
@@ -97,7 +97,7 @@ export class RecordingDrop {
     }
   }
 
-  /** A recording that nobody looked at for a while is shown no longer: the program's own page is. */
+  /** A recording that was not viewed for a while is no longer shown: the program's own page is. */
   private check(live: boolean): void {
     if (!live || recordingIn(location.href) === null) return;
     history.replaceState(history.state, "", addressOf(location.href, null));

@@ -8,11 +8,11 @@ export interface Dropped {
 
 const OF_A_RECORDING = /(^metadata\.yaml|\.(mcap|db3)(\.zstd)?)$/;
 
-/** The files of a recording among several; with a name that tells where there is more than one. */
+/** The files of a recording among several; with a descriptive name if there is more than one. */
 export function recordingAmong(name: string, files: readonly NamedFile[]): Dropped {
   const found = files.filter((each) => OF_A_RECORDING.test(each.name));
   const messages = found.filter((each) => each.name !== "metadata.yaml");
-  // Of a single file the metadata say no more than it does itself.
+  // The metadata of a single file add nothing to the file.
   if (messages.length === 1 && messages[0]) return { name: messages[0].name, files: messages };
   return { name, files: messages.length > 0 ? found : [] };
 }

@@ -11,7 +11,7 @@ import { saveBlob, saveFrom } from "../widgets/save-file";
 
 const SCALES = [1, 2, 4] as const;
 
-/** The menu of exports: pictures and videos of the scene, the robot as a file. */
+/** The menu of exports: images and videos of the scene, the robot as a file. */
 export class ShareMenu {
   /** Shown while a video is recorded: its time, and a click ends it. */
   readonly element: HTMLElement;

@@ -12,7 +12,7 @@ import { addressFor } from "./own-displays";
 import type { RecordingDrop } from "./recording-drop";
 import type { ShareMenu } from "./share-menu";
 
-/** The head of the page: menus, the configuration file, and what concerns all of the page. */
+/** The head of the page: menus, the configuration file, and the commands for all of the page. */
 export class TitleBar {
   readonly element: HTMLElement;
   private readonly title = h("span", { class: "document-title" });

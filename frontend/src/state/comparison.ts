@@ -5,7 +5,7 @@ import type { ElementName } from "./description-model";
 
 export type MarkName = "added" | "changed" | "removed" | "old";
 
-/** Told apart by those who see red and green, or blue and yellow, alike; `comparison.test.ts` computes how well. */
+/** Distinguishable with red-green or blue-yellow colour blindness; `comparison.test.ts` computes how well. */
 export const MARK_COLORS: Readonly<Record<MarkName, string>> = {
   added: "#56b4e9",
   changed: "#f0c020",
@@ -17,7 +17,7 @@ export const MARK_COLORS: Readonly<Record<MarkName, string>> = {
 export interface Instead {
   /** r g b, from 0 to 1 */
   readonly color: readonly [number, number, number];
-  /** What is in the same place is drawn over it. */
+  /** Objects in the same place are drawn over it. */
   readonly behind?: boolean;
   /** It is seen through less than the rest of the robot. */
   readonly firm?: boolean;
@@ -39,7 +39,7 @@ export class ComparisonState {
     return this.told;
   }
 
-  /** Whether links that differ have colours that say how. */
+  /** Whether links that differ are coloured by their difference. */
   get marks(): boolean {
     return this.marking;
   }
@@ -86,10 +86,10 @@ export class ComparisonState {
   }
 }
 
-/** Differences about one thing, which stand together. */
+/** The differences of one object, shown together. */
 export interface DifferenceGroup {
   readonly items: readonly ComparedItem[];
-  /** What happened to all of it. */
+  /** The change of the whole object. */
   readonly kind: ComparedItem["kind"];
 }
 

@@ -8,7 +8,7 @@ import type {
 } from "../protocol";
 import { Signal } from "../signal";
 
-/** The configuration file on the server, what can be added to it, undone in it and done with it. */
+/** The configuration file on the server, its possible additions, undo steps and commands. */
 export class ConfigurationState {
   /** Path, unsaved changes, undo or redo are others. */
   readonly changed = new Signal();
@@ -17,7 +17,7 @@ export class ConfigurationState {
   readonly texts = new Signal<ConfigurationText>();
   readonly folders = new Signal<Folder>();
   readonly offered = new Signal<DisplayChoices>();
-  /** What can be added, as the server said when it was asked last. */
+  /** The possible additions in the server's last answer. */
   choices: DisplayChoices | null = null;
   current: Configuration = {
     type: "configuration",

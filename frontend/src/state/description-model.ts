@@ -16,7 +16,7 @@ export class DescriptionModel {
   readonly joints: ReadonlyMap<string, JointDetails>;
   private readonly below = new Map<string, JointDetails[]>();
   private readonly depths = new Map<string, number>();
-  /** Ranges of one file from its start; those of a macro come several times. */
+  /** Ranges of one file from its start; those of a macro occur several times. */
   private readonly ranges = new Map<string, { range: SourceRange; element: ElementName }[]>();
 
   constructor(readonly description: Description) {
@@ -38,7 +38,7 @@ export class DescriptionModel {
     return this.description.display;
   }
 
-  /** The joints that hang from a link, by name, as urdfdom has them. */
+  /** The child joints of a link, by name, as in urdfdom. */
   jointsBelow(link: string): readonly JointDetails[] {
     return this.below.get(link) ?? [];
   }

@@ -11,17 +11,17 @@ export interface Change {
 }
 
 /**
- * The descriptions of the robots. The server tells only when it is another; the rest is asked for as long as somebody
+ * The descriptions of the robots. The server only announces changes; the rest is requested while a view
  * holds it, and texts when they are read.
  */
 export class DescriptionState {
-  /** The description of a display has come. */
+  /** The description of a display has arrived. */
   readonly arrived = new Signal<DescriptionModel>();
-  /** The findings about the masses of a display's robot have come. */
+  /** The findings about the masses of a display's robot have arrived. */
   readonly findingsArrived = new Signal<string>();
-  /** Links and joints say something else than before. */
+  /** Links and joints have changed. */
   readonly edited = new Signal<Change>();
-  /** A text has come. */
+  /** A text has arrived. */
   readonly textArrived = new Signal();
   /** The user wants to see a place: a diagnostic's, a link's; `name`: what readers know the file by. */
   readonly placeAsked = new Signal<{ file: string; line: number; display?: string; name?: string }>();
@@ -30,7 +30,7 @@ export class DescriptionState {
   private readonly revisions = new Map<string, number>();
   private readonly models = new Map<string, DescriptionModel>();
   private readonly findings = new Map<string, InertiaFindings>();
-  /** Undefined while it is being asked for. */
+  /** Undefined while the request is pending. */
   private readonly texts = new Map<string, string | null | undefined>();
   private modelHolders = 0;
   private findingHolders = 0;
@@ -57,7 +57,7 @@ export class DescriptionState {
       this.texts.set(textKey(display, file), text);
       this.textArrived.emit();
     });
-    // With an error, texts are those that are wrong; without, those of the robot.
+    // With an error, texts are those with the error; otherwise those of the robot.
     connection.on("diagnostics", () => this.forgetTexts());
   }
 
@@ -72,7 +72,7 @@ export class DescriptionState {
     return once(() => (this.modelHolders -= 1));
   }
 
-  /** Keeps what is implausible about masses current until the returned function is called. */
+  /** Keeps the findings about masses current until the returned function is called. */
   holdFindings(): () => void {
     this.findingHolders += 1;
     if (this.findingHolders === 1) {
@@ -83,7 +83,7 @@ export class DescriptionState {
     return once(() => (this.findingHolders -= 1));
   }
 
-  /** The description of a display, if it has come; it may be that of a moment ago. */
+  /** The description of a display, if it has arrived; it may be slightly out of date. */
   of(display: string): DescriptionModel | undefined {
     return this.models.get(display);
   }
@@ -92,7 +92,7 @@ export class DescriptionState {
     return this.findings.get(display)?.findings ?? [];
   }
 
-  /** A text, as far as it is here, else it is asked for; null for one that there is not. */
+  /** A text, if it has arrived, otherwise it is requested; null if it does not exist. */
   text(display: string, file: string): string | null | undefined {
     const key = textKey(display, file);
     if (!this.texts.has(key)) {

@@ -10,7 +10,7 @@ export interface DiagramNode {
   readonly y: number;
   readonly width: number;
   readonly height: number;
-  /** What stands at the edge above a joint: its origin in the parent's frame. */
+  /** The text at the edge above a joint: its origin in the parent's frame. */
   readonly origin: readonly string[];
   /** The node that the edge comes from. */
   readonly above: DiagramNode | null;
@@ -89,7 +89,7 @@ function build(
   return made.get(model.description.root) ?? size("link", model.description.root, [], []);
 }
 
-/** The text of an origin as urdf_to_graphviz writes it: metres, and radians that came through the quaternion. */
+/** The text of an origin as urdf_to_graphviz writes it: metres, and radians converted through the quaternion. */
 function originText({ xyz, rpy }: Pick<JointDetails, "xyz" | "rpy">): [string, string] {
   return [`xyz: ${xyz.map(general).join(" ")}`, `rpy: ${rpy.map(general).join(" ")}`];
 }

@@ -12,7 +12,7 @@ export class DisplayDataStore {
   constructor(connection: Connection) {
     connection.data.on((data) => this.take(data));
     connection.on("display_forgotten", ({ display, key }) => this.forget(display, key));
-    // Whatever is still drawn after a new beginning comes again.
+    // Objects that are still drawn after a restart arrive again.
     connection.on("hello", () => {
       for (const display of [...this.contents.keys()]) this.forget(display, null);
     });

@@ -4,10 +4,10 @@ import { PropertyNode, PropertyRows } from "./properties";
 
 const GROUP = "rviz_common/Group";
 
-/** How a row stands: as the server says, or "loading" while what it would draw is on its way. */
+/** The level of a row: the server's, or "loading" while its data is on its way. */
 export type ShownLevel = StatusLevel | "loading";
 
-/** The rows of a status that are no "ok", errors first. */
+/** The rows of a status other than "ok", errors first. */
 export function troublesOf(status: readonly StatusRow[]): StatusRow[] {
   return [...status.filter((row) => row.level === "error"), ...status.filter((row) => row.level === "warn")];
 }
@@ -49,7 +49,7 @@ export class DisplayState {
     return this.checked && (this.group?.enabled ?? true);
   }
 
-  /** Whether it holds displays instead of drawing something. */
+  /** Whether it contains displays instead of drawing. */
   get isGroup(): boolean {
     return this.cls === GROUP;
   }
@@ -69,7 +69,7 @@ export class DisplayState {
   }
 
   setProperties(properties: readonly Property[]): void {
-    // The enable box stands on the display's own row.
+    // The enable box is in the display's own row.
     const rest = properties.filter((property) => property.id !== this.enabledId);
     this.rows = new PropertyRows(rest.map((property) => new PropertyNode(property)));
   }
@@ -77,7 +77,7 @@ export class DisplayState {
 
 /** The Displays tree of the server: global options, global status and every display. */
 export class DisplaysState {
-  /** Displays came or went. */
+  /** Displays were added or removed. */
   readonly treeChanged = new Signal();
   /** The rows below a display are new ones. */
   readonly rowsChanged = new Signal<DisplayState>();
@@ -85,7 +85,7 @@ export class DisplaysState {
   readonly enabledChanged = new Signal<DisplayState>();
   /** One value; `display` is null for a global option. */
   readonly valueChanged = new Signal<{ node: PropertyNode; display: DisplayState | null }>();
-  /** Somebody wants to see the row of a display in the list. */
+  /** The user requested the row of a display in the list. */
   readonly rowAsked = new Signal<DisplayState>();
   readonly displays: DisplayState[] = [];
   globalOptions = new PropertyRows([]);
@@ -158,7 +158,7 @@ export class DisplaysState {
     }
   }
 
-  /** The level that the status of a display is shown with: nothing is "ok" before it is there. */
+  /** The level to show for a display: a display that is still loading is not "ok". */
   levelOf(display: DisplayState): ShownLevel {
     return display.level === "ok" && display.enabled && this.isLoading(display) ? "loading" : display.level;
   }

@@ -1,16 +1,16 @@
 import { Signal } from "../signal";
 
-/** So many frames are looked back at. */
+/** The number of recent frames that count. */
 const FRAMES = 60;
 /** So many late ones of them are slow, and so few are not any more. */
 const SLOW = 45;
 const FAST = 15;
 
-/** Whether the page draws as fast as it is asked to. What comes seldom is not slow: only frames count that were due. */
+/** Whether the page draws as fast as requested. Rare frames do not count as slow, only frames that were due. */
 export class DrawingPace {
-  /** It became slow, or is no longer. */
+  /** Drawing became slow, or fast again. */
   readonly changed = new Signal();
-  /** What draws, where that is the processor and no graphics card. */
+  /** The software renderer, if the processor draws instead of a graphics card. */
   software: string | null = null;
   private readonly lates: boolean[] = [];
   private slow = false;

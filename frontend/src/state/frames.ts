@@ -16,7 +16,7 @@ export class FrameStore {
   readonly tableChanged = new Signal();
   /** At least one pose differs from before. */
   readonly posesChanged = new Signal();
-  /** Only the ages went on. */
+  /** Only the ages changed. */
   readonly agesChanged = new Signal();
   names: readonly string[] = [];
   parents: readonly number[] = [];

@@ -11,7 +11,7 @@ export interface Inspected {
   boxes: boolean;
   /** Ellipsoids of the same inertia. */
   ellipsoids: boolean;
-  /** Axes of joints, their limits and where they stand. */
+  /** Axes of joints, their limits and positions. */
   joints: boolean;
   /** Collisions against visuals. */
   contrast: boolean;
@@ -28,7 +28,7 @@ const NOTHING: Inspected = {
   frames: false,
 };
 
-/** The user's choice of invisible parts to draw; remembered by the browser, for it is no part of an .rviz file. */
+/** The user's choice of invisible parts to draw; remembered by the browser, because .rviz files have no place for it. */
 export class InspectState {
   readonly changed = new Signal();
   private shown: Inspected;

@@ -19,7 +19,7 @@ export const COLUMNS = [
 
 export type Column = (typeof COLUMNS)[number];
 
-/** The words that stand in cells. */
+/** The texts of the cells. */
 interface Words {
   readonly kinds: Readonly<Record<JointDetails["kind"], string>>;
   readonly table: { readonly damping: (value: string) => string; readonly friction: (value: string) => string };
@@ -64,7 +64,7 @@ export function mimicText(joint: string, multiplier: number, offset: number, uni
   return `${product} ${offset < 0 ? "−" : "+"} ${rounded(Math.abs(offset))} ${unit}`;
 }
 
-/** Joints by a column; numbers by their size, what has none last. */
+/** Joints sorted by a column; numbers by their value, joints without one last. */
 export function sorted(joints: readonly JointDetails[], column: Column, descending: boolean): JointDetails[] {
   const way = descending ? -1 : 1;
   return [...joints].sort((a, b) => {

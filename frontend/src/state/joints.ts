@@ -3,12 +3,12 @@ import type { JointControl } from "../protocol";
 import { Signal } from "../signal";
 import type { Kept } from "./kept";
 
-/** Joints in one message: the server takes messages of 64 KiB. */
+/** Joints in one message: the server accepts messages of 64 KiB. */
 const MOST_AT_ONCE = 200;
 
 export type Positions = Readonly<Record<string, number>>;
 
-/** The Joints panel's rows and the positions the server last told. */
+/** The Joints panel's rows and the last positions from the server. */
 export class JointsState {
   readonly controlsChanged = new Signal();
   readonly positionsChanged = new Signal();
@@ -18,9 +18,9 @@ export class JointsState {
   /** Links are dragged without holding Alt. */
   handsOn = false;
   private waiting: Record<string, number> | null = null;
-  /** The rows that there were last; a program that ends takes them away. */
+  /** The latest rows; a program that ends removes them. */
   private latest: readonly JointControl[] = [];
-  /** Where joints stood in a program that was started again, until the new one has sliders. */
+  /** Joint positions of a program that was restarted, until the new one has sliders. */
   private lost: Positions = {};
 
   constructor(
@@ -36,7 +36,7 @@ export class JointsState {
     kept.part("hands on", () => this.handsOn, (on) => (this.handsOn = on));
   }
 
-  /** Moves joints, rad or m: at once, and what follows within an animation frame as one. */
+  /** Moves joints, rad or m: at once; further moves in an animation frame are sent together. */
   move(positions: Positions): void {
     if (this.waiting) {
       Object.assign(this.waiting, positions);
@@ -66,7 +66,7 @@ export class JointsState {
     return null;
   }
 
-  /** The program was started again: joints that were moved go back to where they stood, if it shows the same. */
+  /** The program was restarted: moved joints return to their positions, if it shows the same robot. */
   programRestarted(isSame: boolean): void {
     const moved = this.latest.filter(({ name, mimic, zero }) => mimic === null && this.positions[name] !== zero);
     const before = moved.map(({ name }) => [name, this.positions[name]]).filter(([, position]) => position !== undefined);

@@ -1,10 +1,10 @@
 import { PROTOCOL_VERSION } from "../protocol";
 import type { BrowserStorage } from "../storage";
 
-/** Of another version of the page nothing is taken. */
+/** State from another version of the page is ignored. */
 const KEY = `linkwright.kept.${PROTOCOL_VERSION}`;
 
-/** What a page shows by itself, for the one that takes its place when the user chooses another language. */
+/** The state of a page, for the page that replaces it when the user chooses another language. */
 export class Kept {
   private readonly parts = new Map<string, () => unknown>();
   private readonly found: Readonly<Record<string, unknown>>;
@@ -14,13 +14,13 @@ export class Kept {
     storage.removeItem(KEY);
   }
 
-  /** Gives `take` what the page before had under a name, if there was one, and asks `read` when this page is left. */
+  /** Calls `take` with the previous page's state of a name, if any, and `read` when this page is left. */
   part<T>(name: string, read: () => T, take: (value: T) => void): void {
     this.parts.set(name, read);
     if (name in this.found) take(this.found[name] as T);
   }
 
-  /** The page is about to be shown anew. */
+  /** The page is about to be reloaded. */
   leave(): void {
     this.storage.setItem(KEY, JSON.stringify(Object.fromEntries([...this.parts].map(([name, read]) => [name, read()]))));
   }

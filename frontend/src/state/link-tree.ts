@@ -2,12 +2,12 @@ import type { JointDetails, LinkDetails } from "../protocol";
 import type { DescriptionModel } from "./description-model";
 import type { Kept } from "./kept";
 
-/** A link in the tree, and the joint it hangs from. */
+/** A link in the tree, and its parent joint. */
 export interface TreeRow {
   readonly link: LinkDetails;
   readonly joint: JointDetails | null;
   readonly depth: number;
-  /** Whether anything hangs from it. */
+  /** Whether it has children. */
   readonly inner: boolean;
   readonly folded: boolean;
 }
@@ -34,7 +34,7 @@ export class LinkTreeState {
     this.folded = new Set(all ? model.links.keys() : []);
   }
 
-  /** Opens what a link is below. */
+  /** Opens the ancestors of a link. */
   open(model: DescriptionModel, link: string): void {
     for (let joint = model.jointAbove(link); joint; joint = model.jointAbove(joint.parent)) this.folded.delete(joint.parent);
   }

@@ -1,8 +1,8 @@
 import { Signal } from "../signal";
 
-/** Loading that is done before is not told. */
+/** Loading that finishes sooner is not reported. */
 const TOLD_AFTER_MS = 500;
-/** Reading holds the page up, so that files from here on are told before it begins. */
+/** Reading blocks the page, so files from this size on are reported before it begins. */
 const LARGE_BYTES = 4_000_000;
 
 /** The progress of loading a mesh file. */
@@ -10,12 +10,12 @@ export interface MeshLoad {
   /** The file's, without folders. */
   readonly name: string;
   bytes: number;
-  /** All that will come; null where the server does not say. */
+  /** The total size; null if the server does not send it. */
   total: number | null;
   stage: "fetching" | "reading";
 }
 
-/** Mesh files that take longer than a moment to be there. */
+/** Mesh files that take longer than a moment to load. */
 export class MeshProgress {
   readonly changed = new Signal();
   private readonly shown = new Set<MeshLoad>();
@@ -25,7 +25,7 @@ export class MeshProgress {
     return [...this.shown];
   }
 
-  /** The loading of a file begins; whoever began it tells the rest. */
+  /** Begins the loading of a file; the caller reports its progress. */
   begin(name: string): LoadReport {
     const load: MeshLoad = { name, bytes: 0, total: null, stage: "fetching" };
     const show = (): void => {
@@ -57,15 +57,15 @@ export class MeshProgress {
 
 /** The reports of a file's loader. */
 export interface LoadReport {
-  /** So many bytes are there. */
+  /** Reports the number of bytes received. */
   came(bytes: number, total: number | null): void;
-  /** All are there; resolves when that is to be seen, for reading does not let the page be painted. */
+  /** Reports that all bytes are received; resolves when the page shows it, because reading blocks painting. */
   reads(): Promise<void>;
-  /** It is there, or has failed. */
+  /** Reports that the file is loaded, or has failed. */
   ended(): void;
 }
 
-/** Resolves when the page was painted; a page that nobody sees is not, and goes on. */
+/** Resolves when the page was painted; a hidden page is not painted, and continues after a while. */
 function painted(): Promise<void> {
   return new Promise((resolve) => {
     const timer = setTimeout(resolve, 200);

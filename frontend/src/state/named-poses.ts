@@ -9,7 +9,7 @@ export interface NamedPose {
 
 const KEY = "linkwright.poses.";
 
-/** The named poses of each robot, by its name. The browser keeps them; a file takes them elsewhere. */
+/** The named poses of each robot, by its name. The browser stores them; a file moves them to another one. */
 export class PoseStore {
   readonly changed = new Signal();
 
@@ -68,7 +68,7 @@ export function posesOf(srdf: string): NamedPose[] {
   return [...poses.values()];
 }
 
-/** Whether the joints stand as a pose says, as far as it says it. */
+/** Whether the joints are at a pose's positions, as far as it sets them. */
 export function standsAs(pose: NamedPose, positions: Readonly<Record<string, number>>): boolean {
   return Object.entries(pose.positions).every(([name, value]) => {
     const position = positions[name];

@@ -1,8 +1,8 @@
 import type { TopicChoice } from "../protocol";
 
 /**
- * The display that a topic is for: the one that is called as its messages are, PointCloud2 for PointCloud2, Image for
- * CompressedImage. Among those of texts, which say nothing, the one of which the topic's name speaks. Null without any.
+ * The display that a topic is for: the one whose name matches the message type, PointCloud2 for PointCloud2, Image for
+ * CompressedImage. Among those for plain texts, the one whose name occurs in the topic's name. Null if there is none.
  */
 export function obviousDisplay({ topic, message, classes }: TopicChoice): string | null {
   const type = shortName(message);

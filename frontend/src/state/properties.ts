@@ -11,7 +11,7 @@ export class PropertyNode {
   readonly readOnly: boolean;
   readonly expanded: boolean;
   readonly children: readonly PropertyNode[];
-  /** What the row stands for, if the page shows more of it in rows of its own. */
+  /** The object that the row represents, if the page shows more of it in rows of its own. */
   readonly details: RowDetails | null;
   /** Which topics to offer, if not those of the display. */
   readonly topics: TopicOffer | null;

@@ -5,11 +5,11 @@ import { Signal } from "../signal";
 /** The recording that the server makes for pages: one at a time, which all of them see. */
 export class RecordingControl {
   readonly changed = new Signal();
-  /** What this page had recorded or saved is a file now. */
+  /** This page's recording or saved excerpt is a file now. */
   readonly made = new Signal<RecordedFile>();
-  /** What this page asked for could not be done, or ended early; why. */
+  /** A request of this page failed, or ended early; the reason. */
   readonly refused = new Signal<string>();
-  /** The user wants to see one that was made. */
+  /** The user requested to view a finished one. */
   readonly wanted = new Signal<RecordedFile>();
   private told: RecordingState | null = null;
   private asked = false;
@@ -61,7 +61,7 @@ export class RecordingControl {
     return this.told?.files ?? [];
   }
 
-  /** Records some topics; none for all that there are and those to come. */
+  /** Records some topics; none for all current and future ones. */
   record(topics: readonly string[]): void {
     this.asked = true;
     this.connection.send({ type: "record_topics", topics: [...topics] });
@@ -72,7 +72,7 @@ export class RecordingControl {
     this.connection.send({ type: "stop_recording" });
   }
 
-  /** Saves what came in the last minutes between two times, s since the epoch; null for their ends. */
+  /** Saves the messages of the last minutes between two times, s since the epoch; null for their ends. */
   save(start: number | null, end: number | null): void {
     this.asked = true;
     this.connection.send({ type: "save_minutes", start, end });

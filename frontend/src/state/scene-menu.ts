@@ -5,7 +5,7 @@ export interface MenuChoice {
   choices?: readonly MenuChoice[];
 }
 
-/** A menu wanted at a place of the canvas, pixels from its upper left corner. */
+/** A menu requested at a place of the canvas, pixels from its upper left corner. */
 export interface SceneMenu {
   x: number;
   y: number;

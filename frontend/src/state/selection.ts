@@ -2,7 +2,7 @@ import type { LinkScene, RobotScene } from "../protocol";
 import { Signal } from "../signal";
 import type { Kept } from "./kept";
 
-/** A thing of a display: a link, a marker, a point; `key` is what the display's drawing calls it. */
+/** An object of a display: a link, a marker, a point; `key` identifies it in the display's drawing. */
 export interface SelectedItem {
   readonly display: string;
   readonly key: string;
@@ -53,7 +53,7 @@ export class SelectionState {
     if (!same) this.take([...next.values()]);
   }
 
-  /** Takes away what its display shows no more. */
+  /** Removes objects that their display no longer shows. */
   drop(isThere: (item: SelectedItem) => boolean): void {
     const left = this.current.filter(isThere);
     if (left.length < this.current.length) this.take(left);

@@ -61,7 +61,7 @@ export class Session {
   /** Answers `ask_provenance`. */
   readonly provenanceAnswered = new Signal<LinkProvenance>();
   readonly greeted = new Signal<Hello>();
-  /** Something in the scene wants a menu. */
+  /** A menu in the scene was requested. */
   readonly sceneMenu = new Signal<SceneMenu>();
   readonly focus = new ElementFocus(this.selection, this.robots);
   readonly inspect = new InspectState(browserStorage());
@@ -102,14 +102,14 @@ export class Session {
     this.keep();
   }
 
-  /** What is this page's alone outlives it. */
+  /** State of this page alone outlives it. */
   private keep(): void {
     const { kept } = this;
     kept.part("program", () => this.program, (program) => (this.program = program));
     for (const each of [this.view, this.selection, this.focus, this.tools, this.joints]) each.keep(kept);
   }
 
-  /** The user edits a property: shown at once, and told to the server. */
+  /** Applies a property edit of the user: shown at once, and sent to the server. */
   setProperty(id: string, value: PropertyValue): void {
     this.displays.setValue(id, value, null);
     this.connection.send({ type: "set_property", id, value });

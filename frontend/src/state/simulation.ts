@@ -2,14 +2,14 @@ import type { Connection } from "../connection/connection";
 import type { ControlSimulation, SimulationStatus } from "../protocol";
 import { Signal } from "../signal";
 
-/** The simulation in the graph, if there is one, as the server tells of it. */
+/** The simulation in the graph, if there is one, as the server reports it. */
 export class SimulationState {
   readonly changed = new Signal();
-  /** The simulation did not do something; why. */
+  /** The simulation refused a request; the reason. */
   readonly refused = new Signal<string>();
-  /** A model that this page asked for is in the world; its name. */
+  /** A model that this page requested is in the world; its name. */
   readonly added = new Signal<string>();
-  /** The user wants to put a model at a place of the world, m. */
+  /** The user requested a model at a place of the world, m. */
   readonly spawnAsked = new Signal<readonly number[]>();
   /** Where in the world there is room for a model, m; a world that is drawn knows better. */
   freePlace: () => readonly number[] = () => [0, 0, 0];
@@ -32,7 +32,7 @@ export class SimulationState {
     return this.status?.paused ?? false;
   }
 
-  /** Simulated time, s; null before it was told. */
+  /** Simulated time, s; null before the server reports it. */
   get time(): number | null {
     return this.status?.time ?? null;
   }

@@ -15,7 +15,7 @@ export type Reduction =
 export interface Reduced {
   display: string;
   reduction: Reduction;
-  /** How often content comes, Hz; null when there was too little to tell. */
+  /** How often content comes, Hz; null if there was too little to measure. */
   rate: number | null;
 }
 

@@ -3,18 +3,18 @@ import { Signal } from "../signal";
 import type { DrawingPace } from "./drawing-pace";
 import type { SlowLine } from "./slow-line";
 
-/** What is slow where a page is sent less than all: its drawing, the program that it is of, or the line between both. */
+/** The cause of a page's reduced data rate: its drawing, its program, or the connection between both. */
 export type SlowCause = "page" | "program" | "line";
 
 /** The time between two looks at how late the page is, ms. */
 const EVERY_MS = 50;
 /** Looks that count. */
 const LOOKS = 40;
-/** A page is late that has done nothing else for so much of the time, and no longer is one with less than the other. */
+/** Shares of time in which a busy page counts as late: above the first, until it is below the second. */
 const LATE = 0.3;
 const TIMELY = 0.15;
 
-/** Finds what is slow, as long as a page is sent less than all. */
+/** Finds the cause, as long as the page's data rate is reduced. */
 export class Slowness {
   readonly changed = new Signal();
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -49,11 +49,11 @@ export class Slowness {
     if (wanted) this.lookLater();
   }
 
-  /** What comes waits for the page as long as its timers do. */
+  /** Messages wait for the page as long as its timers do. */
   private lookLater(): void {
     const due = this.now() + EVERY_MS;
     this.timer = setTimeout(() => {
-      // Browsers let timers of pages that nobody sees wait.
+      // Browsers delay the timers of hidden pages.
       if (!globalThis.document.hidden) this.take(Math.max(0, this.now() - due));
       this.lookLater();
     }, EVERY_MS);

@@ -2,7 +2,7 @@ import type { JointControl } from "../protocol";
 
 export type SweepOrder = "one" | "all";
 
-/** Seconds in which a joint goes from where it stands to its upper limit, to its lower one and back, at speed 1. */
+/** Seconds in which a joint goes from its position to its upper limit, to its lower one and back, at speed 1. */
 const ROUND_S = 4;
 
 /** Every joint through its range, one after another or all at once, over and over. */
@@ -10,8 +10,8 @@ export class Sweep {
   private readonly joints: readonly JointControl[];
 
   /**
-   * @param controls joints that follow others are left out.
-   * @param start where the joints stand, rad or m.
+   * @param controls joints; those that mimic others are left out.
+   * @param start the positions of the joints, rad or m.
    */
   constructor(
     controls: readonly JointControl[],

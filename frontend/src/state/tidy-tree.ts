@@ -1,4 +1,4 @@
-/** A node to be laid out: its size, and what hangs from it. Any unit. */
+/** A node to be laid out: its size, and its children. Any unit. */
 export interface TreeNode {
   readonly id: string;
   readonly width: number;
@@ -64,7 +64,7 @@ function settle(
   if (!only) return outline;
   const below = contours.get(only);
   if (below && more.length === 0) {
-    // Nobody else asks for the child's outline: a long chain has one that grows.
+    // No other node needs the child's outline: a long chain has one that grows.
     below.left.unshift(-node.width / 2);
     below.right.unshift(node.width / 2);
     return below;

@@ -40,7 +40,7 @@ export class TimeControlState {
       this.clockChanged.emit();
     });
     connection.on("time_reset", () => this.wasReset.emit());
-    // A new connection knows nothing of what this page watches.
+    // A new connection does not know this page's subscriptions.
     connection.on("hello", () => {
       if (this.watching) connection.send({ type: "watch_clock", watching: true });
     });
@@ -56,7 +56,7 @@ export class TimeControlState {
     return { ros: rosNow, rosElapsed: rosNow - ros_start, wall: wallNow, wallElapsed: wallNow - wall_start };
   }
 
-  /** Has the server tell the clocks, or no more. */
+  /** Starts or stops the server's reports of the clocks. */
   watch(watching: boolean): void {
     if (watching === this.watching) return;
     this.watching = watching;

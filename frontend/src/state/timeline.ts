@@ -10,24 +10,24 @@ export interface Span {
   end: number;
 }
 
-/** A recording that the server plays, or what came in the last minutes: its times, and where it is. */
+/** A recording that the server plays, or the messages of the last minutes: its times, and the playhead. */
 export class TimelineState {
   readonly changed = new Signal();
   readonly moved = new Signal();
   private recording: Timeline | null = null;
   private playhead: Playhead | null = null;
   private keptNow: Kept | null = null;
-  /** Where the user is going, s; shown until the server is there. */
+  /** The time that the user seeks, s; shown until the server reaches it. */
   private target: number | null = null;
   private asked = false;
   private wanted = 0;
   private marked: Span | null = null;
-  /** The topic whose messages are stepped by; empty for those of all that are shown. */
+  /** The topic whose messages are stepped by; empty for all shown topics. */
   stepTopic = "";
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      // A new connection knows nothing of what was asked for; a program without a recording tells of none.
+      // A new connection knows no earlier requests; a program without a recording reports none.
       this.recording = this.playhead = this.keptNow = this.target = this.marked = null;
       this.asked = false;
       this.stepTopic = "";
@@ -50,7 +50,7 @@ export class TimelineState {
     return this.recording;
   }
 
-  /** Whether what is shown is the present, and time goes on. */
+  /** Whether the present is shown, and time advances. */
   get live(): boolean {
     return this.playhead?.live ?? false;
   }

@@ -29,14 +29,14 @@ export class ToolsState {
   readonly currentChanged = new Signal<ToolState | null>();
   readonly valueChanged = new Signal<ToolState>();
   readonly hintChanged = new Signal<string>();
-  /** Why the tool in hand did not do what was asked of it; empty when it did. */
+  /** Why the tool in hand refused a request; empty if it did not. */
   readonly told = new Signal<string>();
   tools: readonly ToolState[] = [];
-  /** What can be added. */
+  /** The tools that can be added. */
   classes: readonly ToolClass[] = [];
   private inHand: ToolState | null = null;
   private text = "";
-  /** The tool of the page that this one takes the place of. */
+  /** The page's tool that this one replaces. */
   private before: string | null = null;
 
   constructor(private readonly connection: Connection) {

@@ -26,9 +26,9 @@ export class ViewState {
   private view: View = { cls: ORBIT, name: CURRENT_NAME, values: controllerOf(ORBIT).zero() };
   private configured: View | null = null;
   private showsWholeRobot = false;
-  /** What there was when the camera was last put where it shows all of it; null: somebody has put it somewhere. */
+  /** The content when the camera was last placed to show all of it; null: the user has placed it. */
   private lookedAt: { readonly what: string; readonly box: Span | null } | null = null;
-  /** The map that the camera shows all of, where a file put it and nobody has moved it; "" for none, null: somebody has. */
+  /** The map that the camera shows all of, if a file placed it and the user has not moved it; "" for none, null: the user has. */
   private framedMap: string | null = null;
   private revision: number | null = null;
   private measuredFor: number | null = null;
@@ -91,7 +91,7 @@ export class ViewState {
     return this.classes.find((each) => each.cls === cls)?.properties ?? [];
   }
 
-  /** Nobody has said where the camera is, and there is something else than when it was last put before it. */
+  /** No one has placed the camera, and the content differs from the one that it was last placed for. */
   awaitsFit(what: string): boolean {
     return this.lookedAt !== null && what !== this.lookedAt.what;
   }
@@ -102,23 +102,23 @@ export class ViewState {
     kept.part("view", read, (before: ReturnType<typeof read>) => Object.assign(this, before));
   }
 
-  /** The program was started again; with something else to look at, the camera begins anew. */
+  /** The program was restarted; for other content, the camera starts from its default again. */
   programRestarted(isSame: boolean): void {
     this.measuresAgain = true;
     if (!isSame) this.revision = null;
   }
 
-  /** The server is to be told how large the robots are, though the camera stays. */
+  /** The server needs the size of the robots, though the camera stays. */
   get awaitsSize(): boolean {
     return this.measuresAgain;
   }
 
-  /** Looks at all of the robots as soon as they are there. */
+  /** Looks at all of the robots as soon as they are loaded. */
   lookAtRobots(): void {
     this.awaitFirstLook(true);
   }
 
-  /** Keeps the camera where it is, since somebody works with it. */
+  /** Keeps the camera where it is, since the user works with it. */
   stay(): void {
     this.lookedAt = null;
     this.framedMap = null;
@@ -129,14 +129,14 @@ export class ViewState {
     this.update(this.fitted(box, size));
   }
 
-  /** As `fit`, for a camera that nobody has put anywhere; it does so again when the box has grown, until somebody does. */
+  /** As `fit`, for a camera that the user has not placed; repeated when the box has grown, until the user does. */
   fitFirst(box: Span, size: ViewSize, what: string): void {
     const before = this.lookedAt?.box;
     if (!before || !holds(before, box)) this.update(this.fitted(box, size));
     this.lookedAt = { what, box: before && holds(before, box) ? before : box };
   }
 
-  /** A file put the camera, it looks at a map as a plan, and nobody has moved it since; it does not show all of this map yet. */
+  /** A file placed the camera, it shows a map from above, and the user has not moved it; it does not show all of this map yet. */
   awaitsMap(map: string): boolean {
     return this.view.cls === TOP_DOWN && this.framedMap !== null && this.framedMap !== map;
   }
@@ -149,8 +149,8 @@ export class ViewState {
   }
 
   /**
-   * Reports the size of the robots, while nobody has moved the camera or to a program that was started again, and the
-   * height of the ground that they stand on, once all of them are there.
+   * Reports the size of the robots, as long as the user has not moved the camera or to a program that was restarted, and
+   * the height of the ground below them, once all of them are loaded.
    */
   measured({ min, max }: Span, ground: number): void {
     if (!this.measuresAgain && (this.lookedAt === null || this.measuredFor === this.revision)) return;
@@ -159,7 +159,7 @@ export class ViewState {
     this.connection.send({ type: "robot_measured", diagonal: distanceBetween(min, max), ground });
   }
 
-  /** Looks as values say with a camera that nobody has put anywhere; it waits for more to be seen, unless `isLast`. */
+  /** Sets the values of a camera that the user has not placed; it waits for more content, unless `isLast`. */
   propose(values: ViewValues, what: string, isLast: boolean): void {
     this.update(values);
     if (!isLast) this.lookedAt = { what, box: null };
@@ -179,7 +179,7 @@ export class ViewState {
     this.update(this.controller.wheel(this.view.values, delta, shift));
   }
 
-  /** Makes a point of the fixed frame the one that is looked at. */
+  /** Sets the focal point, in the fixed frame. */
   lookAt(point: Vector): void {
     this.update(this.controller.lookAt(this.view.values, toTarget(point, this.target)));
   }
@@ -196,7 +196,7 @@ export class ViewState {
     this.update(this.controller.mimic({ cls: before.cls, values: before.values, camera }));
   }
 
-  /** Follows another frame without moving the eye. */
+  /** Follows another frame without moving the camera. */
   setTargetFrame(name: string): void {
     const before = this.target;
     this.view = { ...this.view, values: { ...this.view.values, [TARGET_FRAME]: name } };
@@ -254,7 +254,7 @@ export class ViewState {
 
   // --------------------------------------------------------------------------------------------------------------
 
-  /** The view of a configuration: taken once; a reconnect does not move the user's camera, another file does. */
+  /** Applies the view of a configuration, once; a reconnect does not move the user's camera, another file does. */
   private configure(view: View, revision: number, showsWholeRobot: boolean): void {
     const known = this.revision === revision;
     this.configured = view;

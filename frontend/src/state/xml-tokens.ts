@@ -9,7 +9,7 @@ export interface Token {
 /** The construct that a line begins inside of. */
 export type LineState = "text" | "tag" | "comment" | "cdata" | "instruction" | '"' | "'";
 
-/** One way into the parts that go on over line ends, and the way out of each. */
+/** One way into the parts that continue over line ends, and the way out of each. */
 const ENDS: Readonly<Partial<Record<LineState, string>>> = { comment: "-->", cdata: "]]>", instruction: "?>" };
 const OPENINGS: readonly (readonly [string, LineState])[] = [
   ["<!--", "comment"],
@@ -23,7 +23,7 @@ const EXPRESSION = /\$\$?(?:\{[^}]*\}?|\([^)]*\)?)/g;
 /** A line of text and whole tags without surprises, as nearly all are: it ends in the text in which it began. */
 const PLAIN = /^[^<]*(?:<[^<>"'!?]*(?:"[^"<>]*"[^<>"']*)*>[^<]*)*$/;
 
-/** The tokens of one line that begins in `state`, and what the next one begins in. Together they are the line. */
+/** The tokens of one line that begins in `state`, and the state of the next line. Together they are the line. */
 export function tokenize(line: string, state: LineState): { tokens: Token[]; state: LineState } {
   const scanner = new Scanner(line, state);
   scanner.run();
@@ -40,7 +40,7 @@ export function lineStates(lines: readonly string[]): LineState[] {
   });
 }
 
-/** Reads one line. Each of its steps takes at least a character, or changes the state. */
+/** Reads one line. Each step consumes at least a character, or changes the state. */
 class Scanner {
   readonly tokens: Token[] = [];
   private expectsName = false;
@@ -103,7 +103,7 @@ class Scanner {
     this.expectsName = true;
   }
 
-  /** Takes text in which expressions may stand. */
+  /** Consumes text that may contain expressions. */
   private takeMixed(kind: TokenKind, length: number): void {
     let at = 0;
     for (const match of this.rest.slice(0, length).matchAll(EXPRESSION)) {

@@ -8,7 +8,7 @@ export function formatColor(hex: string): string {
     .join("; ");
 }
 
-/** Reads `48; 48; 48`, `48, 48, 48`, `48 48 48` or `#303030`; null when it is no colour. */
+/** Reads `48; 48; 48`, `48, 48, 48`, `48 48 48` or `#303030`; null when it is not a colour. */
 export function parseColor(text: string): string | null {
   const trimmed = text.trim();
   if (/^#[0-9a-f]{6}$/i.test(trimmed)) return trimmed.toLowerCase();

@@ -1,4 +1,4 @@
-/** From here on a number is written with an exponent where digits after the point are asked for. */
+/** From here on a number with a given count of decimals is written with an exponent. */
 const LARGE = 1e6;
 
 /** A number as a property row shows it: at most six significant digits, no trailing zeros. */
@@ -22,7 +22,7 @@ export function formatFixed(value: number, digits: number): string {
   return Number(text) === 0 ? (0).toFixed(digits) : text;
 }
 
-/** Reads what a user typed, a comma for a point included; null when it is no number. */
+/** Reads a number that a user typed, with a point or a comma; null when it is not a number. */
 export function parseNumber(text: string): number | null {
   const trimmed = text.trim().replace(",", ".");
   if (trimmed === "") return null;
@@ -36,7 +36,7 @@ export function clamp(value: number, minimum: number | null, maximum: number | n
   return value;
 }
 
-/** The step of an arrow key for a number, by its size; 1 for whole numbers. */
+/** The step of an arrow key for a number, by its size; 1 for integers. */
 export function stepFor(value: number, whole: boolean): number {
   if (whole) return 1;
   const size = Math.abs(value);

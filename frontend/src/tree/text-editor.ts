@@ -4,10 +4,10 @@ import type { Editor, TreeItem } from "./tree-item";
 
 export interface TextEditorOptions {
   format: (value: PropertyValue) => string;
-  /** The value of a text, or null when it is none: the old value comes back. */
+  /** The value of a text, or null when it is invalid: the old value returns. */
   parse: (text: string) => PropertyValue;
   commit: (value: PropertyValue) => void;
-  /** What the up and down keys make of a text. */
+  /** The text after an up or down key. */
   step?: (text: string, direction: 1 | -1) => number | null;
   numeric?: boolean;
 }

@@ -16,9 +16,9 @@ export interface TreeItem {
   readonly showLevelIcon?: boolean;
   readonly strong?: boolean;
   readonly muted?: boolean;
-  /** What the name says when the pointer is over it; without it, the name. */
+  /** The tooltip of the name; by default, the name. */
   readonly hint?: string;
-  /** Its name takes the whole row. */
+  /** Its name fills the row. */
   readonly wide?: boolean;
   /** Several of such rows can be selected at once. */
   readonly severally?: boolean;
@@ -30,12 +30,12 @@ export interface TreeItem {
   readonly readOnly?: boolean;
   /** Whether the row is open before the user decides. */
   readonly expanded?: boolean;
-  /** The row is open whatever the user decided: something below it was looked for. */
+  /** The row is open against the user's choice: a search found a row below it. */
   readonly open?: boolean;
   readonly children?: () => readonly TreeItem[];
   /** A double click on the name, or Enter on the row. */
   readonly activate?: () => void;
-  /** Whether its value is read anew whenever it is shown: it changes with what the page draws. */
+  /** Whether its value is read each time it is shown: it changes with the drawing of the page. */
   readonly live?: boolean;
   /** Asks for the names to choose from, of a `topic`. */
   readonly ask?: (show: (names: readonly string[]) => void) => void;

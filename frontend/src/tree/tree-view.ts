@@ -16,13 +16,13 @@ export class TreeView {
   readonly element: HTMLElement;
   private readonly list: HTMLElement;
   readonly selected = new Signal<TreeItem>();
-  /** Redraws before the next painting, reading all items anew. */
+  /** Redraws before the next painting, reading all items again. */
   readonly refresh = coalesced(() => this.render());
   private readonly rows = new Map<string, TreeRow>();
   private readonly expansion = new Map<string, boolean>();
   private lines: Line[] = [];
   private selectedKey: string | null = null;
-  /** What is selected besides, of the rows that can be selected severally. */
+  /** The other selected rows, of those that allow a multiple selection. */
   private readonly others = new Set<string>();
   private scrollTo: string | null = null;
   /** A row stays under the pointer from press to release, which else were on another row, and no click. */
@@ -64,7 +64,7 @@ export class TreeView {
     });
   }
 
-  /** Whether a row is in view whose value changes with what the page draws. */
+  /** Whether a visible row has a value that changes with the page's drawing. */
   get showsLive(): boolean {
     return this.lines.some(({ item }) => item.live);
   }
@@ -89,7 +89,7 @@ export class TreeView {
     this.refresh();
   }
 
-  /** The key of the row that is selected, if it is there. */
+  /** The key of the selected row, if the row exists. */
   get selection(): string | null {
     return this.selectedKey !== null && this.rows.has(this.selectedKey) ? this.selectedKey : null;
   }
@@ -126,7 +126,7 @@ export class TreeView {
     arrange(this.list, elements);
     const [first] = elements;
     if (first && (this.selectedKey === null || !keep.has(this.selectedKey))) first.tabIndex = 0;
-    // The row with the keyboard was removed: the one in its place takes it.
+    // The row with the focus was removed: the one in its place gets it.
     if (focused >= 0 && !this.list.contains(document.activeElement)) {
       this.focusLine(Math.min(focused, this.lines.length - 1));
     }
@@ -138,7 +138,7 @@ export class TreeView {
     const row = this.rows.get(this.scrollTo);
     this.scrollTo = null;
     if (row) this.selected.emit(row.item);
-    // What tells of it may only now take its place below the rows.
+    // Observers of the selection may only now take their place below the rows.
     row?.element.scrollIntoView({ block: "nearest" });
   }
 
@@ -217,13 +217,13 @@ export class TreeView {
     this.rows.get(key)?.element.focus();
   }
 
-  /** Does what takes room from the rows: after the release and its click, where one of them is pressed. */
+  /** Runs a change that takes room from the rows: after the release and its click, if one of them is pressed. */
   whenReleased(act: () => void): void {
     if (!this.isPressed) act();
     else document.addEventListener("mouseup", () => setTimeout(act), { once: true });
   }
 
-  /** Adding to what is selected, and the menu of several, must not move the focus: that selects one row alone. */
+  /** Adding to the selection, and the menu of several rows, must not move the focus: that selects one row alone. */
   private pressed(event: MouseEvent): void {
     this.isPressed = true;
     document.addEventListener("mouseup", () => (this.isPressed = false), { once: true });
@@ -306,7 +306,7 @@ export class TreeView {
   }
 }
 
-/** Whether a click adds to what is selected. */
+/** Whether a click adds to the selection. */
 function adds(event: MouseEvent): boolean {
   return event.shiftKey || event.ctrlKey || event.metaKey;
 }

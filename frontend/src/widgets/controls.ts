@@ -1,6 +1,6 @@
 import { h } from "../dom";
 
-/** A choice from a few values, with a label for those who do not see the title. */
+/** A choice from a few values, with a label for screen readers. */
 export function choice<T extends string>(
   label: string,
   options: readonly (readonly [T, string])[],
@@ -20,7 +20,7 @@ export function tickBox(text: string, hint: string, changed: (ticked: boolean) =
   return Object.assign(h("label", { class: "tick", title: hint }, box, text), { box });
 }
 
-/** A field for a text; `typed` comes with every key. */
+/** A field for a text; `typed` is called for every key. */
 export function textField(label: string, typed: (text: string) => void, className = "field"): HTMLInputElement {
   const element = h("input", { class: className, title: label, aria: { label } });
   element.placeholder = label;
@@ -29,7 +29,7 @@ export function textField(label: string, typed: (text: string) => void, classNam
   return element;
 }
 
-/** A field for a number; what is none, or out of bounds, is not taken. */
+/** A field for a number; an entry that is not a number, or out of bounds, is ignored. */
 export function numberField(
   label: string,
   value: number,

@@ -1,4 +1,4 @@
-/** Puts a text on the clipboard; whether it worked. Pages that come over plain HTTP from another machine lack the API. */
+/** Puts a text on the clipboard; returns whether it worked. Pages over plain HTTP from another machine lack the API. */
 export async function copyText(text: string): Promise<boolean> {
   const { clipboard } = navigator as { clipboard?: Clipboard };
   if (clipboard) {

@@ -62,7 +62,7 @@ export class Dialog {
     this.element.close();
   }
 
-  /** Moves the focus from the last element to the first on Tab: the browser would go on to its own buttons. */
+  /** Moves the focus from the last element to the first on Tab: the browser would continue with its own buttons. */
   private keepFocus(event: KeyboardEvent): void {
     const all = this.element.querySelectorAll<HTMLElement>("button, input, select, textarea, [tabindex]");
     const stops = [...all].filter((each) => each.tabIndex >= 0 && !each.matches(":disabled") && each.checkVisibility());

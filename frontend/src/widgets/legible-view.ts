@@ -1,4 +1,4 @@
-/** The view of a picture in its window: the place of its corner, px, and its scale. */
+/** The view of an image in its window: the place of its corner, px, and its scale. */
 export interface PictureView {
   readonly x: number;
   readonly y: number;
@@ -11,10 +11,10 @@ type Size = readonly [width: number, height: number];
 const LEAST_TEXT = 10;
 
 /**
- * All of a picture where its texts can be read then; otherwise the part around a point, as large as they need it.
+ * All of an image if its texts are legible then; otherwise the part around a point, as large as they need it.
  *
- * @param text size of the picture's smallest text, px.
- * @param point of the picture, px: comes to the middle, as far as the picture goes.
+ * @param text size of the image's smallest text, px.
+ * @param point of the image, px: moves to the middle, as far as the image allows.
  */
 export function legibleView(picture: Size, window: Size, text: number, point: readonly [number, number], margin = 16): PictureView {
   const fits = Math.min((window[0] - 2 * margin) / picture[0], (window[1] - 2 * margin) / picture[1]);

@@ -8,7 +8,7 @@ export interface MenuEntry {
   /** The keys that do the same, as shown to the user. */
   keys?: string;
   disabled?: boolean;
-  /** What the label shortens. */
+  /** The full text of a shortened label. */
   hint?: string;
   /** A line above it. */
   separate?: boolean;
@@ -21,7 +21,7 @@ export function openMenu(anchor: HTMLElement, entries: readonly MenuEntry[]): vo
   showMenu(entries, { x: box.left, y: box.bottom + 4, above: box.top - 4 }, anchor);
 }
 
-/** Opens a menu where the user asked for one; the keyboard goes back to `origin` when it closes. */
+/** Opens a menu where the user requested it; the focus returns to `origin` when it closes. */
 export function openMenuAt(x: number, y: number, origin: HTMLElement | null, entries: readonly MenuEntry[]): void {
   showMenu(entries, { x, y, above: y }, origin);
 }
@@ -29,7 +29,7 @@ export function openMenuAt(x: number, y: number, origin: HTMLElement | null, ent
 interface Place {
   x: number;
   y: number;
-  /** Where the menu ends when there is no room below. */
+  /** The end of the menu if there is no room below. */
   above: number;
 }
 
@@ -57,7 +57,7 @@ function showMenu(entries: readonly MenuEntry[], place: Place, origin: HTMLEleme
   });
   menu.addEventListener("contextmenu", (event) => event.preventDefault());
   document.addEventListener("pointerdown", outside, true);
-  // In a dialog only what is in it can be reached.
+  // In a dialog only its own elements are reachable.
   (origin?.closest("dialog") ?? document.body).append(menu);
   origin?.setAttribute("aria-expanded", "true");
   const below = window.innerHeight - place.y;
@@ -87,7 +87,7 @@ function menuItem(entry: MenuEntry, close: () => void): HTMLLIElement {
   return item;
 }
 
-/** The keys of a menu; whether this was one. A letter goes to the next entry that begins with it. */
+/** Handles the keys of a menu; returns whether this was one. A letter moves to the next entry that begins with it. */
 function moveFocus(items: readonly HTMLLIElement[], key: string): boolean {
   const index = items.indexOf(document.activeElement as HTMLLIElement);
   if (key === "ArrowDown") items[(index + 1) % items.length]?.focus();

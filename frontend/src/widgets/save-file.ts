@@ -3,7 +3,7 @@ export function saveText(name: string, text: string, type: string): void {
   saveBlob(name, new Blob([text], { type }));
 }
 
-/** Gives the user a picture or a video as a file. */
+/** Gives the user an image or a video as a file. */
 export function saveBlob(name: string, blob: Blob): void {
   const url = URL.createObjectURL(blob);
   saveFrom(name, url);

@@ -1,4 +1,4 @@
-/** A key with what is held: `mod` is Ctrl, on a Mac Command. */
+/** A key with its modifiers: `mod` is Ctrl, on a Mac Command. */
 export interface Shortcut {
   key: string;
   mod?: boolean;

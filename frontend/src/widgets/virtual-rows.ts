@@ -1,9 +1,9 @@
 import { h } from "../dom";
 
-/** Rows drawn beyond both ends of what is seen, so that scrolling shows no gaps. */
+/** Rows drawn beyond both ends of the visible part, so that scrolling shows no gaps. */
 const OVERSCAN = 12;
 
-/** A list of any length of which only the rows in sight are elements. All rows have one height. */
+/** A list of any length; only the rows in sight are elements. All rows have one height. */
 export class VirtualRows {
   readonly element: HTMLElement;
   /** Holds the rows; as high as all of them. */
@@ -38,7 +38,7 @@ export class VirtualRows {
     return this.rows[index - this.first];
   }
 
-  /** Scrolls a row into sight, if it is not; one far away comes to a third of the height. */
+  /** Scrolls a row into sight, if it is not; one far away moves to a third of the height. */
   reveal(index: number): void {
     const { element, rowHeight } = this;
     const top = index * rowHeight;

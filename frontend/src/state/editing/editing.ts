@@ -4,7 +4,7 @@ import { Signal } from "../../signal";
 import type { TextStorage } from "../../storage";
 import { Snapping } from "../modelling/snapping";
 
-/** The wanted pose of the edited part: metres, or the components of an axis; rad, empty for an axis. */
+/** The requested pose of the edited part: metres, or the components of an axis; rad, empty for an axis. */
 export interface Draft {
   readonly xyz: readonly number[];
   readonly rpy: readonly number[];
@@ -19,15 +19,15 @@ const SNAPPING = "linkwright.editing-snapping";
 const ASKS_AFTER = 120;
 const NOTHING = 1e-9;
 
-/** A robot that is edited: what can be, what is asked for, and what that comes to in the files. */
+/** Editing of a robot: the editable parts, the requested changes, and the changes that result in the files. */
 export class EditingState {
-  /** What can be edited, which of it is, the preview, what can be undone, or what was refused. */
+  /** A change of the editable parts, the selection, the preview, the undo stack, or the refusal. */
   readonly changed = new Signal();
-  /** Where the chosen part shall be. */
+  /** The place of the draft of the chosen part. */
   readonly draftChanged = new Signal();
-  /** Whether somebody edits. */
+  /** Whether editing is active. */
   readonly activeChanged = new Signal();
-  /** The user wants to edit a link. */
+  /** The user requested to edit a link. */
   readonly wanted = new Signal();
   readonly snapping: Snapping;
   preview: EditPreview | null = null;
@@ -41,7 +41,7 @@ export class EditingState {
   private known: EditableParts | null = null;
   private part: EditablePart | null = null;
   private asked: Draft | null = null;
-  /** The draft was written, and the robot that has it is to come. */
+  /** The draft was written, and the robot with it is not received yet. */
   private isWritten = false;
   private number = 0;
   private together = false;
@@ -81,7 +81,7 @@ export class EditingState {
     });
   }
 
-  /** Whether somebody edits now. */
+  /** Whether editing is active. */
   get active(): boolean {
     return this.holders > 0;
   }
@@ -170,7 +170,7 @@ export class EditingState {
     this.reset();
   }
 
-  /** Sets the wanted pose of the chosen part; the preview is asked for when the pointer rests. */
+  /** Sets the requested pose of the chosen part; the preview is requested when the pointer rests. */
   move(draft: Draft): void {
     const { part } = this;
     if (!part || this.whyNot !== "") return;
@@ -236,7 +236,7 @@ export class EditingState {
     this.connection.send({ type: "preview_edit", number, display: link.display, part: part.part, name, index, xyz, rpy, together });
   }
 
-  /** A draft stays while what it starts from stays: then another part of the robot has changed. */
+  /** A draft stays if its starting pose is unchanged: then another part of the robot has changed. */
   private take(message: EditableParts): void {
     if (message.display !== this.link?.display || message.link !== this.link.link) return;
     this.known = message;

@@ -12,7 +12,7 @@ export function quaternionOf([roll = 0, pitch = 0, yaw = 0]: readonly number[]):
   return [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy];
 }
 
-/** Roll, pitch and yaw of a rotation: of all that say the same those that differ least from `near`. */
+/** Roll, pitch and yaw of a rotation: of all equivalent ones those that differ least from `near`. */
 export function nearestRpy([x, y, z, w]: Quaternion, near: readonly number[]): [number, number, number] {
   const [nearRoll = 0, nearPitch = 0, nearYaw = 0] = near;
   const along = 1 - 2 * (y * y + z * z);

@@ -8,7 +8,7 @@ import { Snapping } from "./snapping";
 /** The mode of the gizmo. */
 export type GizmoMode = "translate" | "rotate" | "scale";
 
-/** The thing that a click in the scene adds; `address` is of a model. */
+/** The object that a click in the scene adds; `address` is that of a model. */
 export interface Placing {
   readonly kind: NewKind;
   readonly address: string;
@@ -29,12 +29,12 @@ const NOTHING: Omit<ModellingState, "type"> = {
   can_redo: false,
   things: [],
 };
-/** How far copies stand beside what they are copies of, m, at least. */
+/** The least distance between a copy and its original, m. */
 const LEAST_OFFSET = 0.5;
 
-/** Modelling the world: what the server tells of its file, and what this page has selected and in hand. */
+/** Modelling the world: the state of its file from the server, and this page's selection and placement. */
 export class Modelling {
-  /** The world is another, or may be edited now, or no more. */
+  /** The world, or whether it can be edited, has changed. */
   readonly changed = new Signal();
   readonly selectionChanged = new Signal();
   /** The gizmo does something else, or something else is put into the world. */
@@ -50,7 +50,7 @@ export class Modelling {
   private inHand: Placing | null = null;
   private falling: Drop | null = null;
   private clipboard: readonly string[] = [];
-  /** This page made something: what is new in the next state is selected. */
+  /** This page added objects: the new ones of the next state are selected. */
   private makes = false;
 
   constructor(
@@ -116,7 +116,7 @@ export class Modelling {
     return this.inHand;
   }
 
-  /** Whether what is selected can be one model, and be the models again that it is made of. */
+  /** Whether the selection can be grouped into one model. */
   get canGroup(): boolean {
     const things = this.selectedThings;
     return things.length > 1 && things.every(({ kind }) => kind === "model");
@@ -135,7 +135,7 @@ export class Modelling {
     return this.told.things.find((thing) => thing.name === name) ?? null;
   }
 
-  /** `toggle` adds what is not selected, and takes away what is. */
+  /** `toggle` adds unselected objects, and removes selected ones. */
   select(names: readonly string[], mode: "replace" | "toggle" = "replace"): void {
     const others = this.names.filter((name) => !names.includes(name));
     const added = names.filter((name) => !this.names.includes(name));
@@ -154,7 +154,7 @@ export class Modelling {
     this.dropped.emit();
   }
 
-  /** The last drop, returned only once: the scene may have come later. */
+  /** The last drop, returned only once: the scene may have arrived later. */
   takeDrop(): Drop | null {
     const drop = this.falling;
     this.falling = null;
@@ -216,7 +216,7 @@ export class Modelling {
     if (this.canRedo) this.connection.send({ type: "redo_world" });
   }
 
-  /** Into its file, or where `path` says. */
+  /** Saves it into its file, or to `path`. */
   save(path: string | null): void {
     this.connection.send({ type: "save_world", path });
   }

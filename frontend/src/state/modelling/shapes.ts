@@ -6,39 +6,39 @@ export type Shape = NonNullable<WorldThing["shape"]>;
 /** A place of the ground: x and y in the world, m. */
 export type Place = readonly [number, number];
 
-/** A change of a thing; properties that are not given stay. */
+/** A change of an object; properties that are not given stay. */
 export type Change = Pick<ThingChange, "name"> & Partial<ThingChange>;
 
-/** Metres: what new walls have. */
+/** The size of new walls, metres. */
 const THICKNESS = 0.1;
 const HEIGHT = 1;
 /** Nothing gets smaller than this, m. */
 export const LEAST_SIZE = 0.001;
 
-/** Of new things, m, as the server's sizes: x y z; radius and length of a cylinder; the radius of a sphere. */
+/** The sizes of new objects, m, as on the server: x y z; radius and length of a cylinder; the radius of a sphere. */
 const SIZES: Readonly<Partial<Record<NewKind, readonly number[]>>> = {
   box: [0.5, 0.5, 0.5],
   cylinder: [0.25, 0.5],
   sphere: [0.25],
   ramp: [1, 0.5, 0.25],
 };
-/** How high new lights hang, m. */
+/** The height of new lights, m. */
 const LIGHT_HEIGHTS: Readonly<Partial<Record<NewKind, number>>> = { point_light: 2, spot_light: 2, directional_light: 5 };
 
-/** A thing to be added: where, in the world, and how large. */
+/** An object to add: its pose in the world, and its size. */
 export interface Placement {
   readonly pose: readonly number[];
   readonly size: readonly number[];
 }
 
-/** Something new that stands at a place of the ground. */
+/** The placement of a new object on the ground. */
 export function placementAt(kind: NewKind, [x, y]: Place): Placement {
   const size = SIZES[kind] ?? [];
   const z = LIGHT_HEIGHTS[kind] ?? (isShape(kind) ? restingHeight(kind, size) : 0);
   return { pose: [x, y, z, 0, 0, 0], size };
 }
 
-/** The wall whose foot goes from one place of the ground to another; null where there is no way between them. */
+/** The wall whose foot runs from one place of the ground to another; null if they are too close. */
 export function wallBetween(a: Place, b: Place): Placement | null {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   const length = Math.hypot(dx, dy);
@@ -47,7 +47,7 @@ export function wallBetween(a: Place, b: Place): Placement | null {
   return { pose: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, restingHeight("wall", size), 0, 0, Math.atan2(dy, dx)], size };
 }
 
-/** The height of the origin of a shape that stands on the ground, m. */
+/** The height of the origin of a shape that rests on the ground, m. */
 function restingHeight(shape: Shape, size: readonly number[]): number {
   const [first = 0, second = 0, third = 0] = size;
   if (shape === "sphere") return first;
@@ -58,14 +58,14 @@ function restingHeight(shape: Shape, size: readonly number[]): number {
 export function scaledSize(shape: Shape, size: readonly number[], scale: readonly number[], step: number): number[] {
   const [sx = 1, sy = 1, sz = 1] = scale;
   const factors = shape === "sphere" ? [strongest(sx, sy, sz)] : shape === "cylinder" ? [strongest(sx, sy), sz] : [sx, sy, sz];
-  // What is not scaled stays beside the grid where it was.
+  // Dimensions that are not scaled stay off the grid as they were.
   return size.map((length, i) => {
     const factor = Math.abs(factors[i] ?? 1);
     return factor === 1 ? length : Math.max(step || LEAST_SIZE, snapped(length * factor, step));
   });
 }
 
-/** A thing with another size: one that stands upright keeps its foot where it is. */
+/** The change that resizes an object; an upright one keeps its foot in place. */
 export function resized({ name, shape, size: before, pose }: WorldThing, size: readonly number[]): Change {
   const [x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0] = pose;
   const change = { name, size: [...size] };
@@ -79,7 +79,7 @@ export function tidy(value: number): number {
   return Math.round(value * 1e9) / 1e9;
 }
 
-/** By what a shape's drawing is stretched along x, y and z when it gets another size. */
+/** The factors that stretch the drawing of a shape along x, y and z for another size. */
 export function stretch(shape: Shape, before: readonly number[], after: readonly number[]): [number, number, number] {
   const by = (i: number): number => ((before[i] ?? 0) > 0 ? (after[i] ?? 0) / (before[i] ?? 1) : 1);
   if (shape === "sphere") return [by(0), by(0), by(0)];

@@ -13,14 +13,14 @@ export function snapped(value: number, step: number): number {
   return step > 0 ? Number((Math.round(value / step) * step).toPrecision(12)) : value;
 }
 
-/** Whether things that are moved, turned and scaled keep to a grid, and which; remembered by the browser. */
+/** The grid, if any, for moving, turning and scaling objects; remembered by the browser. */
 export class Snapping {
   readonly changed = new Signal();
   private on: boolean;
   private length: number;
   private angle = 15;
 
-  /** `key`: under which it is remembered; `usual`: what holds before the user chooses. */
+  /** `key`: the key that it is remembered under; `usual`: the default. */
   constructor(
     private readonly storage: TextStorage,
     private readonly key = KEY,
@@ -60,7 +60,7 @@ export class Snapping {
     this.keep();
   }
 
-  /** The steps that hold now, m and rad; 0 where there is no grid. `inverted` while Ctrl is held. */
+  /** The current steps, m and rad; 0 without a grid. `inverted` while Ctrl is held. */
   steps(inverted: boolean): { length: number; angle: number } {
     const on = this.on !== inverted;
     return { length: on ? this.length : 0, angle: on ? this.angle * DEGREE : 0 };

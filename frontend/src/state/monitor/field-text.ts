@@ -4,7 +4,7 @@ export interface FieldName {
   path: string;
 }
 
-/** Null when there is no topic or no field in it. */
+/** Null if it has no topic or no field. */
 export function parseField(text: string): FieldName | null {
   const found = /^\s*\/?([^.\s]+)\.(\S+)\s*$/.exec(text);
   return found ? { topic: `/${found[1] ?? ""}`, path: found[2] ?? "" } : null;
@@ -14,7 +14,7 @@ export function fieldText({ topic, path }: FieldName): string {
   return `${topic}.${path}`;
 }
 
-/** A value as it stands beside its series: six digits, no more zeros than needed. */
+/** The text of a value beside its series: six digits, no more zeros than needed. */
 export function valueText(value: number | null): string {
   if (value === null) return "";
   if (!Number.isFinite(value)) return Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";

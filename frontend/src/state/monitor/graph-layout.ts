@@ -53,7 +53,7 @@ interface Vertex {
  *
  * Sugiyama's method: links that would close a cycle are turned round for the time being, each box comes behind those
  * that point at it, long links get a place in each layer they pass, layers are ordered by the middle of the neighbours,
- * and heights are those nearest to the neighbours' that keep the order. Boxes without links stand in rows below.
+ * and heights are those nearest to the neighbours' that keep the order. Boxes without links go in rows below.
  */
 export function layered(boxes: readonly Box[], links: readonly Link[]): Layout {
   const known = new Map(boxes.map((box) => [box.id, box]));
@@ -110,13 +110,13 @@ function cycleClosers(boxes: readonly Box[], links: readonly Link[]): Set<Link> 
       }
     }
   };
-  // Those that nothing points at come first: they are where the way begins.
+  // Boxes without incoming links come first: paths begin there.
   const starts = [...boxes].sort((a, b) => Number(incoming.has(a.id)) - Number(incoming.has(b.id)));
   for (const { id } of starts) if (!state.has(id)) visit(id);
   return closers;
 }
 
-/** The layer of each box: behind all that point at it, and as near to what it points at as that allows. */
+/** The layer of each box: behind all boxes that point at it, and as near to its targets as that allows. */
 function layersOf(boxes: readonly Box[], links: readonly Link[]): Map<string, number> {
   const layer = new Map(boxes.map(({ id }) => [id, 0]));
   const at = (id: string): number => layer.get(id) ?? 0;

@@ -17,14 +17,14 @@ export interface GraphVertex {
   id: string;
   kind: "node" | "topic" | "action" | "group";
   label: string;
-  /** Of a group: how many nodes it stands for. */
+  /** Of a group: the number of its nodes. */
   count: number;
 }
 
 interface GraphEdge {
   from: string;
   to: string;
-  /** Topics that the edge stands for, where they are not vertices. */
+  /** The topics of the edge, if they are not vertices. */
   topics: string[];
 }
 
@@ -62,7 +62,7 @@ export function drawnGraph(graph: NodeGraph, options: GraphOptions): DrawnGraph 
     const [publishers, subscribers] = [endsOf(topic.publishers), endsOf(topic.subscribers)];
     if (options.mode !== "all" && (publishers.length === 0 || subscribers.length === 0)) continue;
     const [first, ...others] = new Set([...publishers, ...subscribers]);
-    // What stays within a closed group is not to be seen.
+    // Topics within a closed group are not shown.
     if (others.length === 0 && vertices.get(first ?? "")?.kind === "group") continue;
     if (options.mode === "nodes") {
       for (const [from, to] of pairsOf(publishers, subscribers)) connect(from, to, [topic.name]);
@@ -85,7 +85,7 @@ interface JoinedTopic extends Pick<GraphTopic, "name" | "publishers" | "subscrib
   action: boolean;
 }
 
-/** The topics that the filters leave; those that an action is made of are one. */
+/** The topics that pass the filters; the topics of an action are one. */
 function topicsOf(graph: NodeGraph, options: GraphOptions): JoinedTopic[] {
   const joined = new Map<string, JoinedTopic>();
   for (const { name, publishers, subscribers } of graph.topics) {

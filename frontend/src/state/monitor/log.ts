@@ -35,7 +35,7 @@ export class LogState {
   private text = "";
   private waiting: LogLine[] = [];
   private opened = false;
-  /** The next records are the first of a connection: the server begins with the past, of which the page may have a part. */
+  /** The next records are the first of a connection: the server begins with the past, and the page may have some of it. */
   private begins = true;
 
   constructor(
@@ -83,7 +83,7 @@ export class LogState {
     this.filter();
   }
 
-  /** Records that come while paused are shown when it ends. */
+  /** Records that arrive during a pause are shown when it ends. */
   setPaused(paused: boolean): void {
     this.paused = paused;
     const { waiting } = this;

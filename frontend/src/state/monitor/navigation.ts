@@ -2,12 +2,12 @@ import type { Connection } from "../../connection/connection";
 import type { GoalOutcome, NavigationCommand, NavigationState as Told } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** The state of nav2; asked for only while the panel is seen. */
+/** The state of nav2; requested only while the panel is visible. */
 export class NavigationState {
   readonly changed = new Signal();
   /** A goal failed, or another was accepted. */
   readonly outcomeChanged = new Signal<GoalOutcome>();
-  /** Null before the server told. */
+  /** Null before the server reports it. */
   told: Told | null = null;
   private opened = false;
 

@@ -7,7 +7,7 @@ export type PlotTable = [number[], ...(number | null | undefined)[][]];
  * The samples of some series between two times, as uPlot draws them.
  *
  * Where there are more samples than the plot has columns of pixels, each column shows the least and the greatest value
- * in it: the picture is the same, and takes as long for a thousand samples a second as for ten. One sample beyond each
+ * in it: the plot looks the same, and takes as long for a thousand samples a second as for ten. One sample beyond each
  * side is taken along, so that lines reach the edges.
  */
 export function plotTable(

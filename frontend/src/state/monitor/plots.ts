@@ -13,7 +13,7 @@ export interface Series extends FieldName {
   error: string | null;
 }
 
-/** One diagram; a fixed range of values, or null for the range of what is shown. */
+/** One diagram; a fixed range of values, or null for the range of the shown samples. */
 export interface Plot {
   readonly id: number;
   readonly series: Series[];
@@ -33,7 +33,7 @@ const FIRST_SECONDS = 30;
 export class PlotsState {
   /** Plots, series, errors or settings changed. */
   readonly changed = new Signal();
-  /** Samples came, or the window moved. */
+  /** Samples arrived, or the window moved. */
   readonly moved = new Signal();
   readonly fieldsTold = new Signal<TopicFields>();
   readonly plots: Plot[] = [];
@@ -62,7 +62,7 @@ export class PlotsState {
     });
     connection.on("topic_fields", (fields) => this.fieldsTold.emit(fields));
     connection.on("playhead", ({ live }) => (this.present = live));
-    // What was plotted is of another time than the one that is shown now.
+    // The plotted samples are from another time than the one shown now.
     connection.on("time_reset", () => {
       if (!this.present) this.clear();
     });
@@ -132,14 +132,14 @@ export class PlotsState {
     this.edited();
   }
 
-  /** Holds the picture; samples are taken on. */
+  /** Freezes the plot; further samples are still received. */
   setPaused(paused: boolean): void {
     this.heldAt = paused ? this.window : null;
     this.changed.emit();
     this.moved.emit();
   }
 
-  /** Holds the picture at a part of it. */
+  /** Freezes the plot at a part of it. */
   hold(from: number, to: number): void {
     this.heldAt = [from, to];
     this.changed.emit();
@@ -153,7 +153,7 @@ export class PlotsState {
     this.moved.emit();
   }
 
-  /** Asks what can be plotted of a topic; null when the answer is of no use any more. */
+  /** Requests the fields of a topic that can be plotted; null when the answer is no longer needed. */
   askFields(topic: string | null): void {
     this.connection.send({ type: "ask_fields", topic });
   }

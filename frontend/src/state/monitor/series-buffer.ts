@@ -4,7 +4,7 @@ export type TimeSource = "received" | "stamp";
 const FIRST_CAPACITY = 1024;
 /** Ten minutes of a topic of 1 kHz. */
 const MOST_SAMPLES = 600_000;
-/** Stamps that go back by more than this began anew: simulated time was reset, or a recording starts over. */
+/** If stamps go back by more than this, they started over: simulated time was reset, or a recording starts over. */
 const RESET_SECONDS = 1;
 
 /** The samples of one series, the newest last; the oldest go when there are too many. */
@@ -24,7 +24,7 @@ export class SeriesBuffer {
     return this.numbers.subarray(0, this.count);
   }
 
-  /** The times of the samples, seconds; where there is no header the time of receiving stands for its stamp. */
+  /** The times of the samples, seconds; without a header, the time of reception replaces the stamp. */
   times(source: TimeSource): Float64Array {
     return (source === "stamp" ? this.stamps : this.received).subarray(0, this.count);
   }
@@ -44,7 +44,7 @@ export class SeriesBuffer {
       const time = received[index] ?? 0;
       const header = stamps[index] ?? NaN;
       const stamp = Number.isNaN(header) ? time : header;
-      // What was received before is told again: of another time of a recording, with what came before that.
+      // Samples that were received before arrive again: of another time of a recording, with earlier samples.
       if (this.count > 0 && time < (this.received[this.count - 1] ?? 0)) this.count = this.indexFrom("received", time);
       if (this.count > 0 && stamp < (this.stamps[this.count - 1] ?? 0) - RESET_SECONDS) this.count = 0;
       this.received[this.count] = time;
@@ -75,7 +75,7 @@ export class SeriesBuffer {
     const needed = this.count + more;
     if (needed <= this.numbers.length) return;
     if (needed > this.most) {
-      // Half goes at once, so that this is rare.
+      // Half is dropped at once, so that this is rare.
       const kept = Math.min(this.count, Math.max(0, (this.most >> 1) - more));
       for (const array of [this.received, this.stamps, this.numbers]) array.copyWithin(0, this.count - kept, this.count);
       this.count = kept;

@@ -35,7 +35,7 @@ export class TeleopState {
   /** Settings, the aim or the motion changed. */
   readonly changed = new Signal();
   settings: TeleopSettings;
-  /** What the server made of the settings; null before it said. */
+  /** The settings that the server applied; null before it reports them. */
   aim: Aim | null = null;
   private readonly motions = new Map<Source, Motion>();
   private opened = false;
@@ -58,7 +58,7 @@ export class TeleopState {
     });
   }
 
-  /** All that is held now. */
+  /** The sum of the inputs that are held now. */
   get motion(): Motion {
     return together(this.motions.values());
   }
@@ -83,7 +83,7 @@ export class TeleopState {
     this.changed.emit();
   }
 
-  /** A source holds a motion from now on. */
+  /** Holds the motion of a source from now on. */
   move(source: Source, motion: Motion): void {
     const before = this.motion;
     if (isStill(motion)) this.motions.delete(source);
@@ -106,7 +106,7 @@ export class TeleopState {
     this.changed.emit();
   }
 
-  /** Sends what is held, and again after the period. */
+  /** Sends the held motion, and again after the period. */
   private drive(): void {
     this.send(this.motion);
     this.timer = window.setTimeout(() => this.drive(), 1000 / this.settings.rate);

@@ -2,13 +2,13 @@ import type { Connection } from "../../connection/connection";
 import type { TopicMessage, TopicRow, TopicTraffic } from "../../protocol";
 import { Signal } from "../../signal";
 
-/** The topics, and what is known of those that somebody watches. */
+/** The topics, and the details of those that a view watches. */
 export class TopicsState {
   readonly listChanged = new Signal();
   readonly figuresChanged = new Signal();
   readonly messageCame = new Signal<TopicMessage>();
   topics: readonly TopicRow[] = [];
-  /** Whether the topics were told since the page was connected. */
+  /** Whether the topics arrived since the page was connected. */
   known = false;
   readonly traffic = new Map<string, TopicTraffic>();
   readonly messages = new Map<string, TopicMessage>();
@@ -45,7 +45,7 @@ export class TopicsState {
     if (before === 0 || this.readers.size === 0) this.announce();
   }
 
-  /** Sets the topics to be measured, and those whose last message is wanted. */
+  /** Sets the topics to measure, and those whose last message is requested. */
   watch(measured: Iterable<string>, opened: Iterable<string>): void {
     this.measured = [...measured];
     this.opened = [...opened];

@@ -54,14 +54,14 @@ export function cameraInTarget(camera: Camera, target: Target): Camera {
   return moved(camera, (point) => toTarget(point, target), -target.yaw);
 }
 
-/** The ray from the eye through a pixel, counted from the upper left corner. */
+/** The ray from the camera through a pixel, counted from the upper left corner. */
 export function rayThrough(camera: Camera, x: number, y: number, { width, height }: ViewSize): Ray {
   const back = scale(camera.back, -1);
   if (camera.scale !== null) {
     const [right, up] = [(x - width / 2) / camera.scale, (height / 2 - y) / camera.scale];
     return { origin: add(add(camera.position, camera.right, right), camera.up, up), direction: back };
   }
-  const metres = (2 * Math.tan(FIELD_OF_VIEW / 2)) / height; // a pixel, 1 m from the eye
+  const metres = (2 * Math.tan(FIELD_OF_VIEW / 2)) / height; // a pixel, 1 m from the camera
   const towards = add(add(back, camera.right, (x - width / 2) * metres), camera.up, (height / 2 - y) * metres);
   return { origin: camera.position, direction: unit(towards) };
 }

@@ -2,9 +2,9 @@ import { FIELD_OF_VIEW, toTarget, type Camera, type Target, type ViewSize } from
 import { add, dot, scale, subtract, type Span, type Vector } from "./vector";
 import { number, type ViewValues } from "./view-controller";
 
-/** Room around what is looked at. */
+/** Margin around the box. */
 const MARGIN = 1.2;
-/** The least that the near clip distance can be, and its share of the way to what is looked at. */
+/** The least near clip distance, and its share of the distance to the box. */
 const NEAREST_CLIP = 0.001;
 const CLIP_SHARE = 0.25;
 const NEAR_CLIP = "Near Clip Distance";
@@ -13,9 +13,9 @@ const NEAR_CLIP = "Near Clip Distance";
 export interface Framing {
   /** Of the box. */
   readonly middle: Vector;
-  /** From the middle to the eye of a camera with perspective, m; 0 for a single point. */
+  /** From the middle to the position of a perspective camera, m; 0 for a single point. */
   readonly distance: number;
-  /** Pixels to a metre of a camera without; 0 for a single point. */
+  /** Pixels to a metre of an orthographic camera; 0 for a single point. */
   readonly scale: number;
   /** Values that keep the near clip distance before all of the box. */
   readonly clip: ViewValues;

@@ -22,7 +22,7 @@ const START: Vector = [5, 5, 10];
 const METRES_PER_PIXEL = 0.01;
 const METRES_PER_PIXEL_AHEAD = 0.1;
 const METRES_PER_WHEEL_UNIT = 0.01;
-/** So much of the line of sight along z that its yaw is none: then the side that is up tells it. */
+/** The share of the line of sight along z above which it has no yaw: then the up direction defines it. */
 const VERTICAL = 0.99999;
 
 /** RViz's FPS: a camera that flies; yaw turns it about z, pitch tips it down. */
@@ -100,7 +100,7 @@ export class FpsController implements ViewController {
   }
 }
 
-/** Yaw and pitch of a line of sight; `up` tells the yaw of one that is vertical. */
+/** Yaw and pitch of a line of sight; `up` defines the yaw of a vertical one. */
 function looking(ahead: Vector, up: Vector): ViewValues {
   const far = length(ahead);
   if (far === 0) return {};

@@ -22,13 +22,13 @@ const START = { distance: 10, angle: 0.785398 };
 const SMALLEST_DISTANCE = 0.001;
 const ZOOM_PER_PIXEL = 0.1;
 const ZOOM_PER_WHEEL_UNIT = 0.001;
-/** How far from the ground RViz puts an Orbit that takes over from TopDownOrtho. */
+/** The height at which RViz puts an Orbit that replaces TopDownOrtho, m. */
 const ABOVE_MAP = 100;
-/** So little beside the vertical that the picture keeps its side up. */
+/** So little beside the vertical that the view keeps its side up. */
 const ASIDE = 0.0001;
 
 /**
- * RViz's Orbit: eye = focal + distance (cos yaw cos pitch, sin yaw cos pitch, sin pitch), looking at the focal point.
+ * RViz's Orbit: position = focal + distance (cos yaw cos pitch, sin yaw cos pitch, sin pitch), looking at the focal point.
  * Constants and signs are those of rviz_default_plugins' OrbitViewController.
  */
 export class OrbitController implements ViewController {
@@ -117,7 +117,7 @@ export class OrbitController implements ViewController {
     return vectorValues("Focal Point", add(add(focal, right, -dx * metresPerPixel), up, dy * metresPerPixel));
   }
 
-  /** Eye and focal point move along the line of sight. */
+  /** Moves the camera and the focal point along the line of sight. */
   private dolly(values: ViewValues, amount: number): ViewValues {
     return vectorValues("Focal Point", add(orbitOf(values).focal, this.camera(values).back, amount));
   }
@@ -132,7 +132,7 @@ export function orbitOf(values: ViewValues): { distance: number; yaw: number; pi
   };
 }
 
-/** The values that look at `focal` from `eye`. */
+/** The values of a camera that looks from one point at another. */
 export function aroundFrom(focal: Vector, eye: Vector): ViewValues {
   const distance = clampDistance(distanceBetween(focal, eye));
   const [x, y, z] = scale(add(eye, focal, -1), 1 / distance);
@@ -153,7 +153,7 @@ function clampDistance(distance: number): number {
   return Math.max(SMALLEST_DISTANCE, distance);
 }
 
-/** The unit vector to an eye from what it looks at. */
+/** The unit vector from the focal point to the camera. */
 export function direction(yaw: number, pitch: number): Vector {
   return [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
 }

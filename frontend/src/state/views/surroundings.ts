@@ -8,7 +8,7 @@ const ROOM = 0.75;
 /** From where a robot is seen, and a world without robots, rad above the horizon. */
 const ROBOT_PITCH = 0.5;
 const OVERVIEW_PITCH = 0.785398;
-/** What is tried where something hides the robot, or much around it: from higher up, from other sides, from nearer. */
+/** The viewpoints to try if an object hides the robot, or much around it: higher up, from other sides, nearer. */
 const PITCHES = [0, 0.3, 0.6, 0.9];
 const SIDES = [0, -Math.PI / 2, Math.PI / 2, Math.PI];
 const NEARER = [1, 0.6, 0.35];
@@ -23,7 +23,7 @@ const DIRECTIONS = PITCHES.flatMap((pitch, higher) =>
 );
 const orbit = new OrbitController();
 
-/** Whether nothing hides a place from an eye. */
+/** Whether nothing hides a place from a viewpoint. */
 export type IsSeen = (eye: Vector, place: Vector) => boolean;
 
 /** The values of an Orbit that shows all of a world from above. */
@@ -32,7 +32,7 @@ export function overview(values: ViewValues, world: Span, size: ViewSize): ViewV
   return { Pitch: OVERVIEW_PITCH, ...orbit.fit(from, world, size) };
 }
 
-/** The values of an Orbit that shows a robot and what is around it, from where most of both is seen. */
+/** The values of an Orbit that shows a robot and its surroundings, from where most of both is visible. */
 export function around(values: ViewValues, { min, max }: Span, size: ViewSize, isSeen: IsSeen): ViewValues {
   const span = Math.max(...subtract(max, min));
   const room = Math.max(ROOM, ROOM * span);

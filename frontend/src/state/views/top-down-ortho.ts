@@ -29,7 +29,7 @@ export class TopDownOrthoController implements ViewController {
   camera(values: ViewValues): Camera {
     const scale = scaleOf(values);
     const angle = number(values, "Angle", 0);
-    // A negative scale, which a fast drag in RViz leads to, mirrors the picture in both directions.
+    // A negative scale, which a fast drag in RViz leads to, mirrors the view in both directions.
     const side = Math.sign(scale);
     return {
       position: [number(values, "X", 0), number(values, "Y", 0), HEIGHT],

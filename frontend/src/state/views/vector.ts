@@ -5,7 +5,7 @@ export type Vector = readonly [number, number, number];
 export interface Span {
   readonly min: Vector;
   readonly max: Vector;
-  /** Of what is in it, where a camera is to see that and not the corners. */
+  /** The points of its content, for a camera that shall see these and not the corners. */
   readonly points?: readonly Vector[];
 }
 

@@ -32,8 +32,8 @@ export interface Look {
 }
 
 /**
- * One of RViz's view classes: what its values mean, and what the mouse makes of them. All is in the frame of the
- * view's target, metres and radians; what a method returns are the values that change.
+ * One of RViz's view classes: the meaning of its values, and how the mouse changes them. All is in the frame of the
+ * view's target, metres and radians; methods return the values that change.
  */
 export interface ViewController {
   /** Turns with the target's yaw, too. */
@@ -76,7 +76,7 @@ export function vectorValues(name: string, [x, y, z]: Vector): ViewValues {
 
 export function wrapYaw(yaw: number): number {
   const turn = 2 * Math.PI;
-  // What is in range stays as the user wrote it, to the last digit.
+  // A value in range stays as the user wrote it, to the last digit.
   if (yaw >= 0 && yaw < turn) return yaw;
   return ((yaw % turn) + turn) % turn;
 }

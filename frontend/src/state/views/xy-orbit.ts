@@ -4,7 +4,7 @@ import { add, distanceBetween, length, scale, subtract, type Span, type Vector }
 import { aboveMap, aroundFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
 import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
 
-/** Part of the distance by which the camera is raised, so that the focal point is in the lower half of the picture. */
+/** Part of the distance by which the camera is raised, so that the focal point is in the lower half of the view. */
 const RAISE = 0.2;
 /** Near the horizon a pixel is many metres; the focal point goes no further in one step. */
 const LONGEST_STEP = 1;
@@ -26,7 +26,7 @@ export class XYOrbitController extends OrbitController {
     return aroundFrom([x, y, 0], this.camera(values).position);
   }
 
-  /** The focal point stays on the ground, wherever the line of sight from the eye that sees all of the box meets it. */
+  /** The focal point stays on the ground, where the line of sight of the camera that sees all of the box meets it. */
   override fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
     const camera = this.camera(values);
     const { middle, distance, clip } = framing(camera, values, box, size);
@@ -34,7 +34,7 @@ export class XYOrbitController extends OrbitController {
     return { ...this.mimic({ cls: "", values, camera: { ...camera, position } }), ...clip };
   }
 
-  /** Keeps the picture where the camera is above the ground and sees some of it; otherwise begins anew, as RViz does. */
+  /** Keeps the view if the camera is above the ground and sees some of it; otherwise starts over, as RViz does. */
   override mimic({ cls, camera }: Look): ViewValues {
     if (cls === "rviz_default_plugins/TopDownOrtho") return aboveMap(camera.position);
     const ahead = onGround({ origin: camera.position, direction: scale(camera.back, -1) });

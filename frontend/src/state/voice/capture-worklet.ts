@@ -19,8 +19,8 @@ export interface CaptureMessage {
 }
 
 /**
- * Runs in the browser's thread for sound: what the microphone gives becomes blocks of a tenth of a second, mono, at the
- * rate that engines of speech want. A message has what is there of a block sent at once, and its number with it.
+ * Runs in the browser's thread for sound: the microphone's samples become blocks of a tenth of a second, mono, at the
+ * rate that speech engines expect. A message requests the current part of a block at once, with the message's number.
  */
 class Capture extends AudioWorkletProcessor {
   private readonly resampler = new Resampler(sampleRate, SOUND_RATE);
@@ -50,7 +50,7 @@ class Capture extends AudioWorkletProcessor {
     return true;
   }
 
-  /** Delivers what is there of a block; `answers` is the number of the request for it. */
+  /** Delivers the current part of a block; `answers` is the number of the request for it. */
   private send(answers: number | null = null): void {
     const message: CaptureMessage = { samples: this.block.slice(0, this.filled), lost: this.gaps.takeLost(), answers };
     this.port.postMessage(message);

@@ -1,19 +1,19 @@
-/** Samples of exact silence that are a hole: what browsers give, at a time, where sound did not come in time. */
+/** Samples of exact silence that count as a hole: browsers insert so many at a time if sound is late. */
 const HOLE = 128;
-/** Seconds of exact silence that are one, and no hole, however abruptly they begin. */
+/** Seconds of exact silence that count as silence and not as a hole, however abruptly they begin. */
 const SILENCE = 1;
-/** Samples before a hole that tell whether sound was cut off there, and how loud that must be: -40 dB. */
+/** Samples before a hole that show whether sound was cut off there, and how loud they must be: -40 dB. */
 const EDGE = 32;
 const LOUD = 0.01;
-/** Seconds in which the sound that came latest is looked for, and by how much it may be later than before. */
+/** Seconds that are searched for the latest sound, and by how much it may be later than before. */
 const WINDOW = 0.25;
 const LATE_MS = 60;
-/** Windows at the beginning of a stream, which come as they like. */
+/** Windows at the beginning of a stream, which have no regular times. */
 const SETTLING = 2;
 
 /**
- * Finds where a stream of sound lacks some. A machine that is busy leaves holes of exact silence, at which sound ends
- * abruptly, or leaves samples out: then those that come later come later than they should, all of them from there on.
+ * Finds gaps in a stream of sound. A busy machine leaves holes of exact silence, at which sound ends
+ * abruptly, or drops samples: then all later samples arrive later than they should.
  */
 export class GapFinder {
   private lost = 0;
@@ -31,7 +31,7 @@ export class GapFinder {
     this.windowEnd = WINDOW * rate;
   }
 
-  /** The next samples of the stream, -1 to 1, which came at a time in milliseconds. */
+  /** The next samples of the stream, -1 to 1, which arrived at a time in milliseconds. */
   take(samples: Float32Array, now: number): void {
     for (const sample of samples) this.lookForHole(sample);
     this.taken += samples.length;
@@ -45,7 +45,7 @@ export class GapFinder {
     this.least = Infinity;
   }
 
-  /** The seconds that were found to be lost since this was asked last. */
+  /** The seconds that were lost since the last call. */
   takeLost(): number {
     const { lost } = this;
     this.lost = 0;

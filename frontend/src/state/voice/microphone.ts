@@ -4,35 +4,35 @@ import workletUrl from "./capture-worklet.ts?worker&url";
 
 /**
  * Why there is no sound. `insecure`: the browser gives microphones only to https and to this machine; `denied`: the user
- * or a policy forbids it; `none`: there is no microphone; `busy`: another program has it; `lost`: it went away.
+ * or a policy forbids it; `none`: there is no microphone; `busy`: another program has it; `lost`: it was removed.
  */
 export type MicrophoneProblem = "insecure" | "denied" | "none" | "busy" | "lost" | "failed";
 
 /** A running capture of a microphone; tests have one of their own. */
 export interface Capture {
-  /** Has the part of a block that is there delivered; resolves when it is. */
+  /** Requests the current part of a block; resolves when it is delivered. */
   flush(): Promise<void>;
   close(): void;
 }
 
-/** Resolves when sound is being taken; `block` gets it, with the seconds that are missing in it. */
+/** Resolves when the capture has started; `block` receives the sound, with the seconds that are missing in it. */
 export type OpenCapture = (block: (samples: Int16Array, lostSeconds: number) => void, lost: () => void) => Promise<Capture>;
 
-/** The browser's microphone: opened when it is asked for first, and closed when nobody needs it. */
+/** The browser's microphone: opened on the first request, and closed when it is no longer needed. */
 export class Microphone {
   /** Blocks of a tenth of a second, mono, 16 kHz. */
   readonly block = new Signal<Int16Array>();
   readonly changed = new Signal();
   problem: MicrophoneProblem | null = null;
-  /** What the browser says of a problem of no known kind. */
+  /** The browser's message for a problem of unknown kind. */
   detail = "";
   /** The loudest sample of the last block, 0 to 1. */
   peak = 0;
-  /** Seconds of sound that were lost so far: a machine that is busy does not take all of it. */
+  /** Seconds of sound that were lost so far: a busy machine does not record all of it. */
   lostSeconds = 0;
   private capture: Capture | null = null;
   private opening: Promise<boolean> | null = null;
-  /** Counts openings: what comes of one that was given up is not taken. */
+  /** Counts openings: the results of an abandoned one are dropped. */
   private turn = 0;
 
   constructor(private readonly openCapture: OpenCapture = openBrowserCapture) {}
@@ -41,7 +41,7 @@ export class Microphone {
     return this.capture !== null;
   }
 
-  /** Whether the user is being asked, or the microphone started. */
+  /** Whether the permission is pending, or the microphone is starting. */
   get isOpening(): boolean {
     return this.opening !== null;
   }
@@ -126,7 +126,7 @@ function problemOf(error: unknown): MicrophoneProblem {
 
 /** The microphone that the user allows, through an AudioWorklet. */
 async function openBrowserCapture(block: (samples: Int16Array, lostSeconds: number) => void, gone: () => void): Promise<Capture> {
-  // Where the address is no secure one, browsers do not even have the property.
+  // On an insecure address, browsers do not even have the property.
   const devices = (navigator as Partial<Navigator>).mediaDevices;
   if (!isSecureContext || !devices) throw new InsecureError("no secure context");
   const context = new AudioContext();
@@ -136,7 +136,7 @@ async function openBrowserCapture(block: (samples: Int16Array, lostSeconds: numb
     void context.close();
   };
   try {
-    // First of all: what is said between the microphone's opening and the program's would be lost.
+    // This comes first: speech between the microphone's opening and the program's would be lost.
     await context.audioWorklet.addModule(workletUrl);
     const running = context.resume();
     running.catch(() => undefined); // it is awaited below, unless there is no microphone

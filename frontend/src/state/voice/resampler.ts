@@ -4,8 +4,8 @@ const REACH = 16;
 const BAND = 0.92;
 
 /**
- * Brings a stream of samples to another rate: each sample of the result is a sum of those around its time, weighted with
- * a windowed sinc, which also takes away what the new rate cannot carry.
+ * Converts a stream of samples to another rate: each sample of the result is a sum of those around its time, weighted with
+ * a windowed sinc, which also removes the frequencies that the new rate cannot carry.
  */
 export class Resampler {
   private readonly step: number;

@@ -20,7 +20,7 @@ export class Speaker {
     try {
       this.settings = { ...this.settings, ...(JSON.parse(storage.getItem(SAVED_KEY) ?? "{}") as Partial<SpeakerSettings>) };
     } catch {
-      // What is kept is not ours.
+      // The stored value is not ours.
     }
     this.synthesis?.addEventListener("voiceschanged", () => this.changed.emit());
   }

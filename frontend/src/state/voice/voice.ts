@@ -5,7 +5,7 @@ import type { TextStorage } from "../../storage";
 import { Microphone } from "./microphone";
 import { Speaker } from "./speaker";
 
-/** How long the microphone stays open after the button was let go: to open it takes a moment, in which a word is lost. */
+/** How long the microphone stays open after the button was released: opening it takes a moment, in which a word is lost. */
 const WARM_MS = 60_000;
 const MOST_KEPT = 100;
 /** Seconds that may be missing in a word. Of synthetic words all were recognised after enrolling with 0.03, half with 0.1. */
@@ -29,27 +29,27 @@ export function soundFrame(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
   return frame;
 }
 
-/** Talking to the robot: the button, the microphone, and what came of it. */
+/** Talking to the robot: the button, the microphone, and the conversation. */
 export class VoiceState {
   readonly changed = new Signal();
-  /** A line was said, or what is being heard changed. */
+  /** A line was spoken, or the text being recognized changed. */
   readonly conversed = new Signal();
-  /** What was said, oldest first. */
+  /** The spoken lines, oldest first. */
   readonly history: Said[] = [];
-  /** What is being heard. */
+  /** The text that is being recognized. */
   partial = "";
-  /** What the server says; null while it is not asked. */
+  /** The server's state; null while it is not requested. */
   told: Told | null = null;
   readonly speaker: Speaker;
   private readonly watching = new Set<object>();
   private pressed = false;
-  /** The button is let go, and what was said until then is on its way. */
+  /** The button is released, and the speech until then is on its way. */
   private ending = false;
   private listening = false;
   private taking = false;
   private mode: TalkMode = "off";
   private timer = 0;
-  /** Seconds that the microphone had lost before what is being said. */
+  /** Seconds that the microphone had lost before the current speech. */
   private lostBefore = 0;
   private isAnswered = false;
   /** Seconds that it had lost until the last block. */
@@ -105,12 +105,12 @@ export class VoiceState {
     return this.watching.size > 0;
   }
 
-  /** Whether too much sound was lost in what is being said or was said last, with the button or for a recording. */
+  /** Whether too much sound was lost in the current or last speech, with the button or for a recording. */
   get hasGaps(): boolean {
     return !this.listening && this.microphone.lostSeconds - this.lostBefore > MOST_LOST;
   }
 
-  /** Whether the robot has answered since the button was pressed last: then it says itself what is to be said again. */
+  /** Whether the robot has answered since the button was pressed last: then it asks for a repetition itself. */
   get answered(): boolean {
     return this.isAnswered;
   }
@@ -125,7 +125,7 @@ export class VoiceState {
     this.connection.send({ type: "watch_voice", watched: this.watched });
   }
 
-  /** The button is pressed: what is said from now on is meant. */
+  /** The button is pressed: speech from now on is a command. */
   press(): void {
     if (this.pressed) return;
     this.pressed = true;
@@ -162,13 +162,13 @@ export class VoiceState {
     this.changed.emit();
   }
 
-  /** Gives the microphone back, as when nobody looks at the page. */
+  /** Releases the microphone, for example when the page is hidden. */
   letGo(): void {
     this.release();
     if (!this.listening) this.microphone.close();
   }
 
-  /** Whether what is heard is a recording of a word, and no command. */
+  /** Whether the current speech is a recording of a word, not a command. */
   get recording(): boolean {
     return this.taking;
   }
@@ -244,7 +244,7 @@ export class VoiceState {
     const lost = this.microphone.lostSeconds - this.lostUntil;
     this.lostUntil = this.microphone.lostSeconds;
     if (this.mode !== "held" && this.mode !== "open" && !this.taking) return;
-    // What the page itself says is no command.
+    // The page's own speech is not a command.
     if (this.mode === "open" && this.speaker.speaking) return;
     this.connection.sendBytes(soundFrame(samples, lost));
   }

@@ -3,28 +3,28 @@ import type { EnrolledWord, TakeJudged } from "../../protocol";
 import { Signal } from "../../signal";
 import type { VoiceState } from "./voice";
 
-/** How long a recording goes on after the button was let go: the end of a word is soft. */
+/** How long a recording continues after the button was released: the end of a word is soft. */
 const TAIL_MS = 300;
 
 /** The words that the user enrols. */
 export class WordsState {
   readonly changed = new Signal();
-  /** The text of the file came. */
+  /** The text of the file arrived. */
   readonly fileCame = new Signal<string>();
-  /** The user wants to say the words where they stand. */
+  /** The user requested to record the words at their present place. */
   readonly enrolWanted = new Signal();
   words: readonly EnrolledWord[] = [];
-  /** How often each is to be said. */
+  /** The number of recordings for each word. */
   enough = 3;
   file = "";
   problem: string | null = null;
-  /** What became of the last recording of each word. */
+  /** The result of the last recording of each word. */
   readonly judged = new Map<string, TakeJudged>();
-  /** The word that is being said. */
+  /** The word that is being recorded. */
   recording: string | null = null;
-  /** How often each word was said since the user began to enrol where they stand; null while they do not. */
+  /** How often each word was recorded since the user began to enrol at their present place; null while they do not. */
   here: Map<string, number> | null = null;
-  /** Words that have a name and were not said yet. */
+  /** Words that have a name but no recording yet. */
   private readonly named = new Set<string>();
   private watched = false;
 
@@ -48,17 +48,17 @@ export class WordsState {
     });
   }
 
-  /** All words, those too that were not said yet. */
+  /** All words, including those without a recording. */
   get all(): readonly EnrolledWord[] {
     return [...this.words, ...[...this.named].map((name) => ({ name, takes: 0 }))];
   }
 
-  /** The words that are still to be said where the user stands. */
+  /** The words that are still to be recorded at the user's present place. */
   get missingHere(): readonly EnrolledWord[] {
     return this.all.filter(({ name }) => (this.here?.get(name) ?? 0) < this.enough);
   }
 
-  /** The user begins to say the words where they stand, or has done so. */
+  /** Begins or ends the recording of words at the user's present place. */
   enrolHere(begun: boolean): void {
     this.here = begun ? new Map<string, number>() : null;
     this.changed.emit();
@@ -70,7 +70,7 @@ export class WordsState {
     this.connection.send({ type: "watch_words", watched });
   }
 
-  /** Has a word stand in the list, to be said. */
+  /** Adds a word to the list, to be recorded. */
   name(name: string): void {
     const trimmed = name.trim();
     if (trimmed === "" || this.all.some((word) => word.name === trimmed)) return;
@@ -78,11 +78,11 @@ export class WordsState {
     this.changed.emit();
   }
 
-  /** The user begins to say a word. */
+  /** Begins the recording of a word. */
   async begin(name: string): Promise<void> {
     if (this.recording !== null) return;
     this.recording = name;
-    this.judged.delete(name); // what is told after this is about this recording
+    this.judged.delete(name); // later judgements are about this recording
     this.changed.emit();
     const begun = await this.voice.record(() => {
       if (this.recording === name) this.connection.send({ type: "begin_take", name });
@@ -92,7 +92,7 @@ export class WordsState {
     else this.changed.emit();
   }
 
-  /** The user has said it. */
+  /** Ends the recording. */
   end(): void {
     if (this.recording === null) return;
     if (!this.voice.recording) {
@@ -126,7 +126,7 @@ export class WordsState {
     this.connection.send({ type: "ask_words_file" });
   }
 
-  /** Whether the word can be said now: its button is held and the microphone is open. */
+  /** Whether the word can be recorded now: its button is held and the microphone is open. */
   get isHearing(): boolean {
     return this.recording !== null && this.voice.recording;
   }
