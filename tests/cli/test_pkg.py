@@ -190,10 +190,10 @@ def test_every_mistake_is_reported_at_once(capsys: pytest.CaptureFixture[str]) -
     assert main(["pkg", "create", *words, "--maintainer-email", "ada@home"]) == 1
     errors = capsys.readouterr().err
     for line in (
-        "error[PKG201]: 'my-Robot' cannot be the name of a package: only letters, digits and underscores may be in it,",
+        "error[PKG201]: 'my-Robot' cannot be the name of a package: it may contain only letters, digits and",
         "did you mean 'my_robot'?",
         "error[PKG203]: '2go' cannot be the name of a node: it must begin with a letter",
-        "error[PKG203]: 'class' cannot be the name of a library: it is a word of the Python language",
+        "error[PKG203]: 'class' cannot be the name of a library: it is a Python keyword",
         "error[PKG204]: 'urdf,xacro' cannot be the name of a dependency",
         "error[PKG205]: 'ada@home' is not an e-mail address that colcon accepts",
     ):

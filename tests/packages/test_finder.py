@@ -288,8 +288,8 @@ class TestResolve:
             ("package:/arm/a.stl", "lacks the two slashes"),
             ("package:///a.stl", "names no package"),
             ("file://a.stl", "has no absolute path"),
-            ("http://example.org/a.stl", "names no file here"),
-            ("model://arm/a.stl", "names no file here"),
+            ("http://example.org/a.stl", "does not name a local file"),
+            ("model://arm/a.stl", "does not name a local file"),
             ("", "is empty"),
         ],
     )

@@ -3,7 +3,7 @@
 An ament package at a prefix has the marker ``share/ament_index/resource_index/packages/NAME`` and keeps its
 files in ``share/NAME``. colcon lays a workspace's ``install`` folder out either as one prefix for all
 (``--merge-install``) or as one prefix for each package. With ``--symlink-install`` the files in ``share`` are
-links to the sources; paths are returned as they stand in ``share``, never resolved, as ROS does.
+links to the sources; paths are returned as they are written in ``share``, never resolved, as in ROS.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ PREFIX_PATH = "AMENT_PREFIX_PATH"
 """The environment variable that sourcing a ROS or a workspace sets."""
 
 ROS_VARIABLES = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
-"""What sourcing a ROS 2 sets besides, for Humble, which we follow."""
+"""The other variables that sourcing ROS 2 sets, with the values of Humble, which we follow."""
 
 _MARKERS = Path("share", "ament_index", "resource_index", "packages")
 _COLCON_LAYOUT = ".colcon_install_layout"
 
 
 def install_prefix(share: Path) -> Path:
-    """The prefix of a package: the folder that its ``share/NAME`` lies in, or the source folder itself."""
+    """The prefix of a package: the folder that holds its ``share/NAME``, or its source folder."""
     return share.parents[1] if is_installed(share) else share
 
 

@@ -1,7 +1,7 @@
 """The resource index of ament: what installed packages have registered (``ament_index_python.resources``).
 
-Packages in their sources count as registered under the type ``packages``; what else they would register, only their
-build knows.
+Packages in their sources count as registered under the type ``packages``. Only their build knows their other
+resources.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ def _check_type(kind: str) -> None:
 
 
 def _prefixes() -> list[Path]:
-    """The prefixes of the environment, and those of installed packages that nobody sourced."""
+    """The prefixes of the environment, and those of installed packages that are not sourced."""
     shares = current_finder().packages().values()
     unsourced = (install_prefix(share) for share in shares if is_installed(share))
     return list(dict.fromkeys([*environment_prefixes(os.environ), *unsourced]))

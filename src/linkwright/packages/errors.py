@@ -8,10 +8,10 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, ph
 
 
 class PackageNotFoundError(LinkwrightError, KeyError):
-    """No package of that name anywhere (PKG101).
+    """No package of that name is in any place (PKG101).
 
-    It is a KeyError too, as ``ament_index_python``'s exception of the same name is, so that launch files
-    which catch that one go on working.
+    It is a KeyError too, like the exception of the same name in ``ament_index_python``, so that launch files
+    that catch the latter continue to work.
 
     Args:
         searched: the places.

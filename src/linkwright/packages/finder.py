@@ -20,28 +20,28 @@ START_VARIABLE = "LINKWRIGHT_START"
 
 
 class PackageFinder:
-    """Finds ROS packages the way ROS users lay them out.
+    """Finds ROS packages in the usual layouts of ROS workspaces.
 
-    The places, in the order they are asked:
+    The places, in the order of the search:
 
     1. `extra`, given by the caller;
     2. the prefixes of ``AMENT_PREFIX_PATH`` (a sourced ROS or workspace);
     3. colcon's ``install`` folders in the start folders and in the folders above them, merged or isolated, and the
-       prefix that a start folder lies in, such as ``/opt/ros/humble`` where nobody sourced it;
-    4. source trees: the package a start folder lies in and the packages beside that one, the packages below
+       prefix that contains a start folder, such as ``/opt/ros/humble`` if it is not sourced;
+    4. source trees: the package that contains a start folder and its sibling packages, the packages below
        a start folder, and those below ``src`` of the folders above it;
     5. the packages shipped with Linkwright;
-    6. our own in the place of packages of ROS that launch files include, see `linkwright.packages.substituted`.
+    6. our substitutes for packages of ROS that launch files include, see `linkwright.packages.substituted`.
 
     Nothing is read from the disk before it is needed, and a search through source trees stops where it meets
     the package.
 
     Args:
-        start: where the user stands, one folder or several of falling weight; by default the current folder, and
-            behind it those that `START_VARIABLE` names.
+        start: the user's folder, or several folders in order of preference; by default the current folder, and
+            then those that `START_VARIABLE` names.
         environment: the variables to read ``AMENT_PREFIX_PATH`` from; the process's by default.
         extra: package name -> share folder, before everything else.
-        sources_first: whether sources come before what an earlier build installed of them.
+        sources_first: whether sources come before the files that an earlier build installed of them.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class PackageFinder:
         self._offered: str | None = None
 
     def starting_at(self, start: Sequence[Path]) -> PackageFinder:
-        """Return a finder for another place, which shares what this one has searched of source trees."""
+        """Return a finder for another place, which shares this one's searches of source trees."""
         finder = PackageFinder(
             start=start, environment=self._environment, extra=self._extra, sources_first=self._sources_first
         )
@@ -79,7 +79,7 @@ class PackageFinder:
         return self._starts
 
     def find(self, name: str) -> Path | None:
-        """The share folder of a package, or None; where it is not installed, see `share_of_sources`."""
+        """The share folder of a package, or None; if it is not installed, see `share_of_sources`."""
         share = self._known.get(name)
         if share is None:
             share = next((place for place in self._places(name) if place is not None), None)
@@ -93,7 +93,7 @@ class PackageFinder:
         return next(filter(None, found), None)
 
     def share(self, name: str) -> Path:
-        """The share folder of a package; where it is not installed, see `share_of_sources`.
+        """The share folder of a package; if it is not installed, see `share_of_sources`.
 
         Raises:
             PackageNotFoundError: PKG101, with the places that were searched and the nearest names.
@@ -107,14 +107,14 @@ class PackageFinder:
         return share
 
     def packages(self) -> dict[str, Path]:
-        """All packages there are: name -> share folder, or source folder; of two with one name the one `find` gives."""
+        """All packages: name -> share folder, or source folder; of two with one name the one that `find` returns."""
         found = dict(self._extra)
         for name, share in self._all():
             found.setdefault(name, share)
         return found
 
     def resolve(self, address: str, relative_to: Path | None = None) -> Path:
-        """The file that an address in a description or launch file means; whether it exists is not asked.
+        """The file that an address in a description or launch file means; it need not exist.
 
         Args:
             address: ``package://NAME/PATH``, ``file:///PATH`` or a plain path.
@@ -126,10 +126,10 @@ class PackageFinder:
         return uri.resolve(address, self.share, relative_to)
 
     def offer_prefix_path(self, environment: MutableMapping[str, str]) -> None:
-        """Set ``AMENT_PREFIX_PATH`` where nobody sourced anything, for programs that ask for it.
+        """Set ``AMENT_PREFIX_PATH`` for programs that read it, unless a workspace is sourced.
 
-        It names what sourcing the workspaces would; before they are built, the folder that they would be installed to.
-        This finder goes on as if it were not set, until somebody adds to it.
+        It names the prefixes that sourcing the workspaces would set; before a build, the folder that a build would
+        install to. This finder ignores the variable until a program changes it.
         """
         if environment.get(ament.PREFIX_PATH):
             return
@@ -143,7 +143,7 @@ class PackageFinder:
         return ament.environment_prefixes(self._environment)
 
     def forget(self) -> None:
-        """Look at the disk anew at the next question; packages may have come, gone or moved."""
+        """Read the disk again at the next search; packages may have appeared, disappeared or moved."""
         self._known.clear()
         self._meant.clear()
         self._scans.clear()
@@ -231,7 +231,7 @@ class PackageFinder:
         folder = shipped_folder()
         return {} if folder is None else SourceScan(folder).packages()
 
-    # --- what the error says ----------------------------------------------------------------------------------
+    # --- the text of the error -------------------------------------------------------------------------------
 
     def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
         """The hint at a package with a name like this one, and whether this one is that name misspelt."""
@@ -268,7 +268,7 @@ class PackageFinder:
 
 
 def shipped_folder() -> Path | None:
-    """Where the packages shipped with us lie: in the wheel, or in the repository of an editable install."""
+    """The folder of the packages shipped with us: in the wheel, or in the repository of an editable install."""
     package = Path(__file__).parents[1]
     for folder in (package / "robots", package.parents[1] / "robots"):
         if folder.is_dir():

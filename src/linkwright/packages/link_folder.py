@@ -20,9 +20,9 @@ _KEPT_SECONDS = 7 * 24 * 3600.0
 
 
 def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> Path:
-    """A folder with all that is in the sources of a package, and what it installs where it installs it.
+    """A folder with links to the sources of a package and to its installed files at their installed paths.
 
-    It is made once for what is in it, and then found again, by other processes too.
+    Each content gets a folder of its own, which other processes use too.
 
     Args:
         name: the package, and the folder's name.

@@ -14,7 +14,7 @@ _NAME = lazy_pattern(r"<package\b[^>]*>.*?<name>\s*([^<\s]+)\s*</name>", re.DOTA
 
 
 def package_name(folder: Path) -> str | None:
-    """The name in a folder's ``package.xml``; None where there is no such file or no name in it.
+    """The name in a folder's ``package.xml``; None if there is no such file or no name in it.
 
     The text is searched, not parsed: one broken manifest must not stop a search through a whole workspace,
     and a search reads many of them.
@@ -28,7 +28,7 @@ def package_name(folder: Path) -> str | None:
 
 
 def enclosing_package(path: Path) -> tuple[str, Path] | None:
-    """Name and folder of the package that a file or folder lies in: the nearest ``package.xml`` upwards."""
+    """Name and folder of the package that contains a file or folder: the nearest ``package.xml`` upwards."""
     for folder in (path, *path.parents):
         name = package_name(folder)
         if name is not None:

@@ -1,7 +1,7 @@
-"""Rules for the names and addresses in a package: what the build tools cannot take, and what REP 144 advises.
+"""Rules for the names and addresses in a package: the limits of the build tools, and the advice of REP 144.
 
-Errors are what would break a build later (a folder that Python cannot import, a project that CMake refuses, an e-mail
-address for which colcon drops the package's environment hooks). Departures from REP 144 are warnings.
+Errors are names that would break a build later (a folder that Python cannot import, a project that CMake refuses, an
+e-mail address for which colcon drops the package's environment hooks). Departures from REP 144 are warnings.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _IDENTIFIER = lazy_pattern(r"[A-Za-z][A-Za-z0-9_]*")
 # A name as catkin_pkg accepts it, for the sake of old packages.
 _ACCEPTED = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 _DEPENDENCY = lazy_pattern(r"[A-Za-z0-9][A-Za-z0-9_.+-]*")
-# An address as catkin_pkg, which colcon asks, accepts it: ASCII, with a top-level domain of two or more letters.
+# An address that catkin_pkg, which colcon uses, accepts: ASCII, with a top-level domain of two or more letters.
 _EMAIL = lazy_pattern(r"[\w%+-]+(\.[\w%+-]+)*@[\w%-]+(\.[\w%-]+)*\.[A-Za-z]{2,}", re.ASCII)
 
 
@@ -26,7 +26,7 @@ def check_package_name(name: str) -> list[Diagnostic]:
         message = phrase("'{name}' cannot be the name of a package: {problem}", name=name, problem=_broken_rule(name))
         return [Diagnostic("PKG201", message, hint=_suggestion(name))]
     if keyword.iskeyword(name):
-        message = phrase("'{name}' cannot be the name of a package: it is a word of the Python language", name=name)
+        message = phrase("'{name}' cannot be the name of a package: it is a Python keyword", name=name)
         return [Diagnostic("PKG201", message, hint=phrase("did you mean {names}?", names=quoted(f"{name}_robot")))]
     return [] if _departure(name) is None else [departure_from_rep(name)]
 
@@ -39,10 +39,10 @@ def departure_from_rep(name: str) -> Diagnostic:
 
 
 def check_member_name(name: str, what: str) -> list[Diagnostic]:
-    """The findings on the name of a node or library (PKG203); `what` says which."""
+    """The findings on the name of a node or library (PKG203); `what` is "node" or "library"."""
     if _IDENTIFIER.fullmatch(name) and not keyword.iskeyword(name):
         return []
-    problem = phrase("it is a word of the Python language") if keyword.iskeyword(name) else _broken_rule(name)
+    problem = phrase("it is a Python keyword") if keyword.iskeyword(name) else _broken_rule(name)
     return [
         Diagnostic(
             "PKG203",
@@ -69,7 +69,7 @@ def check_email(address: str) -> list[Diagnostic]:
 
 
 def is_accepted_name(name: str) -> bool:
-    """Whether colcon builds a package of this name, whatever REP 144 says of it."""
+    """Whether colcon builds a package of this name, even against the advice of REP 144."""
     return _ACCEPTED.fullmatch(name) is not None
 
 
@@ -84,7 +84,7 @@ def _broken_rule(name: str) -> Phrase:
     wrong = sorted(set(re.findall(r"[^A-Za-z0-9_]", name)))
     if wrong:
         shown = " ".join("a blank" if character.isspace() else character for character in wrong)
-        return phrase("only letters, digits and underscores may be in it, not {shown}", shown=shown)
+        return phrase("it may contain only letters, digits and underscores, not {shown}", shown=shown)
     return phrase("it must begin with a letter")
 
 
@@ -92,7 +92,7 @@ def _departure(name: str) -> Phrase | None:
     if name != name.lower():
         return phrase("names are lower case")
     if "__" in name:
-        return phrase("underscores stand alone, not in a row")
+        return phrase("names have no consecutive underscores")
     if len(name) < 2:
         return phrase("names have at least two characters")
     return None
@@ -106,5 +106,5 @@ def _suggestion(name: str) -> Phrase | None:
     return (
         phrase("did you mean {names}?", names=quoted(better))
         if fits
-        else phrase("begin with a letter and go on with letters, digits and underscores")
+        else phrase("start with a letter, and use only letters, digits and underscores")
     )

@@ -2,9 +2,9 @@
 
 Most packages keep their files in the sources as they install them, and their source folder serves as the share folder.
 Some do not: ``install(DIRECTORY description/urdf DESTINATION share/${PROJECT_NAME})``, ``glob('cfg/*')`` to ``config``.
-For these a folder of links is made in the user's cache, which holds what they install where they install it, and beside
-it everything else of the sources. So whoever asks for the share folder, a launch file with ``os.path.join`` too, finds
-what would be there after a build. Files that only compiling would make are ours where we have them, see
+For these a folder of links is made in the user's cache, with the installed files at their installed paths and
+everything else of the sources. So a user of the share folder, a launch file with ``os.path.join`` too, finds
+the files that would exist after a build. Files that need compiling are ours if we have them, see
 `linkwright.packages.substituted`.
 """
 
@@ -49,12 +49,12 @@ def share_of_sources(name: str, folder: Path) -> Path:
 
 
 def source_of(path: str) -> str:
-    """The file of a package that a file in such a folder of links stands for; any other path as it is."""
+    """The file of a package that a file in such a folder of links represents; any other path as it is."""
     return os.path.realpath(path) if _MARK in path else path
 
 
 def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
-    """What a package installs into its share folder: the path there, and the file. Some that keep it are left out."""
+    """The files that a package installs into its share folder, by path. Some with an unchanged path are left out."""
     share = f"share/{name}/"
     with suppress(OSError, ValueError):
         for file in _installed(folder, share):
@@ -63,7 +63,7 @@ def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
 
 
 def _is_own(source: str) -> bool:
-    """Whether a file lies in the package: one that a stranger's package takes from elsewhere is not shown to a page."""
+    """Whether a file is in the package. A page is not shown files that an untrusted package takes from elsewhere."""
     path = Path(os.path.normpath(source))
     return not path.is_absolute() and path.parts[:1] != (os.pardir,)
 

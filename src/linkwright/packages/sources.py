@@ -17,7 +17,7 @@ MAXIMUM_FOLDERS = 3000
 
 
 class SourceScan:
-    """A breadth-first search for packages below one folder that goes only as far as it is asked to.
+    """A breadth-first search for packages below one folder that proceeds only on demand.
 
     Folders nearer to the root come first and siblings in the order of their names. A folder with a
     ``package.xml`` is a package and is not searched further; hidden folders, build products and folders with
@@ -38,7 +38,7 @@ class SourceScan:
         self._steps: Iterator[tuple[str, Path]] | None = self._walk()
 
     def find(self, name: str) -> Path | None:
-        """The folder of a package, or None; the search goes on until it is met."""
+        """The folder of a package, or None; the search stops as soon as the package is found."""
         if name in self._found:
             return self._found[name]
         while self._advance():
@@ -47,7 +47,7 @@ class SourceScan:
         return None
 
     def packages(self) -> dict[str, Path]:
-        """All packages below the root: name -> folder. Of two with one name the one found first."""
+        """All packages below the root: name -> folder. Of two with the same name the one found first."""
         while self._advance():
             pass
         return dict(self._found)
@@ -108,7 +108,7 @@ def _listing(folder: str) -> tuple[set[str], list[str]]:
 
 
 def _links_upwards(entry: os.DirEntry[str]) -> bool:
-    """Whether a folder is a link to one of the folders it lies in: following it would never end."""
+    """Whether a folder is a link to one of its parents: following it would never end."""
     if not entry.is_symlink():
         return False
     link = Path(entry.path)

@@ -1,8 +1,8 @@
-"""Our own packages in the place of packages of ROS that launch files include, such as those of Gazebo and nav2.
+"""Our substitutes for packages of ROS that launch files include, such as those of Gazebo and nav2.
 
-They lie in the folder ``substitutes``, laid out as installed packages. They have the launch files of those packages and
-what these need, and start nodes of ours. Packages of which we have modules, messages or nodes only, such as rclpy,
-std_msgs and robot_state_publisher, have a share folder there by name, with nothing in it.
+They are in the folder ``substitutes``, laid out as installed packages. They have the launch files of those packages and
+the files that these need, and start nodes of ours. A package that is replaced only by modules, messages or nodes, such
+as rclpy, std_msgs and robot_state_publisher, has an empty share folder there.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.installed_file import InstalledFile
 
 SUBSTITUTES = Path(__file__).parent / "substitutes"
-"""The prefix that they are installed to."""
+"""The prefix of the substitutes."""
 
 
 def substituted_share(name: str) -> Path | None:
-    """The share folder of ours for a package of ROS; None where we have nothing of that package."""
+    """The share folder of our substitute for a package of ROS; None if there is none."""
     share = share_in_prefix(SUBSTITUTES, name)
     if share is None and name in _known_in_part():
         return SUBSTITUTES / "share" / name
@@ -29,7 +29,7 @@ def substituted_share(name: str) -> Path | None:
 
 @cache
 def _known_in_part() -> frozenset[str]:
-    """The packages of which we have modules, messages or nodes."""
+    """The packages that we replace in part, by modules, messages or nodes."""
     ours = Path(__file__).parents[1]
     found = {file.stem for folder in ("standins/tables", "messages/data") for file in (ours / folder).glob("*.txt")}
     for group in ("linkwright.nodes", "linkwright.components"):
@@ -38,9 +38,9 @@ def _known_in_part() -> frozenset[str]:
 
 
 def is_substitute(share: Path) -> bool:
-    """Whether a share folder is one of ours that stands in for a package of ROS which is not here, such as gazebo_ros.
+    """Whether a share folder is our substitute for a missing package of ROS, such as gazebo_ros.
 
-    It has the launch files that others include, and not everything else of that package.
+    It has the launch files that others include, but not the rest of that package.
     """
     return install_prefix(share) == SUBSTITUTES
 
@@ -48,9 +48,9 @@ def is_substitute(share: Path) -> bool:
 def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
     """The files of ours that unbuilt sources of a package lack: path in the share folder -> file.
 
-    A launch file that a build would make, such as ros_gz_sim's ``gz_sim.launch.py``, names programs of that build; ours
-    start our nodes. What the sources have as it is stays theirs: its nodes are ours by their names, and the user may
-    have edited it.
+    A launch file that a build makes, such as ros_gz_sim's ``gz_sim.launch.py``, names programs of that build; ours
+    starts our nodes. Files in the sources take precedence: the names of their nodes lead to ours, and the user may
+    have edited them.
 
     Args:
         name: the package.

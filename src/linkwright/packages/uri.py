@@ -18,7 +18,7 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
     """The path that an address means, with `share` to ask for a package's share folder.
 
     Raises:
-        LinkwrightError: what `share` raises, and PKG102 for an address that is neither of the three forms.
+        LinkwrightError: an error of `share`, or PKG102 for an address that has none of the three forms.
     """
     if not address.strip():
         raise bad_uri(phrase("'{uri}' is empty where the path of a file is expected", uri=address))
@@ -33,8 +33,12 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
         return _file_path(address, rest)
     hint = phrase("use package://PACKAGE/PATH")
     if kind in ("http", "https"):
-        hint = phrase("nothing is fetched from the network: put the file into a package and use package://PACKAGE/PATH")
-    problem = phrase("'{uri}' has the scheme '{scheme}', which names no file here", uri=address, scheme=scheme.group(1))
+        hint = phrase(
+            "files are not fetched from the network: put the file into a package and use package://PACKAGE/PATH"
+        )
+    problem = phrase(
+        "'{uri}' has the scheme '{scheme}', which does not name a local file", uri=address, scheme=scheme.group(1)
+    )
     raise bad_uri(problem, hint)
 
 
@@ -58,12 +62,12 @@ def _file_path(address: str, rest: str) -> Path:
 
 
 def absolute_path(rest: str, *, with_drives: bool = os.name == "nt") -> str | None:
-    """The path in an address, None where it is not absolute.
+    """The path in an address, None if it is not absolute.
 
     Args:
-        rest: what follows ``file:``.
+        rest: the address without ``file:``.
         with_drives: whether paths begin with the letter of a drive, as on Windows: ``///C:/robots``, as
-            `pathlib.Path.as_uri` writes it, and ``//C:/robots``, which ``file://$(find PACKAGE)`` comes to there.
+            `pathlib.Path.as_uri` writes it, and ``//C:/robots``, which results from ``file://$(find PACKAGE)`` there.
     """
     if rest.startswith("//localhost/"):
         rest = rest.removeprefix("//localhost")

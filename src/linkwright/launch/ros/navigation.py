@@ -19,12 +19,12 @@ _RESPAWN_SECONDS = 2.0
 
 ARGUMENTS: Mapping[str, tuple[str, str]] = {
     "namespace": ("", "Namespace of all nodes"),
-    "use_sim_time": ("false", "Whether time is that of the simulation"),
+    "use_sim_time": ("false", "Whether to use simulated time"),
     "autostart": ("true", "Whether the servers are activated at once"),
     "use_composition": ("False", "Whether the servers are composed in a container"),
     "container_name": ("nav2_container", "The container they are composed in"),
     "use_respawn": ("False", "Whether a server that dies is started again, where it is not composed"),
-    "log_level": ("info", "How much is told"),
+    "log_level": ("info", "The log level"),
 }
 """Arguments of launch files that start servers: name -> default, description."""
 

@@ -93,7 +93,7 @@ def plain_cmake_lists(request: PackageRequest) -> str:
 
 
 def config(request: PackageRequest) -> str:
-    """``<name>Config.cmake.in``: what ``find_package`` of another project reads."""
+    """``<name>Config.cmake.in``: the file that ``find_package`` of another project reads."""
     lines = [
         f"# Found by find_package({request.name}). It defines",
         f"#   {request.name}_INCLUDE_DIRS: folders with headers",
@@ -111,7 +111,7 @@ def config(request: PackageRequest) -> str:
 
 
 def config_version() -> str:
-    """``<name>ConfigVersion.cmake.in``: whether this version is the one asked for."""
+    """``<name>ConfigVersion.cmake.in``: whether this version is the requested one."""
     return """\
 set(PACKAGE_VERSION "@PROJECT_VERSION@")
 

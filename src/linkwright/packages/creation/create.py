@@ -58,7 +58,7 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
     """Make the package's folder and files.
 
     Args:
-        request: what to make.
+        request: the package to create.
         report: called with each line that ``ros2 pkg create`` prints, in its order.
 
     Returns:
@@ -143,7 +143,7 @@ def _check_license(identifier: str) -> list[Diagnostic]:
 
 
 def summary(request: PackageRequest) -> Iterator[str]:
-    """The lines that say what is about to be made."""
+    """The lines that announce the new package."""
     yield "going to create a new package"
     yield f"package name: {request.name}"
     yield f"destination directory: {request.destination.resolve()}"
@@ -161,7 +161,7 @@ def summary(request: PackageRequest) -> Iterator[str]:
 
 
 def steps(request: PackageRequest) -> Iterator[Step]:
-    """What to do inside the package's folder, in the order of ``ros2 pkg create``."""
+    """The files and folders to create in the package's folder, in the order of ``ros2 pkg create``."""
     yield File(Path("package.xml"), package_templates.manifest(request))
     if request.build_type == "ament_python":
         yield from _python_steps(request)

@@ -142,7 +142,7 @@ def _text(value: str) -> str:
 def _build_tools(request: PackageRequest) -> tuple[str, ...]:
     if request.build_type != "ament_cmake":
         return ()
-    # With ament_cmake_ros, a library is built shared unless the builder says otherwise.
+    # With ament_cmake_ros, a library is built shared unless the user overrides it.
     return ("ament_cmake_ros",) if request.library_name else ("ament_cmake",)
 
 

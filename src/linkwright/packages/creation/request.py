@@ -27,7 +27,7 @@ class Maintainer:
 
 @dataclass(frozen=True)
 class PackageRequest:
-    """The package that somebody wants.
+    """The package to create.
 
     Attributes:
         destination: the folder in which the package's own folder is made, as the user wrote it.

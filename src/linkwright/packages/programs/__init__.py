@@ -1,1 +1,1 @@
-"""The programs and Python modules of packages: what they are, and what they need around them to run."""
+"""The programs and Python modules of packages, and the environment in which they run."""

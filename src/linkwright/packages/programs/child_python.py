@@ -1,7 +1,7 @@
 """How processes are started so that Python programs in them find ``rclpy`` and its kin.
 
-These are what is installed, else the stand-ins. The stand-ins are a room above this one, so they register here how a
-process is started with them; see `linkwright.standins.activate`.
+These are the installed modules, else the stand-ins. The stand-ins are a room above this one, so they register here how
+a process is started with them; see `linkwright.standins.activate`.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ _python_command: Command | None = None
 
 
 def provide(environment: Environment, python_command: Command) -> None:
-    """Say how processes are started.
+    """Set how processes are started.
 
     Args:
-        environment: makes a process's environment from the one it would have.
+        environment: changes the environment that a process would have.
         python_command: puts an interpreter before a Python program's file and arguments.
     """
     global _environment, _python_command  # noqa: PLW0603 - a process has one set of stand-ins
@@ -29,7 +29,7 @@ def provide(environment: Environment, python_command: Command) -> None:
 
 
 def process_environment(base: Mapping[str, str]) -> dict[str, str]:
-    """The environment for a process, from what a launch file makes of it."""
+    """The environment for a process, from that of a launch file."""
     return dict(base if _environment is None else _environment(base))
 
 

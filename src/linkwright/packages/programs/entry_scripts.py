@@ -1,7 +1,7 @@
-"""Script files for entry points of packages that were not built: what ``colcon build`` would install, in a cache.
+"""Script files for entry points of packages that are not built, in a cache; ``colcon build`` would install them.
 
-A launch file may ask for the path of an executable, and debuggers, shells and process lists want a program with a name
-of its own; so an entry point becomes a real file.
+A launch file may look up the path of an executable, and debuggers, shells and process lists expect a program with a
+name of its own; so an entry point becomes a real file.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ _LONGEST_INTERPRETER_LINE = 120
 
 
 def script_for(package: str, name: str, entry: EntryPoint, roots: Sequence[Path]) -> Path:
-    """The script file that runs an entry point, made anew where it has changed.
+    """The script file that runs an entry point, written again if it has changed.
 
     Args:
         package: the package.
         name: the program's name.
-        entry: what it runs.
+        entry: its entry point.
         roots: the folders to import modules from, the package's own first.
 
     Raises:

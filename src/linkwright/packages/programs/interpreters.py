@@ -17,7 +17,7 @@ _ASK_SECONDS = 5.0
 
 
 def needs_our_interpreter(path: Path) -> bool:
-    """Whether a script asks for a Python of another version than ours while there is no ROS for it to find there.
+    """Whether a script requires another Python version than ours, for which no ROS is installed.
 
     The stand-ins for ROS's modules need compiled libraries that are for one version of Python only.
     """
@@ -38,7 +38,7 @@ def interpreter_words(path: Path) -> list[str]:
 
 
 def _interpreter_of(path: Path) -> str | None:
-    """The Python that a script's first line asks for; None for other programs."""
+    """The Python that a script's first line names; None for other programs."""
     words = interpreter_words(path)
     if words and Path(words[0]).name == "env":
         words = [word for word in words[1:] if not word.startswith("-")]
@@ -63,7 +63,7 @@ def _version_of(interpreter: str) -> tuple[int, ...] | None:
 
 
 def _has_ros_for_python() -> bool:
-    """Whether a real rclpy lies in one of the prefixes that are in force."""
+    """Whether a prefix of the environment contains a real rclpy."""
     prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     patterns = ("lib/python*/site-packages/rclpy", "local/lib/python*/dist-packages/rclpy")
     return any(

@@ -1,7 +1,7 @@
 """Python modules of the packages in the workspace, for launch files that import them.
 
-In ROS a launch file may import the modules of every package that was built and sourced. Here those of packages that
-are there in their sources only are found as well, and those of install folders that nobody sourced.
+In ROS a launch file may import the modules of every package that is built and sourced. Here it may also import the
+modules of packages that exist only as sources, and those of install folders that are not sourced.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from linkwright.packages.programs.workspace_environment import python_folders
 
 
 def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | None:
-    """The top-level module of a name; None where no package has it.
+    """The top-level module of a name; None if no package has it.
 
     Args:
-        finder: where packages are.
-        name: of the module. The package of this name comes first, then the one that asks, then any: many packages have
+        finder: finds the packages.
+        name: of the module. The package of this name comes first, then the importing one, then any: many packages have
             a module ``scripts`` or ``utils``.
         near: the folder of the file that imports it.
     """

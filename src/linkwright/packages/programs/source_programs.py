@@ -1,8 +1,8 @@
 """The programs that a package in its sources would install, found without building it.
 
 They are read from ``setup.py``, ``setup.cfg`` and ``pyproject.toml`` (entry points and scripts) and from the
-``install(PROGRAMS ...)`` of a ``CMakeLists.txt``. Nothing is run for it, with one exception: a ``setup.py`` that puts
-its entry points together by a program is asked by running it, in a process of its own with a ``setup()`` that only
+``install(PROGRAMS ...)`` of a ``CMakeLists.txt``. Nothing is run for it, with one exception: a ``setup.py`` that
+computes its entry points is run, in a process of its own with a ``setup()`` that only
 reports.
 """
 
@@ -57,8 +57,8 @@ class SourcePrograms:
         entry_points: by the program's name.
         scripts: files by the program's name.
         compiled: names of programs that have to be built first.
-        is_complete: whether it has no others; not known where the files that say how it is built are not here, or do
-            so by commands that are not known.
+        is_complete: whether it has no others; False if the files that describe its build are missing, or use
+            unknown commands.
     """
 
     folder: Path
@@ -94,7 +94,7 @@ def python_root(folder: Path, package: str) -> Path | None:
 
 
 def module_file(root: Path, module: str) -> Path | None:
-    """The file of a module below a folder; None where there is none."""
+    """The file of a module below a folder; None if there is none."""
     path = root.joinpath(*module.split("."))
     for candidate in (path.with_name(path.name + ".py"), path / "__init__.py"):
         if candidate.is_file():
@@ -140,7 +140,7 @@ def _read_setup_py(found: SourcePrograms) -> None:
 def _asked(folder: Path) -> tuple[list[str], list[str]]:
     """The entry points and scripts that a ``setup.py`` gives when it runs; none where it fails."""
     try:
-        done = subprocess.run(  # noqa: S603 - the user asks for a program of this very package
+        done = subprocess.run(  # noqa: S603 - the user runs a program of this very package
             [sys.executable, "-c", _ASK], cwd=folder, capture_output=True, timeout=_ASK_SECONDS, check=True, text=True
         )
         entries, scripts = json.loads(done.stdout.splitlines()[-1])

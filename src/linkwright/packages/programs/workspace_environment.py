@@ -15,11 +15,11 @@ _PYTHON = "PYTHONPATH"
 
 
 def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dict[str, str]:
-    """An environment with what building the workspaces and sourcing their ``setup.bash`` would have added.
+    """An environment as after building the workspaces and sourcing their ``setup.bash``.
 
     Args:
-        finder: where packages are.
-        base: the environment to begin with; what it names already stays before all else.
+        finder: finds the packages.
+        base: the environment to extend; its own entries stay first.
     """
     made = dict(base)
     made[START_VARIABLE] = os.pathsep.join(map(str, finder.starts))
@@ -28,7 +28,7 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
     folders: dict[str, None] = {}
     for name, share in finder.packages().items():
         if is_substitute(share):
-            continue  # programs that look for packages with us find it, and others have no use for it
+            continue  # programs that use our finder find it, and others cannot use it
         prefix = install_prefix(share)
         if not is_installed(share):
             root = python_root(share, name)
@@ -43,7 +43,7 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
 
 
 def python_folders(prefix: Path, package: str) -> Iterator[Path]:
-    """Where the Python modules of an installed package lie, a link to its sources (``--symlink-install``) included."""
+    """The folders of an installed package's Python modules, links to its sources (``--symlink-install``) included."""
     for pattern in ("lib/python*/site-packages", "local/lib/python*/dist-packages"):
         yield from prefix.glob(pattern)
     for hook in (prefix / "share" / package / "hook").glob("pythonpath*.dsv"):

@@ -1,6 +1,6 @@
-"""Reading what a ``CMakeLists.txt`` installs, without CMake.
+"""Reading the install rules of a ``CMakeLists.txt``, without CMake.
 
-Packages of descriptions, launch files, scripts and interfaces compile nothing; what CMake would do for them is to copy.
+Packages of descriptions, launch files, scripts and interfaces compile nothing; CMake only copies files for them.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class PathPattern:
     Attributes:
         text: the pattern.
         is_regex: whether it is a regular expression, which may match anywhere in the path.
-        is_excluded: whether what it matches stays out.
+        is_excluded: whether it excludes its matches.
     """
 
     text: str
@@ -88,9 +88,9 @@ class CopyRule:
 
     Attributes:
         kind: ``FILES``, ``PROGRAMS`` or ``DIRECTORY``.
-        items: what, relative to the package; the content of a folder where the text ends with a slash.
-        destination: where to, relative to the prefix; None where that is not known.
-        renamed: the name of the one file at its destination, where it changes.
+        items: the sources, relative to the package; the content of a folder if the text ends with a slash.
+        destination: the target folder, relative to the prefix; None if that is not known.
+        renamed: the new name of the one file, if it changes.
         patterns: of files and folders in a folder.
         only_matching: whether only files that match a pattern are copied.
         is_optional: whether it may be missing.
@@ -116,9 +116,9 @@ class CopyRule:
         return self._takes([f"/{folder.rstrip('/')}/{path}" for path in (*list(inside.parents)[:-1], inside)])
 
     def may_lack(self, item: str) -> bool:
-        """Whether the build goes on without one of the items.
+        """Whether the build continues without one of the items.
 
-        CMake asks the patterns first: what is not there is no folder for it, and ``FILES_MATCHING`` passes over it.
+        CMake applies the patterns first: a missing item does not count as a folder, and ``FILES_MATCHING`` skips it.
         """
         return self.is_optional or not self._takes([f"/{item.rstrip('/')}"])
 
@@ -132,18 +132,18 @@ class CopyRule:
 
 @dataclass
 class CMakeFile:
-    """A ``CMakeLists.txt`` with what it calls and includes.
+    """A ``CMakeLists.txt`` with the files that it calls and includes.
 
     Attributes:
         project: the name of the project, or None.
-        copies: what it copies.
+        copies: its copy rules.
         targets: the names of the programs that it builds or installs.
         interfaces: the interface files that it generates code for, relative to the package.
         modules: the Python packages and modules that it installs, folders and files relative to the package.
         hooks: the installed files that set variables where the package is used, relative to the prefix.
-        compiled: what it compiles.
+        compiled: its compiled targets.
         foreign: the commands of other packages that it calls, which may install more than was read here.
-        unknown: why it may install more than was read here; empty where that is all.
+        unknown: reasons why it may install more than was read here.
         is_ament: whether it is the one of an ament package.
     """
 
@@ -163,7 +163,7 @@ class CMakeFile:
 
     @property
     def is_complete(self) -> bool:
-        """Whether it installs nothing but what was read here and what it compiles."""
+        """Whether this describes everything that it installs except the targets that it compiles."""
         return not self.unknown
 
     @property
@@ -178,7 +178,7 @@ class CMakeFile:
 
     @property
     def required(self) -> list[Argument]:
-        """The files and folders that have to be there."""
+        """The files and folders that must exist."""
         return [item for rule in self.copies for item in rule.items if not rule.may_lack(item.text)]
 
     @property
@@ -201,21 +201,21 @@ class CMakeFile:
         return argument.source.span(argument.start, argument.end)
 
     def installed(self, package: Path) -> Iterator[InstalledFile]:
-        """What is copied, file by file.
+        """The copied files, one by one.
 
         Args:
             package: the package's folder.
 
         Raises:
-            FileNotFoundError: a file or folder is not there; the exception carries its name.
+            FileNotFoundError: a file or folder does not exist; the exception carries its name.
         """
         return self._files(package, None)
 
     def moved(self, package: Path, share: str) -> Iterator[InstalledFile]:
-        """What is copied, without what is not there and what keeps its place.
+        """The copied files that exist and whose path changes.
 
-        A file or folder keeps its place if it lies in the package as it lies in the share folder. So do most, and
-        folders of them need not be read. Some of what is copied to other folders is left out, too.
+        A path does not change if it is the same in the package and in the share folder. This holds for most folders,
+        which then need not be read. Some files that are copied to other folders are left out, too.
 
         Args:
             package: the package's folder.
@@ -281,7 +281,7 @@ def _overlap(one: PurePosixPath, other: PurePosixPath) -> bool:
 
 
 def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
-    """What a ``CMakeLists.txt`` says.
+    """Read the install rules of a ``CMakeLists.txt``.
 
     Args:
         source: the file.
@@ -291,7 +291,7 @@ def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
     program = CMakeProgram(package)
     for command in program.run(source):
         _take(file, command, program)
-    file.unknown += [f"what its command {name}() installs is not known here" for name in program.unknown]
+    file.unknown += [f"the effect of its command {name}() is not known here" for name in program.unknown]
     return file
 
 
@@ -343,7 +343,7 @@ def _in_build(word: str, program: CMakeProgram) -> str:
 
 
 def _take_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
-    """Environment hooks: copied, or made of a template whose name ends with ``.in``."""
+    """Read environment hooks: copied, or made from a template whose name ends with ``.in``."""
     for word in command.words:
         if is_open(word):
             continue
@@ -390,7 +390,7 @@ def _install(file: CMakeFile, command: Command) -> None:
     elif kind == "TARGETS":
         file.targets |= {item.text for item in items}
     elif kind in ("CODE", "SCRIPT"):
-        file.unknown.append(f"what install({kind}) does is not known here")
+        file.unknown.append(f"the effect of install({kind}) is not known here")
 
 
 def _add(file: CMakeFile, rule: CopyRule, command: Command) -> None:
@@ -407,7 +407,7 @@ def _add(file: CMakeFile, rule: CopyRule, command: Command) -> None:
 
 
 def _following(words: Sequence[str], keyword: str) -> str | None:
-    """The word after a keyword; None where there is none."""
+    """The word after a keyword; None if there is none."""
     at = words.index(keyword) + 1 if keyword in words else len(words)
     return words[at] if at < len(words) else None
 

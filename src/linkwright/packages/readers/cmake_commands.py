@@ -1,7 +1,7 @@
-"""The commands of which it is known what they install: those of CMake and of ROS' build tools.
+"""The commands whose installed files are known: those of CMake and of ROS' build tools.
 
-A package that is found may bring others, such as ``pal_register_modules`` of pal_module_cmake, which is nowhere to be
-read; what they install is not known here.
+A package may bring other commands, such as ``pal_register_modules`` of pal_module_cmake. Their definitions cannot be
+read here, so their installed files are not known.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ _OF_FAMILIES = lazy_pattern(
     r"|python3?_add_\w+|moveit_package|xacro_add_files|add_(message|service|action)_files"
     r"|add_\w*(test|gmock)\w*"
 )
-"""Commands by their beginnings; what of them installs, such as ``ament_python_install_package``, is read."""
+"""Commands by their beginnings; those that install, such as ``ament_python_install_package``, are read."""
 
 
 def is_followed(command: str) -> bool:
-    """Return whether it is known what a command, in lower case, installs."""
+    """Return whether the installed files of a command, in lower case, are known."""
     return command in _OF_CMAKE or bool(_OF_FAMILIES.fullmatch(command))

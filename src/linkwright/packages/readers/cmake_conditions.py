@@ -24,30 +24,30 @@ _BINARY = frozenset({"MATCHES", "IN_LIST"}) | {
 }
 _MOST_WORDS = 200
 _LONGEST_SEARCH = 0.2
-"""Seconds for a regular expression, which may come from strangers."""
+"""Seconds for a regular expression, which may come from an untrusted file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of a condition: its text with known variables put in, and whether it stands in quotes."""
+    """A word of a condition: its text with known variables filled in, and whether it is quoted."""
 
     text: str
     is_quoted: bool = False
 
     @property
     def keyword(self) -> str:
-        """What it means as an operator; empty in quotes."""
+        """Its text as an operator; empty if it is quoted."""
         return "" if self.is_quoted else self.text
 
 
 @dataclass(slots=True)
 class Condition:
-    """A condition that is worked out.
+    """Evaluates a condition.
 
     Args:
-        words: what is asked.
+        words: the words of the condition.
         variables: those that are known; ``MATCHES`` sets ``CMAKE_MATCH_...``.
-        is_there: whether a path exists, or is a folder where ``IS_DIRECTORY`` is asked; None where that is not known.
+        is_there: whether a path exists, or is a folder for ``IS_DIRECTORY``; None if that is not known.
     """
 
     words: Sequence[Word]
@@ -56,7 +56,7 @@ class Condition:
     _at: int = 0
 
     def answer(self) -> bool | None:
-        """Whether it holds; None where that cannot be told."""
+        """Whether it holds; None if that is not known."""
         if len(self.words) > _MOST_WORDS:
             return None
         found = self._either()
@@ -158,7 +158,7 @@ class Condition:
 
 
 def matched(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
-    """The places where a regular expression of CMake matches, each with its groups; None where it is none here."""
+    """The places where a regular expression of CMake matches, each with its groups; None if it is invalid here."""
     import regex
 
     try:

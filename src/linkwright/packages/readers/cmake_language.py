@@ -1,8 +1,8 @@
-"""CMake's language as far as it says what a package installs: commands in the order in which CMake would run them.
+"""CMake's language as far as it decides which files a package installs: commands in the order that CMake runs them.
 
-Variables, lists, texts, loops, functions and macros of the file, subdirectories and included files are followed, and
-so are patterns of files and the conditions that can be answered here. What only CMake itself knows, such as what
-``find_package`` sets, is not: of such a condition all branches are read, and a variable that two branches set
+Variables, lists, texts, loops, functions and macros of the file, subdirectories and included files are followed;
+so are patterns of files and the conditions that can be answered here. Facts that only CMake knows, such as the
+variables of ``find_package``, are not: of such a condition all branches are read, and a variable that two branches set
 differently has no value. A variable whose value is not known stays in the text as ``${...}``.
 """
 
@@ -41,7 +41,7 @@ _OF_A_COMMAND = 1_000
 """So many characters count as much as a command."""
 
 SOURCE, BUILD, PREFIX = "<source>", "<build>", "<prefix>"
-"""What the folder of the package, that of the build and that of the installation are called in values of variables."""
+"""The names of the package's, build's and installation's folders in values of variables."""
 
 _PLATFORM = {
     "WIN32": "1" if os.name == "nt" else "0",
@@ -68,9 +68,9 @@ class Command:
 
     Attributes:
         name: in lower case.
-        arguments: what it is given.
+        arguments: its arguments.
         folder: the folder of its ``CMakeLists.txt``, relative to the package; empty for the package's own.
-        is_conditional: whether it stands in a branch of an ``if`` of which it is not known whether it is taken.
+        is_conditional: whether it is in a branch of an ``if`` whose condition is not known.
     """
 
     name: str
@@ -97,14 +97,14 @@ class _Routine:
 
 @dataclass(slots=True)
 class CMakeProgram:
-    """A ``CMakeLists.txt`` that is run as far as that can be done.
+    """Runs a ``CMakeLists.txt`` as far as possible.
 
     Args:
-        package: the folder of the package, for subdirectories, included files and patterns; None when there is none.
+        package: the folder of the package, for subdirectories, included files and patterns; None if there is none.
 
     Attributes:
         variables: name -> value; items of a list are separated by semicolons.
-        unknown: the commands, such as ``foreach``, of which it is not known what they do.
+        unknown: the commands, such as ``foreach``, whose effect is not known.
     """
 
     package: Path | None
@@ -127,14 +127,14 @@ class CMakeProgram:
     _routines: dict[str, _Routine] = field(default_factory=dict)
     _folder: str = ""
     _conditions: int = 0
-    _around: dict[str, int] = field(default_factory=dict)  # the conditions around what return() and break() leave
+    _around: dict[str, int] = field(default_factory=dict)  # the conditions around the blocks that are left
     _leaving: str = ""
     _for_parent: dict[str, str] = field(default_factory=dict)
     _depth: int = 0
     _count: int = 0
 
     def run(self, source: SourceText) -> Iterator[Command]:
-        """The commands of a file, and of what it calls and includes."""
+        """The commands of a file, with those of the functions that it calls and the files that it includes."""
         try:
             yield from self._run_file(source)
         except _TooMuchError as error:
@@ -182,7 +182,7 @@ class CMakeProgram:
             yield from self._run_foreach(words, body)
 
     def _run_branches(self, opening: Statement, body: Sequence[Statement]) -> Iterator[Command]:
-        """The branch that is taken; where that cannot be told, all that may be."""
+        """The commands of the branch that is taken; if that is not known, of all branches that may be."""
         is_uncertain = False
         for condition, branch in branches(opening, body):
             answer = True if condition is None else self._holds(condition)
@@ -352,7 +352,7 @@ class CMakeProgram:
     # --- variables ---------------------------------------------------------------------------------------------------
 
     def _assign(self, name: str, words: list[str]) -> None:
-        """Keep what a command says about variables."""
+        """Apply a command that sets variables."""
         if name == "project" and words:
             self.variables["PROJECT_NAME"] = self.variables["CMAKE_PROJECT_NAME"] = words[0]
             self.variables |= {f"{words[0]}_SOURCE_DIR": SOURCE, f"{words[0]}_BINARY_DIR": BUILD}
@@ -401,12 +401,12 @@ class CMakeProgram:
     def _change_list(self, words: list[str]) -> None:
         for target, value in list_command(words[0], words[1:], self._value).items():
             if words[0] in ("APPEND", "PREPEND"):
-                self.variables[target] = value  # in a branch too: what may be in a list is in it
+                self.variables[target] = value  # in a branch too: a possible item counts as an item
             else:
                 self._set(target, value)
 
     def _matching(self, words: list[str], *, recursive: bool) -> str:
-        """What ``file(GLOB...)`` finds."""
+        """The files that ``file(GLOB...)`` matches."""
         base: str | None = None
         with_folders = not recursive
         patterns: list[str] = []
@@ -480,12 +480,12 @@ class CMakeProgram:
 
 
 def _environment(name: str) -> str | None:
-    """What CMake sees of the environment: the variables of ROS."""
+    """An environment variable as CMake sees it; only those of ROS are visible."""
     return os.environ.get(name, ROS_VARIABLES[name]) if name in ROS_VARIABLES else None
 
 
 def _range(words: Sequence[str]) -> range:
-    """The numbers of ``foreach(i RANGE ...)``, which has its last number, too; none where that cannot be told."""
+    """The numbers of ``foreach(i RANGE ...)``, the last one included; empty if the words are not integers."""
     try:
         numbers = [int(word) for word in words]
     except ValueError:

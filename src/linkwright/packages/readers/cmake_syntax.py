@@ -39,13 +39,13 @@ def is_open(text: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """An argument as it is written.
+    """An argument of a command.
 
     Attributes:
         text: without quotes.
         start: where it begins.
         end: where it ends.
-        is_quoted: whether it stands in quotes or brackets, so that it is one argument whatever is in it.
+        is_quoted: whether it is in quotes or brackets, so that it is one argument whatever its content.
         has_variables: whether ``${...}`` in it is replaced.
     """
 
@@ -100,7 +100,7 @@ def _argument(piece: re.Match[str]) -> Token:
 
 
 def end_of_block(commands: Sequence[Statement], at: int, name: str) -> int:
-    """Where the block ends whose first command stands before a place; the end of all where it does not end."""
+    """Where the block ends whose first command precedes `at`; the end of all commands if it is not closed."""
     depth = 1
     for index in range(at, len(commands)):
         depth += (commands[index].name == name) - (commands[index].name == ENDS[name])
@@ -110,7 +110,7 @@ def end_of_block(commands: Sequence[Statement], at: int, name: str) -> int:
 
 
 def branches(opening: Statement, body: Sequence[Statement]) -> Iterator[tuple[Statement | None, Sequence[Statement]]]:
-    """The branches of an ``if``: the command with the condition, None for ``else``, and what stands in the branch."""
+    """The branches of an ``if``: the command with the condition (None for ``else``) and the commands of the branch."""
     condition: Statement | None = opening
     depth = start = 0
     for index, command in enumerate(body):

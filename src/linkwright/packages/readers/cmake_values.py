@@ -13,7 +13,7 @@ from linkwright.packages.readers.cmake_conditions import matched
 from linkwright.packages.readers.cmake_syntax import is_open
 
 UNKNOWN = "${}"
-"""The value of a variable that cannot be told."""
+"""The value of a variable whose value is not known."""
 
 _LONGEST_SEARCH = 0.2
 _MOST_DIGITS = 10**15
@@ -27,7 +27,7 @@ _OPERATORS: dict[type[ast.operator], Callable[[int, int], int]] = {
 
 
 class _NotKnownError(Exception):
-    """It is not known here what a command does."""
+    """The effect of a command is not known here."""
 
 
 def items_of(text: str) -> list[str]:
@@ -36,11 +36,11 @@ def items_of(text: str) -> list[str]:
 
 
 def list_command(what: str, words: Sequence[str], value_of: Callable[[str], str]) -> dict[str, str]:
-    """What a command ``list(WHAT ...)`` sets.
+    """The variable that a command ``list(WHAT ...)`` sets, and its value.
 
     Args:
         what: its first word.
-        words: those behind it.
+        words: the other words.
         value_of: gives the value of a variable.
     """
     if not words:
@@ -107,7 +107,7 @@ def _transformed(item: str, words: Sequence[str]) -> str:
 
 
 def string_command(words: Sequence[str], value_of: Callable[[str], str]) -> dict[str, str]:
-    """What a command ``string(...)`` sets.
+    """The variables that a command ``string(...)`` sets, with their values.
 
     Args:
         words: its arguments.
@@ -185,7 +185,7 @@ def _number(node: ast.expr) -> int:
 
 
 def part_of_name(path: str, part: str) -> str:
-    """What ``get_filename_component`` gives: a part of a path."""
+    """The part of a path that ``get_filename_component`` returns."""
     name = posixpath.basename(path)
     parts = {
         "NAME": name,
@@ -202,7 +202,7 @@ def part_of_name(path: str, part: str) -> str:
 
 
 def version_variables(words: Sequence[str]) -> dict[str, str]:
-    """What ``project(...)`` sets besides the name: the version, empty where it has none."""
+    """The version variables that ``project(...)`` sets; empty strings without a version."""
     at = words.index("VERSION", 1) + 1 if "VERSION" in words[1:] else len(words)
     version = words[at] if at < len(words) else ""
     numbers = [*version.split("."), *[""] * 4]

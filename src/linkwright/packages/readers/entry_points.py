@@ -85,7 +85,7 @@ def option_lines(text: str, section: str, option: str) -> list[str]:
 
 
 def text_of(path: Path) -> str:
-    """The text of a file; nothing where it cannot be read."""
+    """The text of a file; empty if it cannot be read."""
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError:

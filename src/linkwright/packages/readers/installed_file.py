@@ -17,8 +17,8 @@ class InstalledFile(NamedTuple):
     Attributes:
         source: relative to the package.
         destination: relative to the prefix.
-        values: of the placeholders in it, where ``configure_file`` fills them in; None where it is copied as it is.
-        content: what is in it, where the build writes it; None where it is made of its source.
+        values: of the placeholders in it, if ``configure_file`` fills them in; None if it is copied as it is.
+        content: its content, if the build writes it; None if it is made from its source.
     """
 
     source: str
@@ -28,11 +28,11 @@ class InstalledFile(NamedTuple):
 
     @property
     def is_made(self) -> bool:
-        """Whether the build makes it, so that it is no copy of its source."""
+        """Whether the build makes it instead of copying its source."""
         return self.values is not None or self.content is not None
 
     def text(self, package: Path) -> str:
-        """What is in a file that the build makes.
+        """The content of a file that the build makes.
 
         Raises:
             OSError: its source cannot be read.

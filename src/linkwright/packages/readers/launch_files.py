@@ -22,7 +22,7 @@ _JOINING = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitut
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Something written in a launch file: its text, its node and where it stands."""
+    """An expression of a launch file: its text, its node and its place."""
 
     text: str
     node: ast.expr
@@ -31,7 +31,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class StartedNode:
-    """A ``Node`` of a launch file: package and executable, each None where that cannot be told."""
+    """A ``Node`` of a launch file: package and executable, each None if it is not known."""
 
     package: Place | None
     executable: Place | None
@@ -39,7 +39,7 @@ class StartedNode:
 
 @dataclass(frozen=True, slots=True)
 class SharedFile:
-    """A path in a share folder that a launch file puts together."""
+    """A path in a share folder that a launch file composes."""
 
     package: str
     path: str
@@ -52,13 +52,13 @@ class LaunchFile:
 
     Attributes:
         path: its path below the package.
-        error: the syntax error, where it is no Python.
+        error: the syntax error, if it is not valid Python.
         python: the parsed file, or None.
-        has_function: whether it defines ``generate_launch_description``, or gets names from elsewhere that may.
-        is_test: whether it is run by launch_testing or pytest, which ask for other functions.
-        nodes: what it starts.
-        shares: the packages whose share folder it asks for.
-        paths: the whole paths that it makes in share folders.
+        has_function: whether it defines ``generate_launch_description``, or imports names that may include it.
+        is_test: whether launch_testing or pytest runs it; these require other functions.
+        nodes: the nodes that it starts.
+        shares: the packages whose share folder it looks up.
+        paths: the complete paths in share folders that it composes.
         imports: the packages that it imports from, with their places.
         made: the files that it writes itself: package and path.
     """
@@ -82,7 +82,7 @@ def is_launch_file(path: str) -> bool:
 
 
 def read_launch_file(source: SourceText, path: str) -> LaunchFile:
-    """What a launch file says; `path` is that below its package."""
+    """Read the facts of a launch file; `path` is relative to its package."""
     facts = LaunchFile(source, path)
     try:
         python = facts.python = PythonFile(source)
@@ -104,7 +104,7 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
     facts.made = frozenset(
         (share_path.package, share_path.rest.strip("/")) for share_path in written if isinstance(share_path, SharePath)
     )
-    with suppress(RecursionError):  # a sum of a thousand terms; the paths in it are not looked at
+    with suppress(RecursionError):  # a sum of a thousand terms; the paths in it are ignored
         _PathReader(python, facts).visit(python.tree)
     return facts
 
@@ -163,7 +163,7 @@ def _place(python: PythonFile, node: ast.expr | None) -> Place | None:
 
 
 class _PathReader(ast.NodeVisitor):
-    """Finds the whole paths: expressions that have a value in a share folder and are no part of a larger path."""
+    """Finds the complete paths: expressions with a value in a share folder that no larger path contains."""
 
     def __init__(self, python: PythonFile, facts: LaunchFile) -> None:
         self._python = python
@@ -174,7 +174,7 @@ class _PathReader(ast.NodeVisitor):
     def visit_Assign(self, node: ast.Assign) -> None:
         names = [target.id for target in node.targets if isinstance(target, ast.Name)]
         if any(name in self._used for name in names):
-            self._inside_path += 1  # the name goes into a longer path
+            self._inside_path += 1  # the name is part of a longer path
             self.generic_visit(node)
             self._inside_path -= 1
         else:

@@ -36,18 +36,18 @@ class Manifest:
         return self.document.root
 
     def text(self, tag: str) -> str | None:
-        """What stands in the first element of a tag, without blanks around it and with single ones inside; or None."""
+        """The text of the first element of a tag, with blanks collapsed and none at the ends; or None."""
         element = self.root.first(tag)
         return None if element is None else " ".join(element.text().split())
 
     @property
     def name(self) -> str | None:
-        """The name of the package, or None where the file gives none."""
+        """The name of the package, or None if the file has none."""
         return self.text("name") or None
 
     @property
     def build_type(self) -> str | None:
-        """What ``<build_type>`` says, or None."""
+        """The text of ``<build_type>``, or None."""
         export = self.root.first("export")
         element = None if export is None else export.first("build_type")
         return None if element is None else element.text().strip()

@@ -1,7 +1,7 @@
-"""The strings and paths that expressions of a Python file stand for, without running it.
+"""The values of expressions in a Python file that are strings and paths, without running it.
 
-Only what needs no guessing gets a value: literals, names that are assigned once, paths that are put together, share
-folders of packages, and patterns of file names. Everything else is `UNKNOWN`, and rules are silent about it.
+Only an expression that needs no guessing gets a value: literals, names that are assigned once, joined paths, share
+folders of packages, and patterns of file names. Every other value is `UNKNOWN`, and rules ignore it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from linkwright.lean_typing import Union
 
 
 class Nothing(Enum):
-    """The value of what cannot be told."""
+    """The value of an expression that cannot be evaluated."""
 
     UNKNOWN = "unknown"
 
@@ -32,7 +32,7 @@ class SharePath:
 
     Attributes:
         package: name of the package.
-        rest: what is behind the folder, such as ``/urdf/robot.urdf``; empty for the folder itself.
+        rest: the path below the folder, such as ``/urdf/robot.urdf``; empty for the folder itself.
     """
 
     package: str
@@ -45,7 +45,7 @@ class Pattern:
 
     Attributes:
         text: the pattern.
-        recursive: whether ``**`` in it stands for any number of folders.
+        recursive: whether ``**`` in it matches any number of folders.
     """
 
     text: str
@@ -69,8 +69,8 @@ class PythonFile:
         tree: its syntax tree.
 
     Raises:
-        SyntaxError: it is no Python.
-        ValueError: it holds a null byte, or is nested too deeply.
+        SyntaxError: it is not valid Python.
+        ValueError: it contains a null byte, or is nested too deeply.
     """
 
     def __init__(self, source: SourceText) -> None:
@@ -79,7 +79,7 @@ class PythonFile:
 
     @cached_property
     def _assigned(self) -> dict[str, ast.expr | None]:
-        """Name -> what it is assigned; None where that happens more than once, or is no single expression."""
+        """Name -> the assigned expression; None if there are several, or if it is not a single expression."""
         found: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
             _note_bindings(node, found)
@@ -90,7 +90,7 @@ class PythonFile:
         return self._assigned.get(name)
 
     def resolved(self, node: ast.expr) -> ast.expr:
-        """An expression, or for a name what it is assigned."""
+        """An expression, or the expression that a name is assigned."""
         for _ in range(_DEEPEST):
             if not isinstance(node, ast.Name):
                 break
@@ -105,7 +105,7 @@ class PythonFile:
 
         Args:
             names: of the functions.
-            owner: what stands before the last part; None for anything.
+            owner: the part of the name before the last; None for any.
         """
         found = [
             node
@@ -158,7 +158,7 @@ class PythonFile:
         return UNKNOWN
 
     def text(self, node: ast.expr | None) -> str | None:
-        """The string that an expression stands for, or None."""
+        """The string that an expression evaluates to, or None."""
         value = self.value(node)
         return value if isinstance(value, str) else None
 
@@ -250,7 +250,7 @@ def _parsed(text: str) -> ast.Module:
 
 
 def called_name(node: ast.Call) -> str:
-    """The dotted name of what is called; empty parts where it is not a name."""
+    """The dotted name of the called function; a part that is not a name is empty."""
     parts: list[str] = []
     function: ast.expr = node.func
     while isinstance(function, ast.Attribute):

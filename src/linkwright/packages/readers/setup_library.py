@@ -1,6 +1,6 @@
-"""What a ``setup.py`` may call while it is followed: functions that put paths together, and that look into its package.
+"""The library that a followed ``setup.py`` may call: functions that compose paths or list files of its package.
 
-Nothing outside of the package is looked at, no file is opened, and no result is large.
+They look at nothing outside of the package, open no file, and return no large results.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class NotKnownError(Exception):
 
 
 def bounded(value: Any) -> Any:
-    """A value, where it is not too large.
+    """Return a value that is not too large.
 
     Raises:
         NotKnownError: it is.
@@ -59,8 +59,8 @@ def bounded(value: Any) -> Any:
 def weight(value: Any, most: int) -> int:
     """How many items a value has, with those in its items and a share for the length of texts, up to a bound.
 
-    A list that holds another one twice, which holds another one twice and so on, is small in memory and without end for
-    whoever prints or compares it.
+    A list that contains another one twice, which contains another one twice and so on, is small in memory but endless
+    to print or compare.
     """
     count, pending = 0, [value]
     while pending and count <= most:
@@ -99,7 +99,7 @@ def percent(template: str, given: Any) -> str:
 
 
 class PackageLibrary:
-    """The functions of ``os``, ``glob`` and ``pathlib``, as they are in the folder of a package.
+    """The functions of ``os``, ``glob`` and ``pathlib``, limited to the folder of a package.
 
     Args:
         folder: the folder, which is the working directory of its ``setup.py``.

@@ -1,7 +1,7 @@
-"""Reading what a ``setup.py`` installs from its syntax tree, without running it.
+"""Reading the files that a ``setup.py`` installs from its syntax tree, without running it.
 
-Each ``$(find PACKAGE)`` of sources reads one. So what is only facts is a named tuple or a plain class here and in what
-this loads: Python makes such a class in a sixth of the time that a data class takes.
+Each ``$(find PACKAGE)`` of sources reads one. So a record of facts is a named tuple or a plain class, here and in the
+modules that this loads: Python makes such a class in a sixth of the time that a data class takes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from linkwright.packages.readers.python_values import Pattern, PythonFile, argum
 
 
 class SyntaxMistake(NamedTuple):
-    """Why a file is no Python, and where."""
+    """The reason why a file is not valid Python, and the place."""
 
     message: str
     span: Span
@@ -30,9 +30,9 @@ class Installed(NamedTuple):
 
     Attributes:
         text: the file or pattern, relative to the package.
-        is_pattern: whether it is handed to ``glob``.
-        recursive: whether ``**`` in it stands for any number of folders.
-        destination: the folder below the prefix that it goes to, or None where that cannot be told.
+        is_pattern: whether it is passed to ``glob``.
+        recursive: whether ``**`` in it matches any number of folders.
+        destination: the folder below the prefix that receives it, or None if that is not known.
         span: where it is written.
     """
 
@@ -64,14 +64,14 @@ class SetupFile:
     """A ``setup.py``.
 
     Attributes:
-        tree: its syntax tree, where it is Python.
-        error: the syntax error, where it is no Python.
+        tree: its syntax tree, if it is valid Python.
+        error: the syntax error, if it is not.
         call: whether it calls ``setup``.
-        name: the name it gives the package, with its place; None where that cannot be told.
-        installed: what ``data_files`` installs.
+        name: the name that it gives the package, with its place; None if that is not known.
+        installed: the files of ``data_files``.
         data_files_span: where ``data_files`` is written, or the call of ``setup``.
         is_complete: whether it installs no other data files than these.
-        packages: the Python packages that it names, with their places; None where they are searched for.
+        packages: the Python packages that it names, with their places; None if it searches for them.
         entry_points: the executables.
         entry_points_complete: whether these are all.
     """
@@ -90,7 +90,7 @@ class SetupFile:
         self.entry_points_complete = True
 
     def installed_files(self, package: Path) -> Iterator[InstalledFile]:
-        """What ``data_files`` installs, file by file, where that can be told.
+        """The files that ``data_files`` installs, one by one, as far as they are known.
 
         Args:
             package: the package's folder.
@@ -109,7 +109,7 @@ class SetupFile:
 
 
 def read_setup(source: SourceText) -> SetupFile:
-    """What a ``setup.py`` says."""
+    """Read the facts of a ``setup.py``."""
     facts = SetupFile(source)
     try:
         python = PythonFile(source)
@@ -129,7 +129,7 @@ def read_setup(source: SourceText) -> SetupFile:
         facts.name = text, python.span(name)
     try:
         _Installing(python, facts).read(argument_of(call, "data_files"), call)
-    except RecursionError:  # lists that are made of each other, or of a thousand terms
+    except RecursionError:  # lists that contain each other, or a thousand terms
         facts.is_complete = False
     _read_packages(python, facts, argument_of(call, "packages"))
     _read_entry_points(python, facts, argument_of(call, "entry_points"))
@@ -137,7 +137,7 @@ def read_setup(source: SourceText) -> SetupFile:
 
 
 def syntax_mistake(source: SourceText, error: SyntaxError | ValueError) -> SyntaxMistake:
-    """Why a text is no Python."""
+    """The reason why a text is not valid Python, and the place."""
     if not isinstance(error, SyntaxError):
         return SyntaxMistake(str(error), source.span(0))
     start = source.offset(error.lineno or 1, max(error.offset or 1, 1))
@@ -215,7 +215,7 @@ class _Installing:
         self._facts.installed.append(Installed(text, pattern is not None, recursive, destination, span))
 
     def _added_to(self, name: str) -> None:
-        """What ``name.append(...)``, ``name.extend(...)`` and ``name += ...`` add."""
+        """The entries that ``name.append(...)``, ``name.extend(...)`` and ``name += ...`` add."""
         for node in ast.walk(self._python.tree):
             if isinstance(node, ast.Call) and called_name(node) in (f"{name}.append", f"{name}.extend"):
                 if len(node.args) != 1:

@@ -1,7 +1,7 @@
-"""Follows a ``setup.py`` that puts its ``data_files`` together with loops and functions, without handing it to Python.
+"""Follows a ``setup.py`` that computes its ``data_files`` with loops and functions, without running it in Python.
 
-Enough of the language is known for that: assignments, loops, conditions, functions, and those functions of the library
-that `linkwright.packages.readers.setup_library` has. What cannot be told has no value, and nothing depends on it.
+It knows enough of the language for that: assignments, loops, conditions, functions, and the library's functions in
+`linkwright.packages.readers.setup_library`. An unknown value is `_UNKNOWN`, and nothing depends on it.
 """
 
 from __future__ import annotations
@@ -50,21 +50,21 @@ _BUILTINS: dict[str, Callable[..., Any]] = {
 
 
 class _Unknown:
-    """The value of what cannot be told."""
+    """The value of an expression that cannot be evaluated."""
 
 
 _UNKNOWN = _Unknown()
 
 
 class _Named:
-    """Something of a module, by its full name."""
+    """A member of a module, by its full name."""
 
     def __init__(self, name: str) -> None:
         self.name = name
 
 
 class _CannotFollowError(Exception):
-    """What cannot be told, or takes long, decides all that follows."""
+    """A value that is unknown, or takes long to compute, decides how the file continues."""
 
 
 class _LeaveError(Exception):
@@ -85,7 +85,7 @@ class _SetupCalledError(Exception):
 
 
 def run_setup(tree: ast.Module, folder: Path) -> list[InstalledFile] | None:
-    """What the ``data_files`` of a ``setup.py`` install, or None where it could not be followed.
+    """The files that the ``data_files`` of a ``setup.py`` install, or None if it could not be followed.
 
     Args:
         tree: the file.
@@ -180,7 +180,7 @@ class _Run:
         value = self._value(ast.BinOp(_loaded(node.target), node.op, node.value))
         before = self._value(_loaded(node.target))
         if isinstance(before, list) and isinstance(value, list):
-            before[:] = value  # the same list, whoever else has it
+            before[:] = value  # the same list, for all its other holders
         else:
             self._bind(node.target, value)
 
@@ -214,7 +214,7 @@ class _Run:
     # --- expressions -------------------------------------------------------------------------------------------------
 
     def _value(self, node: ast.expr) -> Any:
-        """What an expression stands for; _UNKNOWN where that cannot be told."""
+        """The value of an expression; _UNKNOWN if it cannot be evaluated."""
         self._tick()
         try:
             value = bounded(self._evaluated(node))
@@ -239,7 +239,7 @@ class _Run:
     def _truth(self, node: ast.expr) -> bool:
         value = self._value(node)
         if value is _UNKNOWN:
-            raise _CannotFollowError  # which way it goes decides all that follows
+            raise _CannotFollowError  # the branch decides how the file continues
         return bool(value)
 
     def _items(self, value: Any) -> Iterator[Any]:
@@ -453,7 +453,7 @@ class _Run:
 
 
 def _loaded(target: ast.expr) -> ast.expr:
-    """What a target of an assignment stands for before it."""
+    """The expression that reads the target of an assignment."""
     return ast.Name(target.id, ast.Load()) if isinstance(target, ast.Name) else target
 
 

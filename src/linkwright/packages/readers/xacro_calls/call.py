@@ -1,4 +1,4 @@
-"""What a file says of xacro: its calls, the launch files that it includes, and what its open places stand for."""
+"""The facts of a file about xacro: its calls, the launch files that it includes, and the values of its open places."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class XacroCall:
         path: the file.
         arguments: name -> value.
         span: where it is written.
-        is_command: whether it is a command line, in which quotes are taken away.
+        is_command: whether it is a command line, whose quotes are removed.
     """
 
     path: Text
@@ -44,13 +44,13 @@ class Inclusion:
 
 @dataclass
 class CallingFile:
-    """What one file says.
+    """The calls and inclusions of one file.
 
     Attributes:
         path: the file.
         calls: the calls of xacro in it.
         inclusions: the launch files that it includes.
-        choices: name -> what stands in open places.
+        choices: name -> the possible values of open places.
     """
 
     path: str
@@ -77,7 +77,7 @@ class CallingFile:
 
 
 def launch_argument(name: str) -> Open:
-    """The place where a launch argument stands."""
+    """The open place of a launch argument."""
     return Open(_LAUNCH + name)
 
 

@@ -17,7 +17,7 @@ _KEYWORDS = frozenset({"INORDER", "FORMAT", "REMAP", "INSTALL", "DESTINATION", "
 
 
 def read_cmake_calls(source: SourceText, package: Path) -> CallingFile:
-    """What a ``CMakeLists.txt`` says of xacro.
+    """Read the calls of xacro in a ``CMakeLists.txt``.
 
     Args:
         source: its text.
@@ -57,7 +57,7 @@ def _calls(command: Command, package: Path) -> Iterator[tuple[Text, dict[str, Te
 
 
 def _path(word: str, command: Command, package: Path) -> str:
-    """A word with what stands for the package's folder filled in."""
+    """The path of a robot file that a word names, within the package's folder; any other word as it is."""
     if not word.endswith((".xacro", ".urdf")):
         return word
     return str(package / within_package(word, command.folder))

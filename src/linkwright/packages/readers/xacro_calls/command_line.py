@@ -14,9 +14,9 @@ _WITH_VALUE = frozenset({"-o", "--output"})
 
 
 def xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
-    """The file and the arguments of a command line that calls xacro; None for any other.
+    """The file and the arguments of a command line that calls xacro; None for any other command line.
 
-    What stands for words that cannot be told is an argument without a name.
+    Unknown words become an argument without a name.
     """
     words = list(_words(line))
     start = next((at for at, word in enumerate(words) if _is_program(word)), None)
@@ -47,7 +47,7 @@ def _is_program(word: Text) -> bool:
 
 
 def _words(line: Text) -> Iterator[Text]:
-    """The words of a command line; quotes hold blanks together, and stay."""
+    """The words of a command line; quotes protect blanks, and remain."""
     word: list[Text] = []
     quote = ""
     for piece in line:

@@ -20,7 +20,7 @@ _SHARES = frozenset({"find-pkg-share", "find"})
 
 
 def read_xml(source: SourceText) -> CallingFile:
-    """What an XML launch file says of xacro; nothing where it is no XML, or none for launch."""
+    """Read the calls of xacro in an XML launch file; nothing if it is not XML, or not a launch file."""
     file = CallingFile(source.name)
     try:
         root = parse(source.text, source.name).root
@@ -54,7 +54,7 @@ def _offered(element: Element) -> Iterator[Text]:
 
 
 def read_yaml(source: SourceText) -> CallingFile:
-    """What a YAML launch file says of xacro; nothing where it is no YAML, or none for launch."""
+    """Read the calls of xacro in a YAML launch file; nothing if it is not YAML, or not a launch file."""
     import yaml
 
     file = CallingFile(source.name)
@@ -165,7 +165,7 @@ def _commands(text: str, file: str) -> Iterator[Text]:
 
 
 def _line(written: str, file: str) -> Text:
-    """The first argument of ``$(command ...)``, which stands in quotes unless it is one word."""
+    """The first argument of ``$(command ...)``, which is quoted unless it is one word."""
     quote = written[:1]
     if quote in ("'", '"'):
         end = written.rfind(quote)

@@ -19,7 +19,7 @@ _BUILDER = "MoveItConfigsBuilder"
 
 
 def read_python(source: SourceText) -> CallingFile:
-    """What a Python file says of xacro; nothing where it is no Python."""
+    """Read the calls of xacro in a Python file; nothing if it is not valid Python."""
     file = CallingFile(source.name)
     try:
         python = PythonFile(source)
@@ -43,12 +43,12 @@ class _Reader:
         self._told: set[ast.AST] = set()
 
     def read(self) -> None:
-        """Collect what the file says."""
+        """Collect the calls and inclusions of the file."""
         for node, scope in self._nodes:
             if isinstance(node, ast.Call) and called_name(node).endswith("DeclareLaunchArgument"):
                 self._declaration(node, scope)
             elif isinstance(node, ast.Call) and called_name(node).endswith("Command") and node.args:
-                self._told.update(_lists_of(node.args[0], scope))  # which is no list of whole words
+                self._told.update(_lists_of(node.args[0], scope))  # whose items may be parts of words
         for node, scope in self._nodes:
             if node in self._told:
                 self._told.update(ast.iter_child_nodes(node))
@@ -128,7 +128,7 @@ class _Reader:
             argument_of(node, "mappings") or (node.args[1] if len(node.args) > 1 else None), scope
         )
         arguments = dict(_texts_of(mappings.values)) if isinstance(mappings, Entries) else {}
-        self._note((_below_share(folder, file), arguments), node, is_command=True)  # as of what substitutions give
+        self._note((_below_share(folder, file), arguments), node, is_command=True)  # a command, as from substitutions
 
     def _inclusion(self, node: ast.Call, scope: Scope) -> None:
         source = node.args[0] if node.args else argument_of(node, "launch_description_source")

@@ -1,4 +1,4 @@
-"""What the names of a Python file are bound to, function by function."""
+"""The bindings of the names of a Python file, by function."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Binding:
     """One place where a name gets a value.
 
     Attributes:
-        value: the expression; None where there is none that could be read.
+        value: the expression; None if there is none, or it cannot be read.
         path: which item of the value it is, for ``a, (b, c) = value``.
         is_item: whether the name gets the items of the value one after another, as in a loop.
         is_added: whether the value is added to the one before, as by ``+=``, ``append``, ``extend`` and ``update``.
@@ -32,7 +32,7 @@ class Scope:
     """The names of a function, or of the module.
 
     Attributes:
-        around: the scope in which it stands; None for that of the module.
+        around: the enclosing scope; None for that of the module.
         function: the function; None for the module.
         names: name -> where it gets a value.
         entries: name -> the items that it gets by ``name[key] = value``, as key and value.
@@ -54,7 +54,7 @@ class Scope:
 
 
 def walk(tree: ast.Module) -> list[tuple[ast.AST, Scope]]:
-    """The nodes of a file, those outside first, each with the scope that it stands in; all scopes are filled."""
+    """The nodes of a file, outer ones first, each with its scope; all scopes are filled."""
     found: list[tuple[ast.AST, Scope]] = []
     waiting: list[tuple[ast.AST, Scope]] = [(tree, Scope())]
     while waiting:
@@ -88,7 +88,7 @@ def _bind(node: ast.AST, scope: Scope) -> None:
 
 
 def _bind_added(method: ast.Attribute, given: list[ast.expr], scope: Scope) -> None:
-    """Take what a list or mapping of this scope gets by ``append``, ``extend`` or ``update``."""
+    """Record the items that a list or mapping of this scope gets by ``append``, ``extend`` or ``update``."""
     bindings = scope.names.get(method.value.id) if isinstance(method.value, ast.Name) else None
     if bindings and len(given) == 1 and method.attr in ("append", "extend", "update"):
         added = ast.copy_location(ast.List(given, ast.Load()), given[0]) if method.attr == "append" else given[0]

@@ -1,4 +1,4 @@
-"""The texts, lists and mappings that expressions of a Python file stand for, with open places for choices."""
+"""The texts, lists and mappings that expressions of a Python file evaluate to, with open places for choices."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ _PASSING = frozenset(
         *("TextSubstitution", "ParameterValue", "list", "tuple", "sorted", "set"),
     }
 )
-"""Functions that return what they are given, or what stands for it."""
+"""Functions that return their argument, or an equivalent of it."""
 _METHODS = frozenset({"perform", "as_posix", "find", "strip", "resolve", "absolute", "items", "copy", "lower"})
-"""Methods that return what they are called on, or what stands for it."""
+"""Methods that return their object, or an equivalent of it."""
 _FIELD = lazy_pattern(r"\{(\w*)\}")
 
 
@@ -56,15 +56,15 @@ class Entries:
 Value = Union[Text, Items, Entries]  # noqa: UP007 - as for `Text`
 _OPEN: Text = (UNKNOWN,)
 UNKNOWN_ENTRIES: Mapping[str, Value] = {"": _OPEN}
-"""What a mapping may have that this file does not tell."""
+"""The entries that a mapping may have in addition to those in this file."""
 
 
 @dataclass(eq=False)
 class PythonTexts:
-    """Works out what expressions stand for.
+    """Evaluates expressions.
 
     Args:
-        file: gets the choices that are met.
+        file: receives the choices that are found.
         calls: name -> the calls of the functions of this file, with their scopes.
     """
 
@@ -74,7 +74,7 @@ class PythonTexts:
     _names: dict[tuple[int, str], Value] = field(default_factory=dict)
 
     def value(self, node: ast.expr | None, scope: Scope) -> Value:
-        """The value of an expression; an open place where it cannot be told."""
+        """The value of an expression; an open place if it is not known."""
         if node is None or self._depth > _DEEPEST:
             return _OPEN
         self._depth += 1
@@ -84,7 +84,7 @@ class PythonTexts:
             self._depth -= 1
 
     def text(self, node: ast.expr | None, scope: Scope) -> Text:
-        """The text of an expression; items stand one behind another."""
+        """The text of an expression; the texts of items are joined."""
         return _as_text(self.value(node, scope))
 
     def _value(self, node: ast.expr, scope: Scope) -> Value:
@@ -158,7 +158,7 @@ class PythonTexts:
         return _OPEN
 
     def _got(self, owner: ast.expr, node: ast.Call, scope: Scope) -> Value:
-        """What ``mapping.get(key, default)`` gives: the default only where the mapping is known not to have the key."""
+        """The value of ``mapping.get(key, default)``: the default only if the mapping is known not to have the key."""
         key, default = (*node.args, None)[:2] if node.args else (None, None)
         if isinstance(owner, ast.Attribute) and owner.attr == "launch_configurations":
             return self._launch_argument(key, default, scope)
@@ -242,7 +242,7 @@ class PythonTexts:
         home, bindings = found
         key = (id(home), name)
         if key not in self._names:
-            self._names[key] = _OPEN  # for a name that is made of itself
+            self._names[key] = _OPEN  # for a name that depends on itself
             value = self._value_of_name(name, home, bindings)
             self._names[key] = _OPEN if isinstance(value, tuple) and len(value) > _MOST_PIECES else value
         return self._names[key]
@@ -274,7 +274,7 @@ class PythonTexts:
         return value.values[0] if len(value.values) == 1 else self._rows_of(node, value.values, is_certain=True)
 
     def _one_of(self, node: ast.expr | None, values: Sequence[Value]) -> Value:
-        """One of several values, of which it is not known when it is taken."""
+        """One of several values, if the condition of each is not known."""
         lasting = [value for value in values if value != _OPEN]
         if len(lasting) < 2 or not all(isinstance(each, tuple) for each in lasting):
             return lasting[0] if lasting else _OPEN
@@ -294,7 +294,7 @@ class PythonTexts:
         return Items(tuple((Open(name, column),) for column in range(columns))) if columns else (Open(name),)
 
     def _parameter(self, name: str, scope: Scope) -> Value:
-        """A parameter of a function: what pytest gives it, or what its calls in this file do."""
+        """The value of a function's parameter: from pytest, or from the calls in this file."""
         function = scope.function
         assert function is not None
         outer = scope.around or scope
@@ -313,7 +313,7 @@ class PythonTexts:
             at = positions.index(name) if name in positions else len(call.args)
             written = argument_of(call, name) or (call.args[at] if at < len(call.args) else default)
             given.append(self.value(written, calling))
-        if not given:  # by what is not in this file
+        if not given:  # all callers are in other files
             value = self.value(default, outer)
             return Entries({**value.values, **UNKNOWN_ENTRIES}) if isinstance(value, Entries) else value
         return given[0] if len(given) == 1 else self._one_of(call, given)
@@ -352,7 +352,7 @@ def _sum(left: Value, right: Value) -> Value:
 
 
 def _filled(parts: Sequence[str], given: Sequence[Text]) -> Text:
-    """The parts of a pattern with what is given between them."""
+    """The parts of a pattern with the given texts between them."""
     found = literal(parts[0])
     for text, part in zip(given, parts[1:], strict=True):
         found = (*found, *text, *literal(part))

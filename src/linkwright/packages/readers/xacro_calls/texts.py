@@ -1,4 +1,4 @@
-"""Texts with open places, as launch files put them together, and what may stand in these places."""
+"""Texts with open places, as launch files compose them, and the possible values of these places."""
 
 from __future__ import annotations
 
@@ -43,16 +43,16 @@ class Open:
 
 Text = tuple[Union[str, Share, Open], ...]  # noqa: UP007 - Python 3.10 cannot join a name that is not yet there
 UNKNOWN = Open("")
-"""A place of which nothing is known."""
+"""A place whose value is not known."""
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What may stand in open places that are filled together.
+    """The possible values of open places that are filled together.
 
     Attributes:
-        rows: what is chosen from; the first is the default.
-        is_certain: whether each row occurs whatever is chosen elsewhere. The branches of an `if` may belong together.
+        rows: the alternatives; the first is the default.
+        is_certain: whether each row occurs with any other rows. The branches of an `if` may belong together.
     """
 
     rows: tuple[tuple[Text, ...], ...]
@@ -64,7 +64,7 @@ class Selection:
     """Which rows are taken.
 
     Attributes:
-        rows: choice -> index of its row; the first where it is not named.
+        rows: choice -> index of its row; the first row if it is missing.
         given: choice -> the text for its first place, whatever its rows are.
     """
 
@@ -83,7 +83,7 @@ def joined(parts: Iterable[Text]) -> Text:
 
 
 def joined_path(parts: Sequence[Text]) -> Text:
-    """Texts as the parts of a path, of which an absolute one begins anew, as ``os.path.join`` has it."""
+    """Texts joined as the parts of a path; an absolute part starts a new path, as in ``os.path.join``."""
     path: Text = ()
     for part in parts:
         first = part[0] if part else ""
@@ -119,12 +119,12 @@ def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, dep
 
 
 def share_mark(package: str) -> str:
-    """How a share folder stands in a text that `resolve` returns."""
+    """The mark of a share folder in a text that `resolve` returns."""
     return f"{_MARK}{package}{_MARK}"
 
 
 def split_mark(path: str) -> tuple[str | None, str]:
-    """The package whose share folder a resolved path begins with, or None, and what follows."""
+    """The package whose share folder a resolved path begins with, or None, and the rest of the path."""
     if not path.startswith(_MARK):
         return None, path
     package, _, rest = path[1:].partition(_MARK)
@@ -171,8 +171,8 @@ def variations(
 ) -> Iterator[tuple[Selection, bool]]:
     """Ways to fill the places of several texts, and whether each is known to occur.
 
-    First every row of every choice occurs, one choice at a time, then come pairs of rows, of which nobody knows whether
-    they are meant to go together. Every combination would be too many.
+    First every row of every choice occurs, one choice at a time, then pairs of rows, which may not belong
+    together. Every combination would be too many.
     """
     names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.given))
     free = [name for name in names if name not in start.rows and len(choices[name].rows) > 1]

@@ -11,7 +11,7 @@ from launch import LaunchDescription
 
 
 def generate_launch_description():
-    """Return the server, and what stands in for the window."""
+    """Return the server, and the substitute for the window."""
     folder = get_package_share_path("gazebo_ros") / "launch"
     return LaunchDescription(
         [

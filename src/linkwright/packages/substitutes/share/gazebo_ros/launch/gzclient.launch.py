@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stands in for Gazebo's window, with the arguments of gazebo_ros' file of this name."""
+"""The substitute for Gazebo's window, with the arguments of gazebo_ros' file of this name."""
 
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.conditions import IfCondition
@@ -13,7 +13,7 @@ IGNORED = ("extra_gazebo_args", "gdb", "help", "profile", "valgrind", "verbose",
 
 
 def start(context):
-    """Return the node that says where the window is."""
+    """Return the node that reports where the window is."""
     required = IfCondition(LaunchConfiguration("gui_required")).evaluate(context)
     on_exit = [Shutdown()] if required else None
     return [Node(package="gazebo_ros", executable="gzclient", on_exit=on_exit)]
@@ -24,7 +24,9 @@ def generate_launch_description():
     return LaunchDescription(
         [
             *(DeclareLaunchArgument(name, default_value="", description="Not used") for name in IGNORED),
-            DeclareLaunchArgument("gui_required", default_value="false", description="Whether all ends with it"),
+            DeclareLaunchArgument(
+                "gui_required", default_value="false", description="Whether to shut down when it ends"
+            ),
             OpaqueFunction(function=start),
         ]
     )

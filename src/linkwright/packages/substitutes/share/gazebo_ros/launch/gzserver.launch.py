@@ -66,10 +66,10 @@ def generate_launch_description():
     declared = {
         "world": (str(empty), "The world: path of a file"),
         "pause": ("false", "Whether the simulation begins paused"),
-        "seed": ("", "What random numbers follow from"),
+        "seed": ("", "The seed of the random numbers"),
         "params_file": ("", "Parameters of the server: path of a YAML file"),
-        "extra_gazebo_args": ("", "Further words of the command line"),
-        "server_required": ("false", "Whether all ends with it"),
+        "extra_gazebo_args": ("", "Further arguments of the command line"),
+        "server_required": ("false", "Whether to shut down when it ends"),
         **{name: (default, "Not used") for name, default in IGNORED.items()},
     }
     arguments = [

@@ -14,9 +14,9 @@ DECLARED = {
     **ARGUMENTS,
     "use_namespace": ("false", "Whether all nodes are in the namespace"),
     "use_composition": ("True", "Whether the servers are composed in a container"),
-    "slam": ("False", "Whether a map is made, instead of finding the robot on one"),
+    "slam": ("False", "Whether to build a map instead of localizing on one"),
     "map": ("", "The map: path of its YAML file"),
-    "use_localization": ("True", "Whether a map is made or the robot found on one at all"),
+    "use_localization": ("True", "Whether to run mapping or localization at all"),
     "params_file": (str(HERE / "params" / "nav2_params.yaml"), "Parameters: path"),
     "graph": ("", "Not used"),
     "keepout_mask": ("", "Not used"),
@@ -34,7 +34,7 @@ def included(context, file, *names):
 
 
 def start(context):
-    """Return the container where there is one, and what is included."""
+    """Return the container, if any, and the included launch files."""
     level = context.launch_configurations["log_level"]
     container = Node(
         package="rclcpp_components",

@@ -14,7 +14,7 @@ SERVERS = (
 
 
 def start(context):
-    """Return the servers; a map that is given goes before that of the parameters."""
+    """Return the servers; a given map overrides that of the parameters."""
     file = context.launch_configurations["map"]
     return managed(
         context, "lifecycle_manager_localization", SERVERS, {"map_server": {"yaml_filename": file}} if file else {}

@@ -13,7 +13,7 @@ MONITOR = Server("nav2_collision_monitor", "collision_monitor", "nav2_collision_
 
 
 def servers(*, is_monitored):
-    """Return what is started; velocities pass the smoother, and the collision monitor where there is one."""
+    """Return the nodes; velocities pass the smoother, and the collision monitor if there is one."""
     smoothed = () if is_monitored else (("cmd_vel_smoothed", "cmd_vel"),)
     return [
         Server("nav2_controller", "controller_server", "nav2_controller::ControllerServer", remappings=(COMMANDED,)),

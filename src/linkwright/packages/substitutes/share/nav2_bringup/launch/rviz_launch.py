@@ -10,9 +10,9 @@ from launch import LaunchDescription
 from linkwright.launch.ros.navigation import is_true
 
 ARGUMENTS = {
-    "namespace": ("navigation", "Put where the view has <robot_namespace>"),
+    "namespace": ("navigation", "The replacement for <robot_namespace> in the view"),
     "use_namespace": ("false", "Whether RViz is in the namespace"),
-    "use_sim_time": ("false", "Whether time is that of the simulation"),
+    "use_sim_time": ("false", "Whether to use simulated time"),
 }
 NAMES = ("tf", "tf_static", "goal_pose", "clicked_point", "initialpose")
 

@@ -12,15 +12,15 @@ from linkwright.launch.ros.navigation import Server, managed
 SERVERS = (Server("nav2_map_server", "map_saver_server", "nav2_map_server::MapSaver", "map_saver"),)
 ARGUMENTS = {
     "namespace": ("", "Namespace of all nodes"),
-    "use_sim_time": ("True", "Whether time is that of the simulation"),
-    "autostart": ("True", "Whether what saves maps is activated at once"),
-    "use_respawn": ("False", "Whether what saves maps is started again if it dies"),
-    "log_level": ("info", "How much is told"),
+    "use_sim_time": ("True", "Whether to use simulated time"),
+    "autostart": ("True", "Whether the map saver is activated at once"),
+    "use_respawn": ("False", "Whether the map saver is restarted if it dies"),
+    "log_level": ("info", "The log level"),
 }
 
 
 def start(context):
-    """Return what saves maps and what makes them, with the parameters for it where the file has some."""
+    """Return the map saver and the mapping node, with its parameters if the file has some."""
     given = context.launch_configurations
     arguments = {"use_sim_time": given["use_sim_time"]}
     if HasNodeParams(given["params_file"], "slam_toolbox").perform(context) == "True":

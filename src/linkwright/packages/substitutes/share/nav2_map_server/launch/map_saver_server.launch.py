@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What saves maps when a service asks for it, and its manager, as nav2_map_server's file of this name."""
+"""The map saver server and its lifecycle manager, as in nav2_map_server's file of this name."""
 
 from launch_ros.actions import Node
 

@@ -9,9 +9,9 @@ from launch import LaunchDescription
 
 ARGUMENTS = {
     "bridge_name": ("ros_gz_bridge", "The node's name"),
-    "config_file": ("", "Which topics it hands over: path of a YAML file"),
-    "namespace": ("", "Where the node is"),
-    "log_level": ("info", "How much it tells"),
+    "config_file": ("", "The topics to bridge: path of a YAML file"),
+    "namespace": ("", "The namespace of the node"),
+    "log_level": ("info", "The log level"),
     "container_name": ("ros_gz_container", "Not used"),
     "create_own_container": ("False", "Not used"),
     "use_composition": ("False", "Not used"),

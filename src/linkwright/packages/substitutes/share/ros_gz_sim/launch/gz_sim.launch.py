@@ -12,17 +12,17 @@ from launch import LaunchDescription
 from linkwright.nodes.gazebo.command_line import gz_server
 
 ARGUMENTS = {
-    "gz_args": ("", "What gz sim is told: its command line"),
+    "gz_args": ("", "The command line of gz sim"),
     "gz_version": ("", "Not used"),
-    "ign_args": ("", "What gz sim is told, where gz_args is empty"),
+    "ign_args": ("", "The command line of gz sim if gz_args is empty"),
     "ign_version": ("", "Not used"),
     "debugger": ("false", "Not used"),
-    "on_exit_shutdown": ("false", "Whether all ends with the simulation"),
+    "on_exit_shutdown": ("false", "Whether to shut down when the simulation ends"),
 }
 
 
 def start(context):
-    """Return the server, or what stands in for the window where that alone is asked for."""
+    """Return the server, or the substitute for the window if only the window is requested."""
     given = LaunchConfiguration("gz_args").perform(context) or LaunchConfiguration("ign_args").perform(context)
     command = gz_server(shlex.split(given))
     required = IfCondition(LaunchConfiguration("on_exit_shutdown")).evaluate(context)

@@ -13,7 +13,7 @@ ARGUMENTS = {
     "model_string": ("", "The model as text"),
     "topic": ("", "The topic that the model is published on"),
     "entity_name": ("", "The model's name"),
-    "allow_renaming": ("False", "Whether it is given another name where that is taken"),
+    "allow_renaming": ("False", "Whether to choose another name if it is taken"),
     "x": ("0.0", "m"),
     "y": ("0.0", "m"),
     "z": ("0.0", "m"),

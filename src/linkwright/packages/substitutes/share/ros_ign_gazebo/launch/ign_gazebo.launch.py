@@ -12,7 +12,7 @@ def generate_launch_description():
     """Return the launch of ros_gz_sim, which reads the same arguments."""
     return LaunchDescription(
         [
-            DeclareLaunchArgument("ign_args", default_value="", description="What ign gazebo is told"),
+            DeclareLaunchArgument("ign_args", default_value="", description="The command line of ign gazebo"),
             DeclareLaunchArgument("ign_version", default_value="", description="Not used"),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource(str(get_package_share_path("ros_gz_sim") / "launch" / "gz_sim.launch.py"))

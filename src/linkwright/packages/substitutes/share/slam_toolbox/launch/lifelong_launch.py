@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A map that goes on being made of a saved one, with the arguments of slam_toolbox's file of this name."""
+"""Mapping that continues from a saved map, with the arguments of slam_toolbox's file of this name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A map made of the newest scans, with the arguments of slam_toolbox's file of this name."""
+"""Mapping from the newest scans, with the arguments of slam_toolbox's file of this name."""
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription

@@ -8,7 +8,7 @@ from launch_ros.actions import Node
 from launch import LaunchDescription
 
 ARGUMENTS = {
-    "use_sim_time": ("true", "Whether time is that of the simulation"),
+    "use_sim_time": ("true", "Whether to use simulated time"),
     "autostart": ("true", "Whether it is activated at once"),
     "use_lifecycle_manager": ("false", "Whether a lifecycle manager activates it"),
 }
@@ -19,7 +19,7 @@ def generate_launch_description():
     managed = LaunchConfiguration("use_lifecycle_manager")
     return LaunchDescription(
         [
-            DeclareLaunchArgument("executable", description="Which of slam_toolbox's nodes"),
+            DeclareLaunchArgument("executable", description="The slam_toolbox node to start"),
             *(
                 DeclareLaunchArgument(name, default_value=default, description=description)
                 for name, (default, description) in ARGUMENTS.items()
