@@ -140,7 +140,7 @@ def test_where_nothing_can_be_restored_the_copy_stays_and_is_named(
         raise OSError(errno.EIO, "Input/output error")
 
     monkeypatch.setattr("os.ftruncate", refuse)
-    with pytest.raises(OSError, match="what was in it is now in") as caught:
+    with pytest.raises(OSError, match="its former content is now in") as caught:
         write_whole_file(file, NEW)
     (copy,) = (path for path in file.parent.iterdir() if path != file)
     assert copy.read_bytes() == OLD

@@ -23,7 +23,7 @@ def parse_assignments(
 
     Args:
         words: the words.
-        malformed: what is said of a word that is not of this form, of the word and a hint.
+        malformed: makes the error for a word that has another form, of the word and a hint.
 
     Raises:
         LinkwrightError: CLI101 by default, for every word that is not of this form.

@@ -1,4 +1,4 @@
-"""Names of a package whose modules are loaded when somebody asks for them, because that takes a while (PEP 562)."""
+"""Names of a package whose modules are loaded on first access, because loading takes a while (PEP 562)."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str]
 
     Args:
         package: its name.
-        names: what each of its modules has, by the module's name below the package.
+        names: the names of each module, by the module's name below the package.
 
     Returns:
-        A function that gives the attribute of a name, and raises AttributeError where it is none of them.
+        A function that returns the attribute of a name, and raises AttributeError for any other name.
     """
 
     def find(name: str) -> Any:

@@ -22,7 +22,7 @@ def run_coroutine(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[]
 
     Args:
         make: gives the coroutine.
-        ready: called when the loop is there and nothing runs on it yet; from then on KeyboardInterrupt may be raised.
+        ready: called when the loop exists and nothing runs on it yet; from then on KeyboardInterrupt may be raised.
 
     Raises:
         KeyboardInterrupt: Ctrl-C was pressed, and the coroutine let itself be cancelled.
@@ -37,7 +37,7 @@ def run_coroutine(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[]
 
 
 def _run(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]) -> T:
-    """What `asyncio.Runner` does, for Python 3.10, which does not have it."""
+    """Run like `asyncio.Runner`, which Python 3.10 lacks."""
     loop = asyncio.new_event_loop()
     try:
         asyncio.set_event_loop(loop)
@@ -64,7 +64,7 @@ def _run(make: Callable[[], Coroutine[Any, Any, T]], ready: Callable[[], object]
 class _Interruptions:
     """While this is entered, the first Ctrl-C cancels a task and the next ones raise KeyboardInterrupt.
 
-    Where somebody else takes care of Ctrl-C, or in another thread than the main one, nothing is changed.
+    It changes nothing if another handler takes care of Ctrl-C, or in a thread other than the main one.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, main: asyncio.Task[Any]) -> None:

@@ -1,11 +1,11 @@
-"""What packages bring to Linkwright, found through their entry points; what comes with us is declared the same way.
+"""Extensions of Linkwright, found through the entry points of packages; our own are declared the same way.
 
-A group is read by the room that it is for: ``linkwright.displays``, ``linkwright.page_features`` and others. The entry
-points of all installed packages are read once, and nothing is imported before somebody loads it.
+A group is read by its room: ``linkwright.displays``, ``linkwright.page_features`` and others. The entry
+points of all installed packages are read once, and each object is imported only when it is loaded.
 
 They are read from where their specification puts them (PyPA, "Entry points specification"), ``*.dist-info`` in the
-folders of the search path. `importlib.metadata` finds them in archives too, but loading it takes as long as all else
-that ``linkwright check`` has to import before it reads a file.
+folders of the search path. `importlib.metadata` finds them in archives too, but loading it takes as long as all other
+imports of ``linkwright check`` before it reads a file.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from linkwright.lean_typing import Any
 
 _OURS = "linkwright."
 _READ = (_OURS, "launch_ros.")
-"""How the groups begin that anybody asks for: ours, and those of launch_ros, which its users' packages extend too."""
+"""The prefixes of the groups in use: ours, and those of launch_ros, which its users' packages extend too."""
 
 
 class EntryPoint(NamedTuple):
-    """An object of an installed package that is to be used by its name.
+    """An object of an installed package that is used by its name.
 
     Attributes:
         name: unique within the group.
@@ -46,22 +46,22 @@ class EntryPoint(NamedTuple):
         """
         module, _, attribute = self.value.partition(":")
         found = import_module(module.strip())
-        attribute = attribute.partition("[")[0].strip()  # extras, which the specification lets stand here
+        attribute = attribute.partition("[")[0].strip()  # extras, which the specification allows here
         return attrgetter(attribute)(found) if attribute else found
 
 
 def extensions(group: str) -> Mapping[str, EntryPoint]:
     """The entry points of a group by name: ours first, then those of other packages, each in the order of names.
 
-    In which order a package declares them does not reach its metadata: some build tools sort them, others do not. A
-    name that two packages bring means the one that was found first; ours cannot be replaced.
+    The order in which a package declares them does not reach its metadata: some build tools sort them, others do not.
+    If two packages declare the same name, the first one found applies; ours cannot be replaced.
 
     Raises:
-        RuntimeError: a group of ours is not there, because the installation's metadata is older than its code.
+        RuntimeError: a group of ours is missing, because the installation's metadata is older than its code.
     """
     found = _all_groups()
     if group.startswith(_OURS) and group not in found:
-        raise RuntimeError(f"Linkwright's metadata lacks the entry points '{group}': install it anew")
+        raise RuntimeError(f"Linkwright's metadata lacks the entry points '{group}': reinstall it")
     return found.get(group, {})
 
 
@@ -97,7 +97,7 @@ def _declarations() -> Iterator[tuple[str, str]]:
 
 
 def _declared(distribution: str, text: str) -> Iterator[tuple[str, EntryPoint]]:
-    """Group and entry point of each line of an ``entry_points.txt`` that somebody here asks for."""
+    """Group and entry point of each line of an ``entry_points.txt`` whose group is in use here."""
     group = ""
     for line in map(str.strip, text.splitlines()):
         if line.startswith("["):

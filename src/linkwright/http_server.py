@@ -1,8 +1,8 @@
 """aiohttp's server without its client, which takes about as long to load.
 
 ``import aiohttp`` loads both, and the client reads the system's certificates twice as it does. Here the package is
-entered without running its ``__init__``, and only the modules that a server needs are loaded. ``__init__`` runs when
-somebody asks for one of its names: a user's node, say, that fetches something.
+entered without running its ``__init__``, and only the modules that a server needs are loaded. ``__init__`` runs at the
+first access to one of its names, for example by a user's node that downloads a file.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from typing import Any
 
 
 def _enter_package() -> None:
-    """Put aiohttp's package among the loaded modules, with nothing in it but what runs its ``__init__``."""
+    """Add aiohttp's package to the loaded modules, empty except for a hook that runs its ``__init__``."""
     spec = find_spec("aiohttp")
     if spec is None or spec.loader is None or spec.origin is None:
-        return  # the import below says what is wrong
+        return  # the import below raises the error
     package, loader, lock = module_from_spec(spec), spec.loader, RLock()
     installed = [path.stem for path in Path(spec.origin).parents[1].glob("aiohttp-*.dist-info")]
 
@@ -50,7 +50,7 @@ if "aiohttp" not in sys.modules:
 try:
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
-except (AttributeError, ImportError):  # a later aiohttp, whose server needs what `__init__` does
+except (AttributeError, ImportError):  # a later aiohttp, whose server needs `__init__`
     _leave_package()
     from aiohttp import web
     from aiohttp.http_exceptions import HttpProcessingError
@@ -59,7 +59,7 @@ __all__ = ["SERVER_LOGGER", "HttpProcessingError", "web"]
 
 
 def _is_the_servers_fault(record: logging.LogRecord) -> bool:
-    """Keep what a client did out of the log: a malformed request, which is answered with 400, and leaving early."""
+    """Keep a client's mistakes out of the log: a malformed request, which is answered with 400, and leaving early."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, (HttpProcessingError, web.RequestPayloadError, ConnectionError))
 

@@ -1,6 +1,6 @@
-"""Reading files that may be pipes or devices: nobody waits for a writer who is not there, and every reading ends.
+"""Reading files that may be pipes or devices: no read waits for a missing writer, and each one ends.
 
-Opening a named pipe (FIFO) waits until somebody opens its other end, which may be never. It imports little, because
+Opening a named pipe (FIFO) waits until a program opens its other end, which may be never. It imports little, because
 short commands load it.
 """
 
@@ -13,9 +13,9 @@ import stat
 
 _FIRST_READ = 1 << 17  # most files are shorter, and room for more takes time to get
 _NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0)  # Windows has no such pipes
-_FLAGS = os.O_RDONLY | _NOT_BLOCKING | getattr(os, "O_BINARY", 0)  # Windows reads texts if not told otherwise
+_FLAGS = os.O_RDONLY | _NOT_BLOCKING | getattr(os, "O_BINARY", 0)  # Windows reads texts by default
 _pipes: dict[tuple[int, int], bytes] = {}
-"""Device and number of a pipe -> what was read from it: a pipe says it once, and a command may ask twice."""
+"""Device and number of a pipe -> its content: a pipe can be read once, and a command may read twice."""
 
 
 LARGEST_TEXT = 100_000_000
@@ -23,17 +23,17 @@ LARGEST_TEXT = 100_000_000
 
 
 class NoWriterError(OSError):
-    """A pipe has nothing in it, and nobody has opened it for writing."""
+    """A pipe is empty, and no program has opened it for writing."""
 
 
 def read_file(path: str | os.PathLike[str], at_most: int) -> bytes:
-    """What is in a file, up to so many bytes.
+    """The content of a file, up to so many bytes.
 
-    Of a pipe it is all that is written to it until its writers have closed it, as with ``<(command)`` in a shell. When
-    nobody writes to it any more, that is what was read before.
+    For a pipe, that is everything written to it until its writers have closed it, as with ``<(command)`` in a shell; if
+    it has no writer any more, the content that was read before.
 
     Raises:
-        OSError: it cannot be read; `NoWriterError`, it is a pipe that nobody writes to.
+        OSError: it cannot be read; `NoWriterError`, it is a pipe without a writer.
     """
     descriptor = os.open(path, _FLAGS)
     try:
@@ -57,7 +57,7 @@ def _content(descriptor: int, path: str | os.PathLike[str], at_most: int) -> byt
         first: bytes | None = file.read(1) if stat.S_ISFIFO(kind.st_mode) else None  # None: there will be something
         identity = kind.st_dev, kind.st_ino
         if first == b"" and identity not in _pipes:
-            raise NoWriterError(errno.ENXIO, "it is a pipe, and nobody writes to it", os.fspath(path))
+            raise NoWriterError(errno.ENXIO, "it is a pipe without a writer", os.fspath(path))
         if first == b"":
             return _pipes[identity][:at_most]
         if _NOT_BLOCKING:
@@ -73,7 +73,7 @@ def read_text(path: str | os.PathLike[str], encoding: str = "utf-8") -> str:
 
     Raises:
         OSError: see `read_file`; or it has `LARGEST_TEXT` bytes or more.
-        UnicodeDecodeError: it is no text.
+        UnicodeDecodeError: it is not text.
     """
     data = read_file(path, LARGEST_TEXT)
     if len(data) == LARGEST_TEXT:

@@ -5,7 +5,7 @@ It imports next to nothing itself, so that little time passes before it works.
 
 from __future__ import annotations
 
-import _signal  # type: ignore[import-not-found]  # what ``signal`` is made of, without the enumerations around it
+import _signal  # type: ignore[import-not-found]  # the core of ``signal``, without the enumerations around it
 import _thread
 import os
 import sys
@@ -27,32 +27,32 @@ if TYPE_CHECKING:
 
 
 INTERRUPTED = 130
-"""The exit status of a program that Ctrl-C ended: 128 and the number of SIGINT, as shells say it."""
+"""The exit status of a program that Ctrl-C ended: 128 and the number of SIGINT, as in shells."""
 
 _SOON_SECONDS = 0.01
 
 
 def end_at_once() -> None:
-    """Let Ctrl-C, and any other SIGINT, end the process from now on without a word: there is nothing to clean up.
+    """Let Ctrl-C, and any other SIGINT, end the process from now on without a message: there is nothing to clean up.
 
-    So it is, too, where the process was started to ignore it: scripts do that with all that they start with ``&``, and
-    end it by ``kill -INT``. ROS's programs obey there as well, whose rclpy and rclcpp install handlers in any case.
+    This also holds if the process was started to ignore it: scripts do that to every program that they start with
+    ``&``, and end it by ``kill -INT``. ROS's programs obey it too: rclpy and rclcpp install handlers in any case.
     """
     if _signal.getsignal(_signal.SIGINT) in (_signal.default_int_handler, _signal.SIG_IGN):
         _signal.signal(_signal.SIGINT, _end)
 
 
 def raise_interrupts() -> None:
-    """Let Ctrl-C raise KeyboardInterrupt again: somebody catches it from now on."""
+    """Let Ctrl-C raise KeyboardInterrupt again, for a handler from now on."""
     if _signal.getsignal(_signal.SIGINT) is _end:
         _signal.signal(_signal.SIGINT, _signal.default_int_handler)
         when_lost(lambda: signal_again(_signal.SIGINT))
 
 
 def when_lost(deliver: Callable[[], None]) -> Callable[[Any], Any]:
-    """Have a KeyboardInterrupt delivered again that Python drops, with a word about it, and nobody gets to catch.
+    """Deliver a KeyboardInterrupt again that Python drops with a message and no code can catch.
 
-    That is one that comes while a destructor runs or a weak reference is told, which imports do all the time.
+    Python drops one that arrives in a destructor or in a weak reference's callback; imports run these all the time.
 
     Args:
         deliver: called in a thread of its own, a moment later.

@@ -5,7 +5,7 @@ The standard library writes the methods of a class as text and compiles them whe
 quarter of its time. Here ``__init__`` is compiled for the first object, and all classes share the other methods.
 
 To type checkers these are `dataclasses.dataclass`, `field` and `replace`, of which they take the arguments that are
-used here. What `dataclasses` offers for a class or an object, such as ``fields`` and ``asdict``, works for these too.
+used here. The functions of `dataclasses` for a class or an object, such as ``fields`` and ``asdict``, accept these too.
 `NamedTuple` is that of `typing`, without compiling the text of each annotation.
 """
 
@@ -118,7 +118,7 @@ def _own_fields(cls: type) -> Iterator[tuple[str, _Field]]:
 
 
 def _first_init(self: Any, *args: Any, **kwargs: Any) -> None:
-    """The ``__init__`` of a class of which there are no objects yet: it compiles that of all others."""
+    """The ``__init__`` of a class without objects so far: it compiles that of all later objects."""
     cls: Any = next(each for each in type(self).__mro__ if vars(each).get("__init__") is _first_init)
     cls.__init__ = _compiled_init(cls)
     cls.__init__(self, *args, **kwargs)
@@ -162,7 +162,7 @@ def _replace(thing: Any, /, **changes: Any) -> Any:
     return type(thing)(**changes)
 
 
-# --- what all classes share ------------------------------------------------------------------------------------------
+# --- shared by all classes --------------------------------------------------------------------------------------------
 
 
 def _repr(self: Any) -> str:
@@ -207,7 +207,7 @@ def _set_state(self: Any, state: list[Any]) -> None:
 
 
 class _Told:
-    """What `dataclasses` notes on a class, worked out when somebody asks for it."""
+    """An attribute that `dataclasses` sets on a class, computed on first access."""
 
     def __init__(self, name: str) -> None:
         self._name = name

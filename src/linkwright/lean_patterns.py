@@ -25,7 +25,7 @@ class _Pattern:
 
     def __getattr__(self, name: str) -> Any:
         # Python comes here for a name that it has not found: the next time it finds this one.
-        if name.startswith("__"):  # such as those that `copy` asks for
+        if name.startswith("__"):  # such as those that `copy` looks up
             raise AttributeError(name)
         value = getattr(re.compile(self._text, self._flags), name)
         setattr(self, name, value)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 
 _UNKNOWN = 2
-"""What is taken where the system does not tell."""
+"""The number to use if the system does not report one."""
 
 
 def usable_processors() -> int:
-    """The number of processors that this process may use; those of the machine where it cannot be bound to some."""
+    """The number of processors that this process may use; those of the machine if the system has no affinity."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or _UNKNOWN

@@ -1,7 +1,7 @@
 """A pytest plugin: a plain ``python -m pytest`` imports ``rclpy``, ``launch`` and messages, as tests do under ROS 2.
 
-pytest loads it in every environment that has Linkwright. It offers what a shell of Linkwright offers by ``PYTHONPATH``,
-and imports nothing before a test asks for it. Where a real rclpy is installed it offers nothing.
+pytest loads it in every environment that has Linkwright. It offers the modules that a shell of Linkwright adds to
+``PYTHONPATH``, and imports nothing before a test does. If a real rclpy is installed, it offers nothing.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _LINTER_MARKERS = {
 
 
 def _offer_stand_ins() -> None:
-    """Do what Python does at its start where ``PYTHONPATH`` names the folder."""
+    """Add the folder as Python does at its start if ``PYTHONPATH`` names it."""
     if str(_STARTUP) in sys.path:
         return
     sys.path.append(str(_STARTUP))

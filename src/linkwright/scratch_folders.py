@@ -1,8 +1,8 @@
 """Temporary folders that do not outlive their process for long, however it ends.
 
-A folder goes when it is closed, or when Python ends. A process that is killed leaves it, so whoever makes the next one
-removes those whose process is gone. That is known by a lock on the folder (flock(2)), which ends
-with the process. A number in the name would not do: containers that share ``/tmp`` count processes each for themselves.
+A folder is removed when it is closed, or when Python ends. A process that is killed leaves it, so the next process that
+makes one removes the folders of processes that have ended. A lock on the folder (flock(2)), which ends with the
+process, marks those in use. A process ID in the name would not do: containers that share ``/tmp`` have their own IDs.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class ScratchFolder(TemporaryDirectory[str]):
     """A temporary folder.
 
     Args:
-        purpose: what the folder is for, a word of its name.
+        purpose: a word of the folder's name.
         place: the folder that it is made in; that of the system for temporary files when left out.
     """
 
@@ -46,7 +46,7 @@ class ScratchFolder(TemporaryDirectory[str]):
 
 
 def forget_abandoned(place: Path) -> None:
-    """Remove the scratch folders of processes that are gone; what cannot be removed stays."""
+    """Remove the scratch folders of processes that have ended; folders that cannot be removed stay."""
     if sys.platform == "win32":  # there are no locks on folders
         return
     with suppress(OSError):
@@ -72,7 +72,7 @@ def _forget_if_abandoned(entry: os.DirEntry[str]) -> None:
 
 
 def _locked(folder: Path) -> int | None:
-    """Lock a folder until this file descriptor is closed; None where somebody else has it, or there are no locks."""
+    """Lock a folder until this file descriptor is closed; None if it is locked already, or there are no locks."""
     if sys.platform == "win32":
         return None
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)

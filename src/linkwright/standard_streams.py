@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class _WholeWrites(io.RawIOBase):
-    """A file without a buffer that takes all of what is written, or raises OSError."""
+    """A file without a buffer that writes all bytes it is given, or raises OSError."""
 
     def __init__(self, raw: io.RawIOBase) -> None:
         self._raw = raw
@@ -43,9 +43,9 @@ class _WholeWrites(io.RawIOBase):
 
 
 def _take_all() -> None:
-    """Have standard output without a buffer (``python -u``, ``PYTHONUNBUFFERED``) say so when a disk is full.
+    """Let unbuffered standard output (``python -u``, ``PYTHONUNBUFFERED``) raise an error if a disk is full.
 
-    A write to such a stream may take a part alone, on a disk that has room for no more, and Python drops the rest.
+    A write to such a stream may write only a part, on a full disk, and Python drops the rest.
     """
     out = sys.stdout
     if isinstance(out, io.TextIOWrapper) and isinstance(out.buffer, io.FileIO):
@@ -53,10 +53,10 @@ def _take_all() -> None:
 
 
 def take_any_text() -> None:
-    """Have standard streams take every text, and all of it, where they do not.
+    """Let standard streams write every text, and all of it.
 
-    Files and pipes get and give UTF-8, as files of descriptions are; so does Python itself from 3.15 on (PEP 686). What
-    a terminal has no letters for is written as its number, as it is where ``PYTHONIOENCODING`` names an encoding.
+    Files and pipes use UTF-8, like files of descriptions, and like Python itself from 3.15 on (PEP 686). A
+    character that a terminal lacks is written as its number, as with an encoding in ``PYTHONIOENCODING``.
     """
     _take_all()
     chosen = bool(os.environ.get("PYTHONIOENCODING"))

@@ -1,6 +1,6 @@
-"""Files that are being written and have an end, such as recordings: they are finished before the process is ended.
+"""Files that are being written and need an end, such as recordings: they are finished before the process ends.
 
-What ends a process without waiting for its event loop, which may hang, calls `finish_all` first.
+Code that ends a process without waiting for its event loop, which may hang, calls `finish_all` first.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ class Unfinished(Protocol):
     """Something whose end is written by another thread than its own, if need be."""
 
     def finish(self) -> object:
-        """Write the end, and nothing afterwards; called from any thread, and no matter what its own one does."""
+        """Write the end, and nothing afterwards; called from any thread, even if its own one is busy."""
 
 
 _unfinished: WeakValueDictionary[int, Unfinished] = WeakValueDictionary()

@@ -1,4 +1,4 @@
-"""Writing a file whole or not at all: whatever goes wrong, the file that was there is still there.
+"""Writing a file completely or not at all: on any failure, the existing file is unchanged.
 
 All commands write their files by this. It imports little, because short commands load it: neither pathlib nor secrets.
 """
@@ -16,18 +16,18 @@ _LONGEST_NAME = 200  # bytes; a draft's name gets some more, and 255 are allowed
 
 
 def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: int | None = None) -> None:
-    """Write a file beside the one that is there and put it in its place; a link stays a link.
+    """Write a file beside the existing one, then replace that one; a link stays a link.
 
-    Where the folder does not allow that, or the file is a mount of its own, as Docker makes them, the file is written
-    in place, with a copy of what was in it beside it or in the folder for temporary files until that is done.
+    If the folder does not allow that, or the file is a mount of its own, as Docker makes them, the file is written
+    in place; until that is done, a copy of its content is beside it or in the folder for temporary files.
 
     Args:
         path: the file; its folder must exist. Devices and pipes are written to as they are.
-        data: what it shall hold; a text is written as UTF-8, with its own line ends.
-        mode: its permissions; when left out those it has, or the usual ones of a new file.
+        data: the new content; a text is written as UTF-8, with its own line ends.
+        mode: its permissions; by default its current ones, or the usual ones of a new file.
 
     Raises:
-        OSError: it cannot be written; then it holds what it held before.
+        OSError: it cannot be written; then its content is unchanged.
     """
     content = data.encode("utf-8") if isinstance(data, str) else data
     target = os.path.realpath(os.fspath(path))
@@ -46,7 +46,7 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
 
 
 def _permissions(path: str) -> int | None:
-    """Those of a file that is there; None where there is none, or something else."""
+    """The permissions of an existing file; None if there is none, or if it is not a file."""
     try:
         facts = os.stat(path)
     except OSError:
@@ -67,7 +67,7 @@ def _replace(target: str, content: bytes, mode: int | None) -> None:
 
 
 def _write_in_place(target: str, content: bytes) -> None:
-    """Write over a file; when that fails, what was in it is written back, and stays in the copy if that fails too."""
+    """Write over a file; on failure its content is restored, or stays in the copy if that fails too."""
     with open(target, "r+b", buffering=0) as file:
         before = file.readall()
         copy = _copy(target, before)
@@ -78,7 +78,7 @@ def _write_in_place(target: str, content: bytes) -> None:
                 _overwrite(file.fileno(), before)
             except OSError:
                 if isinstance(error, OSError):
-                    error.strerror = f"{error.strerror}; what was in it is now in '{copy}'"
+                    error.strerror = f"{error.strerror}; its former content is now in '{copy}'"
                 raise error from None
             _remove(copy)
             raise

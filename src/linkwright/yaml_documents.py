@@ -1,4 +1,4 @@
-"""YAML that a user wrote, as nodes that know their places, and one way to tell of mistakes in it."""
+"""YAML that a user wrote, as nodes that know their places, and one form for mistakes in it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def read_source(path: Path, what: Phrase, code: str) -> SourceText:
         code: of the error.
 
     Raises:
-        LinkwrightError: it is not there, or cannot be read.
+        LinkwrightError: it does not exist, or cannot be read.
     """
     shown = display_path(path)
     try:
@@ -52,13 +52,13 @@ class YamlDocument:
 
     Args:
         source: its text.
-        code: of the diagnostics that tell what is wrong in it.
+        code: of the diagnostics about mistakes in it.
 
     Attributes:
         root: its node; None in an empty text.
 
     Raises:
-        LinkwrightError: it is no YAML, or nested too deeply.
+        LinkwrightError: it is not YAML, or nested too deeply.
     """
 
     def __init__(self, source: SourceText, code: str) -> None:

@@ -153,8 +153,8 @@ def test_a_text_in_gbk_is_known_by_its_pairs() -> None:
 def test_a_template_is_named_for_what_it_is(text: str, language: str, column: int) -> None:
     code, message, _, at, hint = told(text)
     assert (code, at) == ("XML206", column)
-    assert message == f"this is a template in {language}, of which XML is yet to be made"
-    assert "give that file" in str(hint)
+    assert message == f"this is a {language} template, not XML"
+    assert "pass that file" in str(hint)
 
 
 def test_what_is_wrong_before_a_template_begins_is_told_first() -> None:

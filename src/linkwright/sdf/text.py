@@ -34,7 +34,7 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
         message = phrase("the XML declaration '<?xml' must be the very first thing in the file")
         source = SourceText(name, text)
         span = source.span(late.start(1), late.start(1) + len("<?xml"))
-        warnings.append(forbidden(message, span, source, phrase("remove what stands before it"), _READ_ALL_THE_SAME))
+        warnings.append(forbidden(message, span, source, phrase("remove everything before it"), _READ_ALL_THE_SAME))
         read_as = read_as[: late.start(1)] + re.sub(r"\S", " ", late[1]) + read_as[late.end(1) :]
     try:
         document, more = parse_as_tinyxml(text, name, _READ_ALL_THE_SAME, read_as=read_as)

@@ -8,7 +8,7 @@ it searches every object of the program.
 from __future__ import annotations
 
 import gc
-from _thread import allocate_lock  # what threading.Lock is, without the rest of it
+from _thread import allocate_lock  # threading.Lock without the rest of threading
 
 _SELDOM = 50_000
 """After how many new objects the collector looks all the same."""
@@ -18,7 +18,7 @@ _before = (0, 0, 0)
 
 
 class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
-    """Let the garbage collector run less often inside a ``with`` block; what is new then counts as old."""
+    """Let the garbage collector run less often inside a ``with`` block; new objects then count as old."""
 
     def __enter__(self) -> None:
         global _active, _before  # noqa: PLW0603 - there is one collector for the whole process
@@ -34,7 +34,7 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
         with _lock:
             _active -= 1
             if _active == 0:
-                if gc.get_freeze_count() == 0:  # all that is new grows old without being looked at
+                if gc.get_freeze_count() == 0:  # new objects become old without a collection
                     gc.freeze()
                     gc.unfreeze()
                 gc.set_threshold(*_before)

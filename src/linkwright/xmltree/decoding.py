@@ -1,6 +1,6 @@
 """From the bytes of a file to its text.
 
-A text that is valid UTF-8 is read as UTF-8 whatever its XML declaration says, as ros/xacro does; only a text that is
+A text that is valid UTF-8 is read as UTF-8 against any XML declaration, as ros/xacro does; only a text that is
 not is read in the encoding that it declares.
 """
 
@@ -29,7 +29,7 @@ _UTF_16_OF_XML = (b"<\0", b"\0<")
 _LIKE_GBK = rb"(?:[\x00-\x7f]|[\xa1-\xf7][\xa1-\xfe])+"  # compiled if needed
 """A text in which bytes beyond ASCII come in pairs, as in GBK and other encodings of East Asia."""
 _BEGINNING_OF_BINARY = 1024
-"""Bytes in which pictures, archives, programs and meshes have a zero."""
+"""Images, archives, programs and meshes have a zero among this many bytes."""
 
 
 class Decoded(NamedTuple):
@@ -43,7 +43,7 @@ def decode(data: bytes, name: str) -> str:
     """The text of a file, without its byte order mark.
 
     Raises:
-        LinkwrightError: XML104 when the bytes are no text in the encoding that holds for them.
+        LinkwrightError: XML104 if the bytes are not text in the file's encoding.
     """
     return decoded(data, name).text
 
@@ -57,7 +57,7 @@ def decoded(data: bytes, name: str) -> Decoded:
     _refuse_pointer(data, name)
     for mark, encoding in _BYTE_ORDER_MARKS:
         if data.startswith(mark):
-            return _decode(data[len(mark) :], encoding, name, phrase("its byte order mark says so"))
+            return _decode(data[len(mark) :], encoding, name, phrase("its byte order mark specifies it"))
     _refuse_binary(data, name)
     try:
         return Decoded(data.decode(UTF_8))
@@ -68,7 +68,7 @@ def decoded(data: bytes, name: str) -> Decoded:
         if declared is None:
             return _decode(data, UTF_8, name, phrase("it declares no other encoding"))
         encoding = declared[1].decode("ascii")
-        return _decode(data, encoding, name, phrase("its XML declaration says so"))
+        return _decode(data, encoding, name, phrase("its XML declaration specifies it"))
 
 
 def unsaved(text: str, name: str) -> Decoded:
@@ -96,7 +96,7 @@ def _refuse_binary(data: bytes, name: str) -> None:
         hint = phrase("save the file as UTF-8")
     elif not beginning.lstrip().startswith(b"<"):
         message = phrase("'{name}' is not a text", name=name)
-        hint = phrase("it has bytes as pictures, archives and programs have; is it the file you meant?")
+        hint = phrase("it has bytes like those of images, archives and programs; is it the file you meant?")
     else:
         return
     source = SourceText(name, "")

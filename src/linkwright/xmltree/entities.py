@@ -21,7 +21,7 @@ class EntityGuard:
         return bool(self._values)
 
     def declare(self, name: str, value: str) -> None:
-        """Remember an internal entity; of two with one name the first holds, as XML says."""
+        """Remember an internal entity; of two with the same name the first applies, as in XML."""
         self._values.setdefault(name, value)
 
     def growth(self, text: str) -> int:

@@ -25,41 +25,41 @@ _CLOSING_TAG = lazy_pattern(r"</\s*([^\s>]*)\s*>?")
 _BARE_ATTRIBUTE = lazy_pattern(r"([^\s=/>\"'<]+)\s*$")
 _UNQUOTED = lazy_pattern(r"([^\s=/>\"'<]+)\s*=\s*$")
 _QUOTE_LEFT_OPEN = lazy_pattern(r"""([^\s=/>"'<]+)\s*=\s*(["'])[^"'<>]*\s[^\s=/>"'<]+\s*=\s*\2$""")
-"""A value that ends in what looks like the next attribute: name="a type=" and so on."""
+"""A value whose end looks like the next attribute: name="a type=" and so on."""
 _LONE_AMPERSAND = lazy_pattern(r"&[^\s;&<>\"']*$")
 _TEMPLATES = (
     (
         lazy_pattern(r"<%.*?%>", re.DOTALL),
         "ERB",
-        phrase("run `erb TEMPLATE > FILE`, and give that file"),
+        phrase("run `erb TEMPLATE > FILE`, and pass that file"),
     ),
-    (lazy_pattern(r"\{[%#].*?[%#]\}", re.DOTALL), "Jinja", phrase("have Jinja make a file of it, and give that file")),
+    (lazy_pattern(r"\{[%#].*?[%#]\}", re.DOTALL), "Jinja", phrase("render it with Jinja, and pass that file")),
 )
-"""What stands in templates, the name of their language, and what to do."""
+"""Signs of templates, the name of their language, and a hint."""
 _DASHES_IN_COMMENT = lazy_pattern(r"<!--(?:(?!-->).)*--$", re.DOTALL)
 _NAME = lazy_pattern(r"[^\s=/>\"'&;<]+")
 
 _CURVED_QUOTES = tuple("\u201c\u201d\u2018\u2019\u201e")
 _AS_FAR_BACK = 200
-"""Characters before a mistake that are looked at."""
+"""The number of characters before a mistake that are searched."""
 
 _ADDRESSES = {"xacro": "http://www.ros.org/wiki/xacro", "xi": "http://www.w3.org/2001/XInclude"}
 """Of the prefixes that descriptions use."""
 _AMPERSAND_HINT = phrase("write '&amp;' for the character '&'")
 _AND_HINT = phrase("write 'and' in an expression, or '&amp;' for each '&'")
 _MERGE_MARK = "<<<<<<< "
-"""What git begins a conflict with that it leaves in a file."""
+"""The beginning of a conflict that git leaves in a file."""
 _LESS_HINT = phrase("close the quotes of the attribute before it, or write '&lt;' for the character '<'")
 
 
 def syntax_error(
     source: SourceText, error: ExpatError, offset: int, open_elements: list[tuple[str, int]]
 ) -> LinkwrightError:
-    """The error for what expat stumbled over.
+    """The error for a mistake that expat found.
 
     Args:
         source: the text being read.
-        error: what expat says.
+        error: expat's error.
         offset: character offset at which it stopped.
         open_elements: name and offset of each element not yet closed, outermost first.
     """
@@ -132,7 +132,7 @@ class _Fault:
             )
         if code == _MISPLACED_DECLARATION:
             message = phrase("the XML declaration '<?xml' must be the very first thing in the file")
-            return self._diagnostic("XML206", message, 5, hint=phrase("remove what stands before it"))
+            return self._diagnostic("XML206", message, 5, hint=phrase("remove everything before it"))
         if code == _NO_ELEMENT:
             return self._diagnostic(
                 "XML206", phrase("there is no root element"), hint=phrase("a robot starts with <robot name=...>")
@@ -147,11 +147,11 @@ class _Fault:
         return self._diagnostic("XML206", _words(error))
 
     def _template(self) -> Diagnostic | None:
-        """A text that a program makes XML of, where what that program replaces is what XML forbids."""
+        """A template whose placeholders XML forbids."""
         for pattern, language, hint in _TEMPLATES:
             tag = pattern.search(self._text)
             if tag is not None and tag.start() <= self._offset:
-                message = phrase("this is a template in {language}, of which XML is yet to be made", language=language)
+                message = phrase("this is a {language} template, not XML", language=language)
                 return self._diagnostic("XML206", message, len(tag[0].split("\n")[0]), at=tag.start(), hint=hint)
         return None
 
@@ -211,7 +211,7 @@ class _Fault:
         return self._diagnostic("XML203", phrase("this tag is never finished"), length, hint=hint)
 
     def _no_xml(self) -> Diagnostic:
-        hint = phrase("an XML file holds nothing but comments before its root element")
+        hint = phrase("an XML file may have only comments before its root element")
         begin = len(self._text) - len(self._text.lstrip())
         return self._diagnostic("XML206", phrase("this is not XML"), at=begin, hint=hint)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from _thread import allocate_lock  # what threading.Lock is, without the rest of it
+from _thread import allocate_lock  # threading.Lock without the rest of threading
 from collections.abc import Iterator
 
 from linkwright.diagnostics import SourceText, Span
@@ -11,7 +11,7 @@ from linkwright.xmltree.decoding import UTF_8
 
 
 class Text:
-    """Character data. `cdata` tells a CDATA section, which is written back as one and never evaluated."""
+    """Character data. `cdata` marks a CDATA section, which is written back as one and never evaluated."""
 
     __slots__ = ("cdata", "data", "offset", "source")
 
@@ -23,7 +23,7 @@ class Text:
 
 
 class Comment:
-    """A comment; `data` is what stands between the dashes."""
+    """A comment; `data` is the text between the dashes."""
 
     __slots__ = ("data", "offset", "source")
 
@@ -54,9 +54,9 @@ class Element:
         children: elements, texts, comments and processing instructions, in document order.
         source: the text it was read from; None for an element made by a program.
         offset: character offset of its ``<`` in that text.
-        origin: what produced it when it was not simply read (the xacro room's chain of macro calls), else None.
-        plan: what the xacro room has worked out about expanding it, else None; whoever changes an element of a tree
-            that was expanded sets it back to None, on the elements around as well.
+        origin: what produced it if it was not simply read (the xacro room's chain of macro calls), else None.
+        plan: the xacro room's plan for expanding it, else None; to change an element of a tree
+            that was expanded, set it to None, on the elements around as well.
     """
 
     __slots__ = ("attributes", "children", "offset", "origin", "plan", "source", "tag")
@@ -138,13 +138,13 @@ _lock = allocate_lock()
 
 
 class LazyCopy(Element):
-    """An element that comes out as it was read: a copy of another one, made when somebody looks into it.
+    """An element that stays as it was read: a copy of another one, made on first access.
 
-    Most of a description is only written again, for which the original will do.
+    Most of a description is only written again, and the original is enough for that.
 
     Attributes:
         original: the element that it is a copy of; None once it has attributes and children of its own.
-        plan: where the text of the original is kept.
+        plan: holds the text of the original.
     """
 
     __slots__ = ("original",)
@@ -168,7 +168,7 @@ class LazyCopy(Element):
         return object.__getattribute__(self, name)
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> Any:
-        """For `copy` and `pickle`, who look into it."""
+        """For `copy` and `pickle`, which read the state."""
         _ = self.children
         return super().__reduce_ex__(protocol)
 
@@ -198,16 +198,16 @@ Node = Element | Text | Comment | ProcessingInstruction
 
 
 class Document:
-    """A parsed document: what stands before the root, the root, what stands after it.
+    """A parsed document: the nodes before the root, the root, the nodes after it.
 
     Attributes:
         prolog: comments and processing instructions before the root.
         root: the root element.
         epilog: comments and processing instructions after the root.
         doctype: the document type declaration as it is written back, or None.
-        doctype_index: how many nodes of the prolog stand before the document type declaration.
+        doctype_index: how many nodes of the prolog precede the document type declaration.
         source: the text it was read from; None for a document made by a program.
-        encoding: what the file was in; ``utf-8`` for all that is valid as such, and for what was no file.
+        encoding: of the file; ``utf-8`` for any text that is valid as such, and for texts without a file.
     """
 
     __slots__ = ("doctype", "doctype_index", "encoding", "epilog", "prolog", "root", "source")

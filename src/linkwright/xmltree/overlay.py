@@ -1,4 +1,4 @@
-"""Texts that stand for those of files."""
+"""Texts that replace those of files."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ class Overlay:
         self._documents: dict[str, Document] = {}
 
     def text(self, path: str | os.PathLike[str]) -> str | None:
-        """The text that stands for that of a file, or None where the disk has it."""
+        """The text that replaces that of a file, or None if the disk has the text."""
         return self._texts.get(_key(path)) if self._texts else None
 
     def document(self, path: str) -> Document | None:
-        """The document of such a text, parsed once; None where the disk has it.
+        """The document of such a text, parsed once; None if the disk has the text.
 
         Raises:
-            LinkwrightError: the text is no XML; see `linkwright.xmltree.parse`.
+            LinkwrightError: the text is not XML; see `linkwright.xmltree.parse`.
         """
         text = self.text(path)
         if text is None:

@@ -1,4 +1,4 @@
-"""Smallest changes of a text of XML: where elements stand in it, and replacing ranges of it.
+"""Smallest changes of a text of XML: the places of elements in it, and replacing ranges of it.
 
 Everything outside the ranges, formatting and comments included, stays as it is.
 """
@@ -65,13 +65,13 @@ def newline_of(text: str) -> str:
 
 
 def indentation(text: str, offset: int) -> str | None:
-    """The blanks before a place in its line; None when something else stands there."""
+    """The blanks before a place in its line; None if the line has other characters there."""
     before = text[text.rfind("\n", 0, offset) + 1 : offset]
     return before if not before.strip() else None
 
 
 def start_tag_of(element: Element) -> StartTag | None:
-    """The start tag of an element in its source; None for one that is not written there: made, or by an entity."""
+    """The start tag of an element in its source; None if it is not written there: made, or by an entity."""
     if element.source is None:
         return None
     text = element.source.text
@@ -108,7 +108,7 @@ def element_range(element: Element) -> tuple[int, int] | None:
 
 
 def whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
-    """A range with the lines that it stands in, their ends included, where nothing else stands there."""
+    """A range with its complete lines, line ends included, unless the lines have other content."""
     line_start = text.rfind("\n", 0, start) + 1
     line_end = text.find("\n", end)
     line_end = len(text) if line_end < 0 else line_end + 1
@@ -120,9 +120,9 @@ def block(element: Element, indent: str = "", step: str = _STEP, newline: str = 
     """An element as it is written into a file, without a line end after it.
 
     Args:
-        element: made by a program; its text, if any, is all that it holds.
+        element: made by a program; it contains either elements or text.
         indent: before each line but the first.
-        step: before the children, besides.
+        step: additional indentation of the children.
         newline: between the lines.
     """
     opening = element.tag + "".join(f' {name}="{escaped(value)}"' for name, value in element.attributes.items())

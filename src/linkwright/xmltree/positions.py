@@ -1,7 +1,7 @@
-"""Where things stand inside a start tag.
+"""Places of names and values inside a start tag.
 
-The tree keeps only the offset of each ``<``. What lies inside the tag is found by reading the tag again, which is
-done only for the few places that a message or the viewer asks about.
+The tree keeps only the offset of each ``<``. Places inside the tag are found by reading the tag again, which is
+done only for the few places that a message or the viewer needs.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] 
 
 
 def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] | None:
-    """Character offsets of an attribute's name in the start tag at `offset`, or None when it is not there."""
+    """Character offsets of an attribute's name in the start tag at `offset`, or None if the tag lacks it."""
     found = _attributes(text, offset).get(name)
     return found and found[0]
 
 
 _Ranges = dict[str, tuple[tuple[int, int], tuple[int, int]]]
 _read_last: tuple[str, int, _Ranges] = ("", -1, {})
-"""The tag that was read last: who asks for one attribute often asks for the next, and a tag may have thousands."""
+"""The tag that was read last: callers often ask for its next attribute, and a tag may have thousands."""
 
 
 def _attributes(text: str, offset: int) -> _Ranges:
@@ -60,14 +60,14 @@ def _attributes(text: str, offset: int) -> _Ranges:
 def raw_offset(text: str, start: int, end: int, index: int) -> int:
     """Character offset in the source of one character of a value.
 
-    The value may be shorter than what is written: an entity such as ``&lt;`` stands for one character, and so do the
+    The value may be shorter than its source: an entity such as ``&lt;`` yields one character, and so do the
     two characters of a Windows line end.
 
     Args:
-        text: the whole source text.
+        text: the complete source text.
         start: where the written value begins.
         end: where it ends (exclusive).
-        index: index of the character in the value as the tree has it.
+        index: index of the character in the value of the tree.
     """
     at = start
     for _ in range(index):

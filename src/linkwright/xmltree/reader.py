@@ -6,7 +6,7 @@ import os
 import re
 from bisect import bisect_right
 from collections.abc import Callable
-from pyexpat import ExpatError, ParserCreate  # what xml.parsers.expat is, without the packages around it
+from pyexpat import ExpatError, ParserCreate  # xml.parsers.expat without its packages
 
 from linkwright.diagnostics import (
     Diagnostic,
@@ -40,10 +40,10 @@ def parse(
 
     Args:
         text: the document; bytes are decoded as a file is.
-        name: what a reader knows the text by: a path, or a name in angle brackets such as ``<stdin>``.
-        blanks: whether to keep texts of nothing but blanks, which only matter to who writes the document again.
-        read_as: what to read in place of the text, with everything in the same place; for languages whose own parsers
-            take what XML forbids.
+        name: the name of the text in messages: a path, or a name in angle brackets such as ``<stdin>``.
+        blanks: whether to keep texts of nothing but blanks, which only matter if the document is written again.
+        read_as: the text to read instead, with everything in the same place; for languages whose own parsers
+            accept text that XML forbids.
         any_prefix: whether names may have prefixes that are declared nowhere.
 
     Raises:
@@ -66,7 +66,7 @@ def parse_file(path: str | Path) -> Document:
 
 
 def read_bytes(path: str | Path) -> bytes:
-    """The bytes of a file, or a `LinkwrightError` (XML101, XML102, XML103) that says why there are none."""
+    """The bytes of a file, or a `LinkwrightError` (XML101, XML102, XML103) that gives the reason."""
     try:
         data = read_file(path, LARGEST_TEXT)
     except FileNotFoundError:
@@ -77,14 +77,14 @@ def read_bytes(path: str | Path) -> bytes:
         hint = _missing(os.path.join(path, "_.xacro"))  # noqa: PTH118 - pathlib takes long to import
         raise LinkwrightError(Diagnostic("XML102", message, hint=hint)) from None
     except NoWriterError:
-        pipe = phrase("it is a pipe, and nobody writes to it")
+        pipe = phrase("it is a pipe without a writer")
         message = phrase("cannot read '{path}': {reason}", path=path, reason=pipe)
         raise LinkwrightError(
             Diagnostic("XML103", message, hint=phrase("start the program that writes to it first"))
         ) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        advice = phrase("is it yours to read?") if isinstance(error, PermissionError) else None
+        advice = phrase("do you have permission to read it?") if isinstance(error, PermissionError) else None
         raise LinkwrightError(
             Diagnostic(
                 "XML103", phrase("cannot read '{path}': {reason}", path=path, reason=foreign(reason)), hint=advice
@@ -106,9 +106,9 @@ def _missing(path: str | Path) -> Phrase:
 class _Reader:
     """Builds the tree from expat's events.
 
-    Positions are byte offsets while reading, which is what expat gives; for a text that is not plain ASCII they are
+    Positions are expat's byte offsets while reading; for a text that is not plain ASCII they are
     turned into character offsets at the end. Nearly all events are starts, ends and texts, whose handlers are
-    therefore closures over what they need.
+    therefore closures.
     """
 
     def __init__(self, source: SourceText, *, blanks: bool, read_as: str | None, any_prefix: bool) -> None:
@@ -120,7 +120,7 @@ class _Reader:
         self._keep_blanks = blanks
         self._parser = parser = ParserCreate("utf-8")
         parser.buffer_text = True
-        parser.specified_attributes = True  # the defaults of a DTD are not written, so they are not there
+        parser.specified_attributes = True  # the defaults of a DTD are not written, so the tree lacks them
         parser.buffer_size = max(1024, min(len(self._data), 1 << 20))
         parser.CommentHandler = self._comment
         parser.ProcessingInstructionHandler = self._instruction
@@ -132,7 +132,7 @@ class _Reader:
         parser.ExternalEntityRefHandler = self._external_entity
         parser.SkippedEntityHandler = self._skipped_entity
         self._entities = EntityGuard()
-        self._top = Element("")  # holds the root and what stands outside it
+        self._top = Element("")  # holds the root and the nodes outside it
         self._open = [self._top]
         self._cdata_at: int | None = None
         self._doctype: str | None = None
@@ -167,7 +167,7 @@ class _Reader:
             if self._cdata_at is not None or (children and isinstance(children[-1], Text)):
                 self._more_characters(data, children)
                 return
-            # Expat hands text over when it meets what follows it, so its place is counted back from there.
+            # Expat passes text on when it meets the next node, so its place is counted back from there.
             at = parser.CurrentByteIndex - len(data)
             if not (is_ascii and text.startswith(data, at)):
                 at = self._text_start(data)

@@ -1,7 +1,7 @@
 """Characters in place of those that TinyXML2 accepts and expat refuses, as many as there were.
 
 Each repair gets a text and the place of its first mistake. It returns the text with all mistakes of that kind replaced,
-or unchanged where the mistake is of another kind. `put_back` then restores what was written in the tree.
+or unchanged if the mistake is of another kind. `put_back` then restores the original characters in the tree.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def stand_in(character: str) -> str:
 
 
 def can_stand_in(text: str) -> bool:
-    """Whether a text has none of the characters that stand in for others."""
+    """Whether a text has none of the replacement characters."""
     return _ANY.search(text) is None
 
 
@@ -72,7 +72,7 @@ REPAIRS = (_control_characters, _less_than_in_values, _missing_blanks)
 
 
 def put_back(document: Document, text: str) -> None:
-    """Restore in a tree what was replaced in the text that it was read from."""
+    """Restore in a tree the characters that were replaced in its text."""
     shortened: dict[int, list[_Value]] = {}
     for value in _crowded(text):
         shortened.setdefault(value.tag, []).append(value)
@@ -91,7 +91,7 @@ def put_back(document: Document, text: str) -> None:
 
 
 class _Value(NamedTuple):
-    """The value of an attribute: where its tag begins, its name, and where it stands, without its quotes."""
+    """The value of an attribute: where its tag begins, its name, and its place without its quotes."""
 
     tag: int
     name: str

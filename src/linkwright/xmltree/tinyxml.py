@@ -33,13 +33,13 @@ _DEFINITION = "<!ENTITY"
 def parse_as_tinyxml(
     text: str, name: str, readers: Phrase, *, read_as: str | None = None
 ) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Parse a text as TinyXML2 does, with a warning (XML205 to XML207) for each kind of thing that XML forbids.
+    """Parse a text as TinyXML2 does, with a warning (XML205 to XML207) for each kind of mistake that XML forbids.
 
     Args:
         text: the text.
         name: of the file, for messages.
-        readers: who reads the file all the same, and who does not.
-        read_as: what to read in place of the text, with everything in the same place.
+        readers: which programs read the file all the same, and which do not.
+        read_as: the text to read instead, with everything in the same place.
 
     Raises:
         LinkwrightError: it is not XML for TinyXML2 either (XML###).
@@ -68,8 +68,8 @@ def _text_before_root(source: SourceText, read_as: str) -> tuple[str, _Told | No
     if before is None:
         return read_as, None
     place = source.span(before.start(1), before.start(1) + len(before[1].rstrip()))
-    advice = phrase("an XML file holds nothing but comments before its root element")
-    return _without(read_as, before), _Told(phrase("text stands before the root element"), place, advice)
+    advice = phrase("an XML file may have only comments before its root element")
+    return _without(read_as, before), _Told(phrase("there is text before the root element"), place, advice)
 
 
 def _second_declaration(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
@@ -159,14 +159,14 @@ def _repaired(source: SourceText, error: LinkwrightError, text: str) -> str:
 
 
 def _passed_over(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
-    """The warning about what follows the root."""
+    """The warning about content after the root."""
     message = phrase("there is content after the end of the root element")
     hint = phrase("a file has one root element")
     return Diagnostic(_AFTER_ROOT, message, source.span(end, end + 1), Severity.WARNING, (Note(readers),), hint, source)
 
 
 def _end_of_root(found: Diagnostic, text: str) -> int | None:
-    """Where the content after the root may begin, by the error that it makes."""
+    """Where the content after the root may begin, by the error that it causes."""
     if found.span is None or found.source is None:
         return None
     at = found.source.offset(found.span.line, found.span.column)
@@ -195,5 +195,5 @@ def _is_passed_over(rest: str) -> bool:
 
 
 def _has_dashes(comment: str | None) -> bool:
-    """Whether XML forbids the content of a comment; None stands for other parts."""
+    """Whether XML forbids the content of a comment; pass None for other nodes."""
     return comment is not None and ("--" in comment or comment.endswith("-"))

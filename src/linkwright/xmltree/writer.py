@@ -21,7 +21,7 @@ def write(document: Document) -> str:
     """The document as text, with an XML declaration and a newline at the end.
 
     Raises:
-        LinkwrightError: XML301 when a comment made by a program holds two dashes, which XML cannot say; XML302 when
+        LinkwrightError: XML301 when a comment made by a program contains two dashes, which XML forbids; XML302 when
             elements are nested thousands deep.
     """
     pieces: list[str] = ['<?xml version="1.0" ?>\n']
@@ -38,7 +38,7 @@ def write(document: Document) -> str:
 
 
 def write_element(element: Element, depth: int = 0) -> str:
-    """An element and what it holds as text, without an XML declaration.
+    """An element and its content as text, without an XML declaration.
 
     Args:
         element: the element.
@@ -55,7 +55,7 @@ def write_element(element: Element, depth: int = 0) -> str:
 def tidied(root: Element) -> Element:
     """A copy whose texts beside elements have no blanks around them, or writing would add some each time."""
     top = Element(root.tag, dict(root.attributes))
-    todo = [(root, top)]  # not by recursion: what is nested too deep is for the writer to say
+    todo = [(root, top)]  # not by recursion: the writer reports too deep nesting
     while todo:
         element, copy = todo.pop()
         mixed = any(not isinstance(child, Text) for child in element.children)
@@ -115,7 +115,7 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str 
 
 
 def _text_of_original(copy: LazyCopy, indent: str) -> str:
-    """The text of a copy that nobody has looked into."""
+    """The text of a copy that was never accessed."""
     kept, original = copy.plan, copy.original
     if isinstance(kept, KeptText) and kept.written is not None and kept.written[0] == indent:
         return kept.written[1]
@@ -158,7 +158,7 @@ def _escaped(text: str) -> str:
 def _comment(node: Comment) -> str:
     if "--" in node.data:
         span = node.source.span(node.offset, node.offset + len("<!--")) if node.source else None
-        message = phrase("a comment cannot hold '--'")
+        message = phrase("a comment cannot contain '--'")
         raise LinkwrightError(Diagnostic("XML301", message, span=span, source=node.source))
     return node.data
 
