@@ -22,4 +22,4 @@ __getattr__ = deferred(
         "origin": ("Origin",),
     },
 )
-"""The engine is loaded where a file is expanded: a check of a plain URDF asks for origins and kept files alone."""
+"""The engine is loaded when a file is expanded: a check of a plain URDF needs only origins and the file cache."""

@@ -1,10 +1,10 @@
-"""Comments that belong to what is expanded away.
+"""Comments that belong to tags that disappear in the expansion.
 
-A comment just above a property, macro, argument, include, condition or macro call tells about that tag, and goes with
-it. Which comments go follows ros/xacro to the letter: of a run of comments upwards those go that are separated by
-blank text with at most one newline; and a marker is left behind at which the next such run stops. There is one marker
-in a document: it moves. It is blank text, so all that may be seen of it is that an element with text and a marker is
-no longer written on one line.
+A comment just above a property, macro, argument, include, condition or macro call describes that tag, and disappears
+with it. Which comments disappear follows ros/xacro to the letter: of a run of comments upwards those that are separated
+by blank text with at most one newline; and a marker is left behind at which the next such run stops. There is one
+marker in a document: it moves. It is blank text, so its only visible effect is that an element with text and a marker
+is no longer written on one line.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ class CommentSweeper:
         self._home: list[Node] | None = None
 
     def sweep(self, siblings: list[Node], *, followed: bool) -> bool:
-        """Take away the comments at the end of a list of siblings, which are those above the tag.
+        """Remove the comments above the tag: those at the end of a list of siblings.
 
         Args:
-            siblings: the nodes above the tag, as they came out.
-            followed: whether anything stands below the tag.
+            siblings: the expanded nodes above the tag.
+            followed: whether the tag has nodes below it.
 
         Returns:
             Whether the caller is to `mark` the place below the tag.

@@ -29,21 +29,21 @@ def expand(
     root_dir: str | Path | None = None,
     overlay: Overlay | None = None,
 ) -> Expansion:
-    """Expand a xacro file, as ros/xacro 2.1 does; a plain URDF file comes out as it is.
+    """Expand a xacro file as ros/xacro 2.1 does; a plain URDF file stays as it is.
 
     Args:
         path_or_text: the file, or a text, which is known by its ``<``. Relative paths in a file are relative to its
             folder, those in a text to `root_dir`. The banner has the path as given here.
         arguments: name -> value of the arguments (``name:=value``); they win over the defaults in the file.
         packages: where ``$(find name)`` looks: an object with ``share(name)``, such as a `PackageFinder`, or a mapping
-            from package to share folder that is looked at before the surroundings of the file.
-        text: the text to take for that of the file, such as one that is not saved yet.
+            from package to share folder that takes precedence over the surroundings of the file.
+        text: the text to expand instead of the file's, such as one that is not saved yet.
         limits: bounds for the expansion.
         root_dir: the folder that relative paths start from; the current one if None.
-        overlay: texts that stand for those of files, included ones and YAML files among them.
+        overlay: texts that replace those of files, included files and YAML files among them.
 
     Raises:
-        LinkwrightError: what is wrong, each mistake with its place, the macro calls and includes that led there, and
+        LinkwrightError: the mistakes, each with its place, the macro calls and includes that led there, and
             a hint.
     """
     name = str(path_or_text)
@@ -71,7 +71,7 @@ _BANNER = (
 
 
 def banner(name: str) -> list[Comment]:
-    """The comments that say from which file a text was made."""
+    """The comments that name the file from which a text was made."""
     shown = name
     while "--" in shown:  # which XML does not allow in a comment
         shown = shown.replace("--", "-")

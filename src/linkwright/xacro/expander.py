@@ -1,8 +1,8 @@
 """The expansion proper: one walk over the tree, in reading order, that writes a new tree.
 
 Trees that were read are never changed, so each file is parsed once; texts and comments without expressions are shared
-with them. Every element that comes out keeps the place where it was written and knows the macro calls and includes that
-brought it there.
+with them. Every element of the result keeps the place where it was written and knows the macro calls and includes
+around it.
 """
 
 from __future__ import annotations
@@ -38,20 +38,20 @@ _MOST_ERRORS = 20
 
 
 class Container(Element):
-    """Holds what a tag that leaves nothing of itself expands to; the tag is that of the language."""
+    """Holds the expansion of a tag that itself disappears; the tag is that of the language."""
 
     __slots__ = ()
 
 
 class Site(NamedTuple):
-    """A tag of the language, where it stands.
+    """A tag of the language and its surroundings.
 
     Attributes:
         node: the tag.
-        parent: the element that its expansion goes into.
+        parent: the element that receives its expansion.
         scope: the properties that it sees.
         macros: the macros that it sees.
-        followed: whether anything stands below it.
+        followed: whether the tag has nodes below it.
     """
 
     node: Element
@@ -69,12 +69,12 @@ class Expander:
     """Expands one document.
 
     Args:
-        session: what the expansion knows.
-        directives: tag -> what expands it.
-        call: what expands any other tag with the prefix of the language, which is a macro call.
+        session: the state of the expansion.
+        directives: tag -> the function that expands it.
+        call: expands any other tag with the prefix of the language, which is a macro call.
 
     Attributes:
-        session: what the expansion knows.
+        session: the state of the expansion.
         sweeper: takes away comments above tags of the language.
     """
 
@@ -84,7 +84,7 @@ class Expander:
         self._call = call
         self.sweeper = CommentSweeper()
         self.unwritable: dict[tuple[int, str], tuple[Element, Diagnostic]] = {}
-        """Identity of an element and name of an attribute -> the element, and the warning that its value is no text."""
+        """Identity of an element and name of an attribute -> the element, and the warning about its value."""
         self._errors: list[Diagnostic] = []
         self._nesting = 0
         self._deepest = session.limits.nesting
@@ -94,7 +94,7 @@ class Expander:
         """The expansion of a document.
 
         Raises:
-            LinkwrightError: the mistakes found, each at its place.
+            LinkwrightError: the mistakes found, each with its place.
         """
         expanded = self.walk(document)
         if expanded is None or self._errors:
@@ -133,10 +133,10 @@ class Expander:
     # the walk
 
     def children(self, node: Element, parent: Element, scope: Scope, macros: MacroTable) -> None:
-        """Expand what an element holds, and put what comes out at the end of a parent.
+        """Expand the children of an element, and append the result to a parent.
 
         Raises:
-            LinkwrightError: a mistake after which going on makes no sense.
+            LinkwrightError: a mistake after which continuing makes no sense.
         """
         output, session, directives = parent.children, self.session, self._directives
         evaluate_comments = False
@@ -169,7 +169,7 @@ class Expander:
         self._nesting -= 1
 
     def _copy(self, run: Run, output: list[Node]) -> None:
-        """Put neighbours that come out as they are at the end of a parent."""
+        """Append neighbours that stay as they are to a parent."""
         budget, frame = self.session.budget, self.session.frame
         if run.size > budget.elements or self._nesting + run.height > self._deepest:
             self._copy_singly(run, output)
@@ -178,7 +178,7 @@ class Expander:
         output += [LazyCopy(node, frame) if isinstance(node, Element) else node for node in run.nodes]
 
     def _copy_singly(self, run: Run, output: list[Node]) -> None:
-        """Find the element at which a bound is met."""
+        """Find the element at which a limit is reached."""
         elements, scope, macros = self.session.budget, Scope(None, self.session), MacroTable()
         between = 0
         for node in run.nodes:
@@ -192,7 +192,7 @@ class Expander:
         elements.elements -= between >> 3
 
     def element(self, node: Element, output: list[Node], scope: Scope, macros: MacroTable) -> None:
-        """Expand an ordinary element: its attributes, then what it holds."""
+        """Expand an ordinary element: its attributes, then its content."""
         session = self.session
         plan = node.plan
         if not isinstance(plan, Plan):
@@ -232,8 +232,8 @@ class Expander:
                     fault.place_in_attribute(node, name)
                     if fault.code == "XAC211" and node is self._root:
                         fault.hint = phrase(
-                            "the attributes of the root come before what it holds;"
-                            ' write <xacro:attribute name="{name}" value="{value}"/> inside it instead',
+                            "the attributes of the root are evaluated before its content; write "
+                            '<xacro:attribute name="{name}" value="{value}"/> inside it instead',
                             name=name,
                             value=value,
                         )
@@ -311,7 +311,7 @@ class Expander:
             self.sweeper.mark(output)
 
     def splice(self, container: Element, site: Site) -> None:
-        """Put what a container holds in the place of a tag; `xacro:attribute` in it sets the parent's attributes."""
+        """Replace a tag by the content of a container; `xacro:attribute` in it sets the parent's attributes."""
         output = site.parent.children
         output.extend(container.children)
         self.sweeper.moved(container.children, output)
@@ -320,7 +320,7 @@ class Expander:
                 site.parent.attributes[name] = value
 
     def lift_namespaces(self, container: Element, site: Site) -> None:
-        """Declare on the parent what the root of an include or the tag of a macro declares."""
+        """Declare on the parent the prefixes that the root of an include or the tag of a macro declares."""
         attributes = site.parent.attributes
         for name, value in container.attributes.items():
             if not name.startswith("xmlns:"):
@@ -384,11 +384,11 @@ class Expander:
         )
 
     def note(self, fault: Fault) -> None:
-        """Keep a mistake after which the walk can go on, unless it is one too many."""
+        """Record a mistake after which the walk can continue, unless it is one too many."""
         self.keep(self._diagnostic(fault))
 
     def keep(self, diagnostic: Diagnostic) -> None:
-        """Keep a mistake after which the walk can go on.
+        """Record a mistake after which the walk can continue.
 
         Raises:
             LinkwrightError: it is one too many, or one that ends every walk.
@@ -427,13 +427,13 @@ class Expander:
 
 
 def is_final(diagnostic: Diagnostic) -> bool:
-    """Whether a mistake ends every walk: a bound of the expansion, or what the description itself says is fatal."""
+    """Whether a mistake ends every walk: a limit of the expansion, or a fatal error that the description raises."""
     return diagnostic.code.startswith("XAC6") or diagnostic.code == "XAC701"
 
 
 def _check_comment(data: str) -> None:
     if "--" in data or data.endswith("-"):
-        raise Fault("XAC311", phrase("the comment would hold '--': '{data}'", data=data.strip()))
+        raise Fault("XAC311", phrase("the comment would contain '--': '{data}'", data=data.strip()))
 
 
 def _with_attribute(element: Element, name: str, value: str) -> Element:

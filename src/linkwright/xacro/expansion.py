@@ -1,4 +1,4 @@
-"""The result of an expansion: the document, its arguments and dependencies, and what was found on the way."""
+"""The result of an expansion: the document, its arguments, dependencies and diagnostics."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Expansion:
     Attributes:
         document: the expanded document. Every element has the source and offset where it was written.
         arguments: name -> final value of every argument that was given or declared.
-        diagnostics: warnings, and what the description says through ``xacro.message`` and its like.
-        inputs: what it started from, or None.
+        diagnostics: warnings, and the description's messages through ``xacro.message`` and the like.
+        inputs: its inputs, or None.
         problems: the mistakes for which parts are missing; see `linkwright.xacro.parts`.
     """
 
@@ -62,15 +62,15 @@ class Expansion:
         return origin_of(element)
 
     def provenance(self, element: Element) -> Provenance:
-        """All there is to say of an element of the document: `origin`, its parameters, and each attribute's provenance.
+        """The provenance of an element of the document: `origin`, its parameters, and each attribute's provenance.
 
-        The file is expanded once more for it, so it is told as long as the files are what they were.
+        This expands the file again, so it needs the files unchanged.
 
         Raises:
-            LinkwrightError: XAC802 when they no longer are, or the element is not one of the document's.
+            LinkwrightError: XAC802 if the files have changed, or the element is not one of the document's.
         """
         if self.inputs is None:
-            raise LinkwrightError(Diagnostic("XAC802", phrase("nothing is known of how this document was expanded")))
+            raise LinkwrightError(Diagnostic("XAC802", phrase("the document has no record of its expansion")))
         from linkwright.xacro.tracing.provenance import provenance_of
 
         return provenance_of(self.inputs, self.document.root, element)

@@ -1,7 +1,7 @@
 """A mistake found while evaluating a text, on its way to becoming a diagnostic.
 
-Whoever finds a mistake knows the text and the offsets in it, but not the element that holds the text. So a `Fault`
-starts with offsets, is placed by whoever evaluates an element's text, and grows a note for each property on the way.
+The code that finds a mistake knows the text and the offsets in it, but not the element that holds the text. So a
+`Fault` starts with offsets, gets its place from the evaluation of an element's text, and a note for each property.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ _BLOCK = r"""<(/?)xacro:(if|unless|macro)\b(?:[^>"'/]|"[^"]*"|'[^']*'|/(?!>))*(/
 
 
 class Elsewhere(NamedTuple):
-    """Where a file defines a name that is not in effect where it is wanted.
+    """Where a file defines a name that is not in effect where it is used.
 
     Attributes:
-        note: says so.
-        hint: how to mend it, where that hangs on why it is not in effect.
+        note: the message and the place of the definition.
+        hint: how to fix it, if that depends on why it is not in effect.
     """
 
     note: Note
     hint: Phrase | None = None
 
 
-class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no part of the public errors
+class Fault(Exception):  # noqa: N818 - it becomes a diagnostic, and is not part of the public errors
     """A user's mistake.
 
     Attributes:
@@ -38,11 +38,11 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         message: the diagnostic's message.
         start: offset of the mistake in the text being evaluated, or None for all of it.
         end: where it ends (exclusive), or None.
-        hint: how to mend it.
+        hint: how to fix it.
         span: the place of the mistake, once it is known.
         source: the text that the span is in.
-        notes: how the evaluation came to that place, innermost first.
-        passing: what the next place on the way out is to be noted as, such as "property 'a' is used here".
+        notes: how the evaluation reached that place, innermost first.
+        passing: the text of the note for the next place on the way out, such as "property 'a' is used here".
         missing: the name of the property that is missing, if that is the mistake.
     """
 
@@ -79,7 +79,7 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         self._place(text.source, text_part(text, self.start, self.end))
 
     def place_at(self, element: Element) -> None:
-        """The text is none that was written; the element stands for it."""
+        """Place it at an element that represents a text without a source."""
         self._place(element.source, element.span())
 
     def elsewhere(self) -> Elsewhere | None:
@@ -91,7 +91,7 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
         used_at = None if self.span is None else self.source.offset(self.span.line, self.span.column)
         found = definition_elsewhere(self.source, "property", self.missing, used_at=used_at)
         if found is None and (bare := definition_elsewhere(self.source, "property", self.missing, prefix="")):
-            self.hint = phrase("write <xacro:property where it is defined: without its prefix the tag means nothing")
+            self.hint = phrase("write <xacro:property where it is defined: without the prefix the tag has no effect")
             return bare
         return found
 
@@ -106,7 +106,7 @@ class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no
 def definition_elsewhere(
     source: SourceText, tag: str, name: str, prefix: str = "xacro:", used_at: int | None = None
 ) -> Elsewhere | None:
-    """Return where a file defines a name, when that is not in effect where it is wanted, at an offset."""
+    """Return where a file defines a name, if that is not in effect at an offset where it is used."""
     if f"<{prefix}{tag}" not in source.text:
         return None  # without compiling the patterns below
     text = re.sub(_COMMENT, lambda comment: " " * len(comment[0]), source.text)
@@ -128,7 +128,7 @@ def definition_elsewhere(
 
 
 def _is_conditional(before: str) -> bool:
-    """Whether what follows a text stands in a condition, and in no macro, whose definitions are its own."""
+    """Whether the end of a text is inside a condition, and not inside a macro, whose definitions are its own."""
     open_tags: list[str] = []
     for closing, tag, single in re.findall(_BLOCK, before):
         if closing:
@@ -140,7 +140,7 @@ def _is_conditional(before: str) -> bool:
 
 
 def attribute_part(element: Element, name: str, start: int | None, end: int | None) -> Span | None:
-    """The place of a part of an attribute's value, as exactly as it can be told."""
+    """The place of a part of an attribute's value, as exactly as possible."""
     from linkwright.xmltree.positions import attribute_value_range, raw_offset
 
     source = element.source
@@ -154,7 +154,7 @@ def attribute_part(element: Element, name: str, start: int | None, end: int | No
     if raw == value:
         return source.span(written[0] + start, written[0] + end)
     if "&" not in raw and "\n" not in raw and "\t" not in raw and value is not None:
-        return source.span(*written)  # a block that was evaluated: the value is no longer what was written
+        return source.span(*written)  # a block that was evaluated: the value differs from the source
     return source.span(raw_offset(source.text, *written, start), raw_offset(source.text, *written, end))
 
 
@@ -170,7 +170,7 @@ def attribute_name(element: Element, name: str) -> Span | None:
 
 
 def text_part(text: Text, start: int | None, end: int | None) -> Span | None:
-    """The place of a part of some character data, as exactly as it can be told."""
+    """The place of a part of some character data, as exactly as possible."""
     from linkwright.xmltree.positions import raw_offset
 
     source = text.source

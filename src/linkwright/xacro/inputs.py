@@ -30,7 +30,7 @@ class Inputs(NamedTuple):
 
 
 def main_document(session: Session, text: str | None = None) -> Document:
-    """The document that a session begins with: that of its file, or of a text that stands for it.
+    """The document that a session begins with: that of its file, or of a text that replaces it.
 
     Raises:
         LinkwrightError: it cannot be read, or is not XML.

@@ -33,7 +33,7 @@ def arguments_of(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Argument, ...]:
-    """The arguments of a file and of those that it includes, in the order in which they are met.
+    """The arguments of a file and of those that it includes, in the order of the files.
 
     The file need not be one that can be expanded without arguments.
 
@@ -79,7 +79,7 @@ def explain(
         That of at least one element: of those directly inside the root or, when there are none, of those deeper down.
 
     Raises:
-        LinkwrightError: what is wrong with the file, or XAC801 when no element has the name.
+        LinkwrightError: the mistakes of the file, or XAC801 if no element has the name.
     """
     inputs = Inputs(str(path), arguments or {}, packages, text, limits or Limits(), str(root_dir or ""))
     return provenance_of_named(inputs, name)

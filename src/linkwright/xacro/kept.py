@@ -1,4 +1,4 @@
-"""What was worked out once and is kept, up to a bound."""
+"""A cache of computed values with a bound on its size."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ _STRIDE = 16
 
 
 class Kept(Generic[_Key, _Value]):
-    """Values that are kept as long as they are not too large together.
+    """A cache of values with a bound on their total size.
 
-    When they are, every sixteenth is forgotten, each time beginning at another one. So whoever goes round through more
-    than there is room for, as through a collection of robots, finds most of it again. If the oldest went first, nothing
-    would be found.
+    When it is full, it drops every sixteenth value, each time starting at another one. So a user that cycles through
+    more values than fit, as through a collection of robots, finds most of them again. If the oldest were dropped
+    first, none would be found.
 
     Args:
         most: how large they may be together.
         size_of: the size of one.
 
     Attributes:
-        values: a plain dict, for it is looked into for each text of a description.
+        values: a plain dict, because it is read for each text of a description.
     """
 
     def __init__(self, most: int, size_of: Callable[[_Key, _Value], int]) -> None:
@@ -39,7 +39,7 @@ class Kept(Generic[_Key, _Value]):
         values, size_of = self.values, self._size_of
         values.pop(key, None)
         own = size_of(key, value)
-        self._size += own  # too much where another value had this key, which counting anew puts right
+        self._size += own  # too much if the key was known; the count below corrects it
         while self._size > self._most and values:
             self._size = own + sum(size_of(*item) for item in list(values.items()))
             if self._size > self._most:

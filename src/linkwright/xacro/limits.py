@@ -1,12 +1,12 @@
 """How far an expansion may go before it is stopped.
 
-A description comes from a stranger as often as from a colleague: whatever it says, opening it must end, and soon.
+A description comes from an unknown source as often as from a colleague: opening any one must end, and soon.
 """
 
 from __future__ import annotations
 
 import sys
-from _thread import allocate_lock  # what threading.Lock is, without the rest of it
+from _thread import allocate_lock  # threading.Lock without the rest of threading
 from time import thread_time
 
 from linkwright.diagnostics import phrase
@@ -24,7 +24,7 @@ class Limits(NamedTuple):
         elements: how many elements may be produced; a macro call counts as ten, any other tag of the language as two.
         steps: how much all expressions may do, together: a turn of a comprehension or a call of a function counts as
             two, of a lambda as eight, and running through two items or 32 characters of a value as one.
-        characters: how many characters all long texts and attributes that come out may have, together.
+        characters: how many characters all long texts and attributes of the result may have, together.
         seconds: how much time of the processor it may take.
     """
 
@@ -43,7 +43,7 @@ _before = 0
 
 
 class room_for:  # noqa: N801 - it is called in a ``with`` statement, as a function is
-    """Raise Python's recursion limit so that our own limits are met first; put it back when nobody needs it."""
+    """Raise Python's recursion limit so that our own limits are met first; restore it after the last use."""
 
     def __init__(self, limits: Limits) -> None:
         self._limits = limits
@@ -85,8 +85,8 @@ class Budget:
     """The budget of one expansion: the elements, steps, characters, calls and seconds that its limits leave.
 
     Attributes:
-        elements: how many elements may still be produced; who does counts it down, and calls `too_many_elements`
-            below zero.
+        elements: how many elements may still be produced; the producer counts it down, and calls
+            `too_many_elements` below zero.
     """
 
     __slots__ = ("_call_depth", "_characters", "_ends", "_limits", "_look_at", "_macros", "_steps", "elements")
@@ -98,20 +98,20 @@ class Budget:
         self._characters = limits.characters
         self._call_depth = 0
         self._macros = 0
-        self._look_at = limits.steps  # when so many steps are left, the clock is looked at
+        self._look_at = limits.steps  # when so many steps are left, the clock is read
         self._ends = thread_time() + limits.seconds
 
     def too_many_elements(self) -> Fault:
         """The error when no elements are left: XAC602."""
         message = phrase(
-            "the expansion makes more than {limit:,} elements, macro calls counting as {macro}",
+            "the expansion creates more than {limit:,} elements; a macro call counts as {macro}",
             limit=self._limits.elements,
             macro=_MACRO,
         )
         return Fault("XAC602", message, hint=phrase("look for macros that call each other without end"))
 
     def text(self, length: int) -> None:
-        """Pay for a long text that comes out.
+        """Pay for a long text of the result.
 
         Raises:
             Fault: XAC605 when they are too long together.
@@ -137,7 +137,7 @@ class Budget:
             self._look_at_clock()
 
     def step(self, count: int = 2) -> None:
-        """Pay for what an expression does, by default one more turn of a comprehension.
+        """Pay for the work of an expression, by default one more turn of a comprehension.
 
         Raises:
             Fault: XAC603 or XAC606 when it was too much or took too long.

@@ -22,7 +22,7 @@ class Parameter(NamedTuple):
     Attributes:
         name: its name; that of a block begins with one or two asterisks.
         default: the text of its default, or None.
-        forward: whether it takes the caller's property of the same name when it is not given.
+        forward: whether it takes the caller's property of the same name if it has no argument.
         start: offset of its name in the list of parameters.
         default_start: offset of its default there.
     """
@@ -81,7 +81,7 @@ def _ends_of_words(text: str) -> list[int]:
     its kind behind which the word can end: ``'''`` is one word, a quote in quotes.
     """
     ends = [len(text)] * (len(text) + 1)
-    behind = {"'": -1, '"': -1}  # where a word ends that goes on behind the nearest quote that can close it
+    behind = {"'": -1, '"': -1}  # where a word ends that continues behind the nearest closing quote
     for at in range(len(text) - 1, -1, -1):
         letter, following = text[at], ends[at + 1]
         if letter.isspace():

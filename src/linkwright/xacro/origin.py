@@ -45,7 +45,7 @@ class Origin(NamedTuple):
 
     Attributes:
         span: where it is written; None for an element made by a program.
-        trail: the macro calls and includes that brought it where it is, innermost first.
+        trail: the macro calls and includes around it, innermost first.
     """
 
     span: Span | None

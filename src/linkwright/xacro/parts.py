@@ -1,12 +1,12 @@
-"""Expanding what can be expanded of a description that has mistakes.
+"""Expanding the valid parts of a description that has mistakes.
 
-`linkwright.xacro.expand` stops at the first mistake after which nothing can be relied on. Who edits a file wants to
-know more: here a tag that fails is left out, and the walk goes on. Two things keep what comes out true:
+`linkwright.xacro.expand` stops at the first mistake after which nothing is reliable. An editor needs more: here a tag
+that fails is left out, and the walk continues. Two rules keep the result true:
 
-- **Gaps are known.** An element whose attribute or text failed, or inside which a tag was left out, is no part of the
+- **Gaps are known.** An element whose attribute or text failed, or inside which a tag was left out, is not part of the
   result; neither is the element around it.
-- **Consequences are not told.** What is left out may have defined names. From then on a name that is missing is no
-  mistake, and a value may be another than meant: whatever depends on one is left out in silence, too.
+- **Consequences are not reported.** A part that is left out may have defined names. From then on a missing name is not
+  a mistake, and a value may differ from the intended one: each part that depends on one is left out in silence, too.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ _FIXED = lazy_pattern(r"\$\((?:find|env|optenv|cwd|dirname)\b[^()$]*\)")
 """Substitutions that no name of the description has a part in."""
 _DECLARATIONS = frozenset({"xacro:arg", "xacro:include", "xacro:macro", "xacro:property"})
 _TRUE_BY_THEMSELVES = frozenset({"XAC101", "XAC102", "XAC301", "XAC304", "XAC407", "XAC412"})
-"""Mistakes in the text of a tag or expression, whatever the names in it stand for."""
+"""Mistakes in the text of a tag or expression, whatever the values of the names in it."""
 _OF_THE_DEFINITION = frozenset({"XAC402", "XAC403", "XAC404", "XAC405", "XAC408", "XAC409"})
-"""Mistakes of a call that may as well be one of the macro's definition; all calls have it then, and one tells it."""
+"""Mistakes of a call that may be the macro definition's mistake; then all calls have it, and one reports it."""
 _OUTER_PROPERTY = lazy_pattern(r"""<xacro:property\s[^>]*?\bscope\s*=""")
 
 
@@ -45,15 +45,15 @@ def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
     """Expand a description without the parts that have mistakes.
 
     Args:
-        inputs: what the expansion starts from.
-        error: why there is no whole.
+        inputs: the inputs of the expansion.
+        error: why the complete expansion failed.
 
     Returns:
-        An expansion whose `problems` say what is wrong. Its document holds the elements of the root that are as they
-        would be in the whole.
+        An expansion whose `problems` describe the mistakes. Its document has those elements of the root that
+        are the same as in the complete expansion.
 
     Raises:
-        LinkwrightError: `error`; nothing can be had: the file is no XML, or the expansion has to be stopped.
+        LinkwrightError: `error`; there is no result: the file is not XML, or the expansion has to be stopped.
     """
     if any(map(is_final, error.diagnostics)):
         raise error
@@ -75,14 +75,14 @@ def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
 
 
 class _LeftOutError(Exception):
-    """A tag depends on what was left out before."""
+    """A tag depends on a part that was left out before."""
 
 
 class _PartsExpander(Expander):
-    """Leaves out what fails.
+    """Leaves out the parts that fail.
 
     Attributes:
-        trusted: whether all names still stand for what they would in the whole.
+        trusted: whether all names still have the values of the complete expansion.
         remarks_to_trust: how many of the session's warnings were given while they did; None for all.
     """
 
@@ -169,7 +169,7 @@ class _PartsExpander(Expander):
             self.remarks_to_trust = len(self.session.diagnostics)
 
     def _may_define_names(self, node: Element) -> bool:
-        """Whether a tag that is left out might have defined a name for what comes after it."""
+        """Whether a tag that is left out might have defined a name for the tags after it."""
         tags = {element.tag for element in node.walk()}
         if tags & _DECLARATIONS:
             return True
@@ -182,14 +182,14 @@ class _PartsExpander(Expander):
             try:
                 source = self.session.read(path).source
             except LinkwrightError:
-                continue  # a YAML file, or the one that is missing
+                continue  # a YAML file, or a missing one
             if source is not None and _OUTER_PROPERTY.search(source.text):
                 return True
         return False
 
 
 def _depends_on_values(node: Element) -> bool:
-    """Whether what a tag does depends on properties or arguments; of macro calls, only what is in them does."""
+    """Whether the effect of a tag depends on properties or arguments; for macro calls, whether their content does."""
     if node.tag not in DIRECTIVES or node.tag in _DEFINITIONS:
         return False
     return any("$" in _FIXED.sub("", value) for value in node.attributes.values())

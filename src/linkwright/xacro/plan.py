@@ -1,12 +1,12 @@
 """Plans: the steps of expanding an element, worked out once for each element that was read.
 
 Most of a description does not depend on anything: an element without a dollar sign and without tags of the language
-comes out as it is, with all that it holds. Its plan says so, and the walk copies it. Of any other element the plan
-lists the attributes to evaluate and, in reading order, what to do with its children; neighbours that come out as they
+stays as it is, with its content. Its plan marks it so, and the walk copies it. Of any other element the plan
+lists the attributes to evaluate and, in reading order, the steps for its children; neighbours that stay as they
 are make one step.
 
-Whether an element comes out as it is shows in its text: where that has no sign of the language, nobody looks into the
-element for it.
+Whether an element stays as it is shows in its text: if the text has no sign of the language, the element is not
+searched.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ _DEEPEST = 100
 """How deep a plan looks ahead; elements further down are planned when they are reached."""
 _UNKNOWN = -1
 _SIGNS = ("$", PREFIX, _DECLARATION, "&", "<!", "<?")
-"""What the text of an element has that does not come out as it is, and of some that do."""
+"""Signs in the text of an element that may change; the text of one that stays as it is may have some, too."""
 
 KEEP, COPY, ELEMENT, TAG, TEXT, COMMENT, SWITCH = range(7)
-"""What a step does: keep nodes as they are, copy elements and keep the nodes between them, expand an element, expand a
+"""Kinds of steps: keep nodes as they are, copy elements and keep the nodes between them, expand an element, expand a
 tag of the language, evaluate a text, evaluate a comment if comments are being evaluated, begin or end evaluating
 them."""
 
@@ -35,11 +35,11 @@ Step: TypeAlias = tuple[int, Any, bool]
 
 
 class Run:
-    """Neighbours that come out as they are.
+    """Neighbours that stay as they are.
 
     Attributes:
         nodes: the elements, and the texts and comments between them.
-        size: what they count as.
+        size: the number of elements that they count as.
         height: how deep they nest at most.
     """
 
@@ -55,12 +55,12 @@ class Plan(KeptText):
     """The plan of one element.
 
     Attributes:
-        attributes: those that come out, as they are written.
+        attributes: the attributes of the result, as they are written.
         evaluated: the names of those that are to be evaluated or counted.
-        size: how many elements it is with all inside if it comes out as it is, else 0.
+        size: how many elements it has, itself included, if it stays as it is, else 0.
         height: how deep they nest at most.
-        steps: for the children, in order: what to do, with what, and a flag: for TAG whether anything stands below it,
-            for SWITCH whether comments are to be evaluated from here. None where nobody has asked yet; see `steps_of`.
+        steps: for the children, in order: the kind, its object, and a flag: for TAG whether any node follows it,
+            for SWITCH whether comments are to be evaluated from here. None before the first request; see `steps_of`.
     """
 
     __slots__ = ("attributes", "evaluated", "height", "size", "steps")
@@ -74,7 +74,7 @@ class Plan(KeptText):
 
 
 def plan_document(document: Document) -> None:
-    """Note where the root of a document ends that is as it was read, so that its plan can be read off the text."""
+    """Record where the root of an unchanged document ends, so that its plan can be read off the text."""
     root = document.root
     if root.plan is None and document.doctype is None and document.source is not None:
         root.plan = len(document.source.text)
@@ -130,7 +130,7 @@ class _Children:
 
     Attributes:
         steps: the steps.
-        come_out: whether all come out as they are.
+        come_out: whether all stay as they are.
         size: how many elements they are together then.
         height: how deep they nest at most.
     """
@@ -140,7 +140,7 @@ class _Children:
         self.come_out = True
         self.size = self.height = 0
         self._kept: list[Node] = []  # since the last step
-        self._since_element = 0  # how many of them stand after the last element
+        self._since_element = 0  # how many of them follow the last element
         self._run_size = self._run_height = 0
         self._plan(children, end, depth)
 
@@ -214,7 +214,7 @@ class _Children:
 
 
 def _inner_plan(node: Element, stop: int, depth: int) -> Plan | None:
-    """The plan of an ordinary child whose text ends at an offset; None where it is too deep to be planned yet."""
+    """The plan of an ordinary child whose text ends at an offset; None if it is too deep to be planned yet."""
     inner = node.plan
     if isinstance(inner, Plan):
         return inner

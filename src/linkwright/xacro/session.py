@@ -59,7 +59,7 @@ class Session:
         arguments: name -> value of every argument given or declared so far.
         known_arguments: the names of those that the files declare or use.
         limits: the bounds of the expansion.
-        budget: what is left of them.
+        budget: the remaining budget.
         file: the file being processed, to whose folder relative paths refer.
         frame: the innermost macro call or include being processed, or None.
         place: the element or text being processed, which warnings point to.
@@ -99,7 +99,7 @@ class Session:
         self.globals = Scope(None, self, symbols.global_names(self))
 
     def close(self) -> None:
-        """Let go of all scopes, which know the session: what nobody needs any more is then freed at once."""
+        """Release all scopes, which refer to the session, so that unused objects are freed at once."""
         self.globals.values.clear()
         del self.globals
 
@@ -233,10 +233,10 @@ class Session:
     @property
     def working_directory(self) -> str:
         """The working directory, for ``$(cwd)``."""
-        return os.path.abspath(self.root_dir)  # noqa: PTH100 - a string is wanted
+        return os.path.abspath(self.root_dir)  # noqa: PTH100 - a string is needed
 
     def on_disk(self, path: str) -> str:
-        """Where a file is found that goes by this path."""
+        """The path of a file on the disk, for its path in the description."""
         return os.path.join(self.root_dir, path)  # noqa: PTH118 - kept as it is written
 
     def read(self, path: str) -> Document:
@@ -314,18 +314,18 @@ class Session:
         severity: Severity = Severity.WARNING,
         called: str | None = None,
     ) -> Diagnostic | None:
-        """Note a finding that does not stop the expansion; the same one at the same place only once.
+        """Record a finding that does not stop the expansion; the same one at the same place only once.
 
         Args:
             code: the diagnostic's code.
             message: its message.
-            span: its place; None stands for what is being evaluated.
-            hint: how to mend it.
+            span: its place; None for the text that is being evaluated.
+            hint: how to fix it.
             severity: how bad it is.
             called: the function whose call in the text being evaluated the finding is about.
 
         Returns:
-            The finding; None where it was noted before.
+            The finding; None if it was recorded before.
         """
         place = self.place
         if span is None and place is not None:
@@ -339,7 +339,7 @@ class Session:
         return found
 
     def take_back(self, found: Diagnostic) -> None:
-        """Forget a finding that what came later made untrue."""
+        """Drop a finding that a later definition resolved."""
         self.diagnostics.remove(found)
         self._told.discard((found.code, found.message, found.span))
 
@@ -394,7 +394,7 @@ class Session:
         return said
 
 
-# Not compiled here: what is printable, as nearly every value is, has none of these.
+# Not compiled here: a printable text, as nearly every value is, has none of these.
 _NOT_XML = "[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
 
 
@@ -422,6 +422,6 @@ def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
 def _nearest_file(path: str) -> Phrase | None:
     folder, name = os.path.split(path)
     try:
-        return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are wanted, not paths
+        return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are needed, not paths
     except (OSError, ValueError):
         return None

@@ -20,7 +20,7 @@ def read(path: str, overlay: Overlay | None = None) -> Document:
 
     Args:
         path: the file.
-        overlay: the texts that stand for those of files.
+        overlay: the texts that replace those of files.
 
     Raises:
         LinkwrightError: see `linkwright.xmltree.parse_file`.
@@ -36,7 +36,7 @@ def read(path: str, overlay: Overlay | None = None) -> Document:
     try:
         status = os.stat(path)  # noqa: PTH116
     except (OSError, ValueError):
-        return parse_file(path)  # which says what is wrong
+        return parse_file(path)  # its error gives the reason
     known = kept.values.get(key)
     if known is not None and known[:2] == (status.st_mtime_ns, status.st_size):
         return known[2]

@@ -1,1 +1,1 @@
-"""What stands in ``${...}`` and ``$(...)``: reading it, compiling it, and the sandbox that it is evaluated in."""
+"""The language of ``${...}`` and ``$(...)``: its reader, its compiler, and the sandbox for its evaluation."""

@@ -1,8 +1,8 @@
 """Python's own functions where a single call of them could take hours.
 
-An expression pays for what it does step by step, and between two steps the clock is looked at; nothing can end one
-call of a function that is written in C. So each that some arguments make slow is listed here with a bound: keys that
-have one hash, searches from the right, texts stripped of many characters, codecs, numbers of many bits.
+An expression pays for its work step by step, and the clock is read between two steps; nothing can end one
+call of a function that is written in C. So each function that some arguments make slow is listed here with a bound:
+keys that have one hash, searches from the right, texts stripped of many characters, codecs, numbers of many bits.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _QUICK_CODECS = frozenset({"utf-8", "utf-16", "utf-32", "ascii", "iso8859-1", "i
 _MOST_CODED = 10_000
 """Characters."""
 _SECONDS = 0.5
-"""What a regular expression may take, as for those of other files (decision 0020)."""
+"""The time limit of a regular expression, as for those of other files (decision 0020)."""
 
 HASHING = frozenset(
     {
@@ -61,14 +61,16 @@ def check_keys(items: Collection[Any]) -> None:
     for alike, count in Counter(map(_hash_of, items)).items():
         if count > _MOST_ALIKE and len({repr(item) for item in items if _hash_of(item) == alike}) > _MOST_ALIKE:
             raise RefusalError(
-                phrase("more than {count:,} of the keys have the same hash, as no real ones do", count=_MOST_ALIKE)
+                phrase(
+                    "more than {count:,} of the keys have the same hash, which real keys never do", count=_MOST_ALIKE
+                )
             )
 
 
 def _hash_of(item: Any) -> int:
     try:
         return hash(item)
-    except TypeError:  # a list, which is no key and is refused in a moment
+    except TypeError:  # a list is not a key; it is refused in a moment
         return id(item)
 
 
@@ -128,7 +130,7 @@ METHODS: dict[tuple[type, str], Callable[..., Any]] = {
     (str, "encode"): _coded("encode"),
     (bytes, "decode"): _coded("decode"),
 }
-"""Methods that are bounded: what they are of, and the name -> the function to call instead."""
+"""Methods that are bounded: type and name -> the function to call instead."""
 
 
 def _of_few(name: str) -> Callable[..., Any]:
@@ -161,15 +163,15 @@ _WRITTEN = r"(?s)\\.|\]"
 
 
 def split(pattern: str, text: str) -> list[str]:
-    """The parts of a text between what a class of characters finds.
+    """The parts of a text between the matches of a class of characters.
 
     Args:
-        pattern: begins with ``[`` and ends with ``]``, as it is put together by ros/xacro; where another ``]`` ends the
+        pattern: begins with ``[`` and ends with ``]``, as ros/xacro composes it; if another ``]`` ends the
             class before that, it is any expression at all.
-        text: what is to be split.
+        text: the text to split.
 
     Raises:
-        re.error: it is no expression.
+        re.error: it is not a regular expression.
         RefusalError: it takes too long.
     """
     begins = re.match(_CLASS_BEGINS, pattern)
@@ -179,10 +181,10 @@ def split(pattern: str, text: str) -> list[str]:
         return re.split(pattern, text)
     import regex
 
-    re.compile(pattern)  # says what is wrong with it in the words that ros/xacro has
+    re.compile(pattern)  # its error has the words of ros/xacro
     try:
         return regex.split(pattern, text, timeout=_SECONDS)
     except regex.error as error:
         raise re.error(str(error)) from None
     except TimeoutError:
-        raise RefusalError(phrase("the characters to split at are an expression that takes too long")) from None
+        raise RefusalError(phrase("splitting at these characters takes too long")) from None

@@ -15,13 +15,13 @@ _AROUND = 8
 
 
 class TextCompiler(Generic[_Form]):
-    """Compiles texts and keeps what comes out.
+    """Compiles texts and caches the results.
 
     Args:
         compile_text: compiles a text.
 
     Attributes:
-        forms: text -> what it was compiled to.
+        forms: text -> its compiled form.
     """
 
     def __init__(self, compile_text: Callable[[str], _Form]) -> None:
@@ -30,10 +30,10 @@ class TextCompiler(Generic[_Form]):
         self._compile = compile_text
 
     def make(self, text: str) -> _Form:
-        """Compile a text and keep what comes out.
+        """Compile a text and cache the result.
 
         Raises:
-            Fault: what the compiler says of a malformed text.
+            Fault: the text is malformed.
         """
         form = self._compile(text)
         self._kept.keep(text, form)

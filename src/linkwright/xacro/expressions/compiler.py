@@ -1,13 +1,13 @@
 """Compiles the syntax tree of an expression to nested closures.
 
 There is one method for each kind of node that expressions may use; a node of any other kind is refused. A closure
-takes the environment and gives the value of its node; what it does to values goes through the sandbox. Every closure
+takes the environment and returns the value of its node; its operations on values go through the sandbox. Every closure
 that can fail knows its place in the text, which makes the columns in messages exact.
 """
 
 from __future__ import annotations
 
-import _ast as ast  # the nodes alone: what ast adds takes long to import
+import _ast as ast  # the nodes alone: the rest of ast takes long to import
 import operator
 import re
 from collections.abc import Callable, Iterator
@@ -50,7 +50,7 @@ FAILURES = (
     ValueError,
     RefusalError,
 )
-"""What Python's operations raise when the values do not fit."""
+"""The exceptions that Python's operations raise if the values do not fit."""
 
 _UNARY: dict[str, Callable[[Any], Any]] = {
     "Not": operator.not_,
@@ -74,13 +74,13 @@ _COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
 
 
 def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
-    """The fault for what Python raised at a part of an expression."""
+    """The fault for an exception that Python raised at a part of an expression."""
     segment = " ".join(segment.split())
     if len(segment) > 60:
         segment = f"{segment[:57]}..."
     if isinstance(error, RefusalError):
         message = phrase("'{segment}' is refused: {error}", segment=segment, error=foreign(error))
-        bounds = phrase("what expressions may do is bounded, so that opening a stranger's robot is safe")
+        bounds = phrase("expressions have limits, so that opening a robot from an unknown source is safe")
         return Fault("XAC204", message, start, end, bounds)
     words = str(error) or error.__class__.__name__
     hint = None
@@ -106,7 +106,7 @@ class Compiler:
 
     Args:
         source: the text that was parsed.
-        shift: how many characters stand before it in the text that it was taken from.
+        shift: how many characters precede it in the text that it was taken from.
 
     Attributes:
         changes: whether a compiled node may change a value.
@@ -167,7 +167,7 @@ class Compiler:
                 continue
             if isinstance(error, ZeroDivisionError) and node is operands[-1][0]:
                 return phrase(
-                    "'{written}' is {value} here; where it may be, write 'A / {written} if {written} else B'",
+                    "'{written}' is {value} here; if that may happen, write 'A / {written} if {written} else B'",
                     written=written,
                     value=repr(value),
                 )
@@ -186,7 +186,7 @@ class Compiler:
     # names and constants
 
     def name(self, name: str, start: int) -> Closure:
-        """The closure of a name that stands at an offset of the source."""
+        """The closure of a name at an offset of the source."""
         place = (start + self._shift, start + self._shift + len(name))
         if name.startswith("__"):
             raise Fault("XAC204", phrase("the name '{name}' may not be used in an expression", name=name), *place)
@@ -548,11 +548,11 @@ class Compiler:
 
 def _warn_of_plain_mapping(env: Environment, name: str) -> None:
     message = phrase(
-        "ros/xacro fails at '.{name}': what 'get', 'pop', 'values', '+' and their like give of YAML data is a plain"
-        " dict, whose items have no dot",
+        "ros/xacro fails at '.{name}': 'get', 'pop', 'values', '+' and the like return a plain dict from YAML "
+        "data, without access by a dot",
         name=name,
     )
-    env.session.warn("XAC902", message, hint=phrase("write ['{name}'] in the place of .{name}", name=name))
+    env.session.warn("XAC902", message, hint=phrase("write ['{name}'] instead of .{name}", name=name))
 
 
 _METHODS: dict[type[ast.AST], Callable[[Compiler, Any], Closure]] = {

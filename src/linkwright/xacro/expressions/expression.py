@@ -1,4 +1,4 @@
-"""Expressions: the part of Python that may stand in ``${...}``.
+"""Expressions: the part of Python that ``${...}`` may contain.
 
 An expression is parsed by Python itself and turned, once for each text, into nested closures (see `compiler`), so
 nothing is ever handed to Python's own ``eval``.
@@ -6,7 +6,7 @@ nothing is ever handed to Python's own ``eval``.
 
 from __future__ import annotations
 
-import _ast as ast  # the nodes alone: what ast adds takes long to import
+import _ast as ast  # the nodes alone: the rest of ast takes long to import
 import re
 from types import GeneratorType
 
@@ -19,7 +19,7 @@ from linkwright.xacro.faults import Fault
 
 _LONGEST = 20_000
 _ITERATORS = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
-"""What is run through before it becomes a value: nested thousands deep, these would overflow the stack."""
+"""Iterators, which become lists at once: nested thousands deep, they would overflow the stack."""
 _WARNS = r"\\|\d\.?[^\W\d]"  # not compiled here: few files need it
 _CLOSING = {"(": ")", "[": "]"}
 _HINTS = (
@@ -84,16 +84,16 @@ def _run_through(closure: Closure, source: str) -> Closure:
         try:
             value = closure(scope)
             return iter(list(value)) if value.__class__ in _ITERATORS else value
-        except FAILURES as error:  # what goes wrong while something is run through, such as a generator
+        except FAILURES as error:  # raised by the iteration, such as by a generator
             raise failure(error, source.strip(), 0, len(source)) from None
 
     return evaluate
 
 
 def is_identifier(name: str) -> bool:
-    """Whether a name can be that of a property: a Python identifier that is no keyword.
+    """Whether a name can be that of a property: a Python identifier that is not a keyword.
 
-    Of letters that Python takes for one another, such as a ligature and its letters, only the plain form is a name.
+    Of letters that Python treats as equal, such as a ligature and its letters, only the plain form is a name.
     """
     if not name.isascii():
         from unicodedata import normalize

@@ -1,7 +1,7 @@
 """Functions that expressions call: calling them, and the steps that they cost.
 
-A function costs what it goes through: Python's own run through a long list much faster than an expression could, but
-not for nothing, and an expression may call them as often as it likes.
+A function costs as much as the items that it visits: Python's own run through a long list much faster than an
+expression could, but not for free, and an expression may call them as often as it likes.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _QUICK = frozenset(
 
 
 def cost(value: Any) -> int:
-    """The steps that one pass over a value costs; what its items contain does not count."""
+    """The steps that one pass over a value costs; the contents of its items do not count."""
     share = _SHARES.get(value.__class__)
     return len(value) // share if share else 0
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import _ast as ast  # the nodes alone: what ast adds takes long to import
+import _ast as ast  # the nodes alone: the rest of ast takes long to import
 from collections.abc import Callable
 
 from linkwright.diagnostics import phrase
@@ -43,7 +43,7 @@ class Parameters(NamedTuple):
         if further and self.rest is None:
             raise TypeError(
                 phrase(
-                    "the lambda takes {count} arguments and {other_count} are given",
+                    "the lambda takes {count} arguments, but {other_count} are given",
                     count=len(self.positional),
                     other_count=len(arguments),
                 )

@@ -27,8 +27,8 @@ class Token(NamedTuple):
     """A piece of a text.
 
     Attributes:
-        kind: what it is.
-        text: for TEXT what it stands for, else what is between the brackets.
+        kind: its kind.
+        text: the text that a TEXT token yields; for other kinds the text between the brackets.
         start: offset of its first character.
         end: offset after its last character.
     """
@@ -61,7 +61,7 @@ def tokenize(text: str) -> list[Token]:
         Fault: XAC101 for a bracket that is never closed or a dollar sign that means nothing.
     """
     if text.startswith("${") and text.find("}") == len(text) - 1:
-        return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # what most texts with a dollar are
+        return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # most texts with a dollar
     pattern = re.compile(_PIECE)
     tokens: list[Token] = []
     at = 0

@@ -11,7 +11,7 @@ from functools import lru_cache
 from linkwright.lean_typing import Any
 
 _NEVER_A_LITERAL = frozenset('ABCDEGHJKLMOPQRSUVWXYZabcdeghjklmopqrsuvwxyz$/<>(["')
-"""What no number and no boolean begins with."""
+"""Characters that begin neither a number nor a boolean."""
 _BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
@@ -44,10 +44,10 @@ def number_or_boolean(text: str) -> Any:
 
 
 def truth(value: Any) -> bool:
-    """Whether a condition holds: ``true``, ``True``, ``false``, ``False`` or a whole number; else Python's truth.
+    """Whether a condition holds: ``true``, ``True``, ``false``, ``False`` or an integer; else Python's truth.
 
     Raises:
-        ValueError: the value is a string that says neither.
+        ValueError: the value is a string that is none of these.
     """
     if not isinstance(value, str):
         return bool(value)

@@ -1,6 +1,6 @@
 """The sandbox of expressions: the operations that they may apply to values.
 
-Expressions come from strangers' files, so nothing here is forbidden by name: what is allowed is listed, and everything
+Expressions come from untrusted files, so nothing here is forbidden by name: allowed names are listed, and everything
 else is refused. An attribute is reached only on a type listed here and only if it is listed for that type; a type is
 called only if it is listed; and nothing may grow beyond the bounds below.
 """
@@ -21,7 +21,7 @@ from linkwright.xacro.expressions.yamldata import YamlDict, YamlList, YamlMappin
 MAX_LENGTH = 1_000_000
 """How many characters a string, or items a list, may have."""
 MAX_BITS = 20_000
-"""How many bits a whole number may have."""
+"""How many bits an integer may have."""
 MAX_DIGITS = 1_000
 """How wide or precise a formatted number may be."""
 
@@ -81,7 +81,7 @@ CALLABLE_TYPES = frozenset(
 
 
 def attribute(value: Any, name: str) -> Any:
-    """``value.name``, where it is allowed.
+    """``value.name``, if it is allowed.
 
     Raises:
         AttributeError: there is no such attribute.
@@ -155,7 +155,7 @@ def check_size(value: Any) -> Any:
 
 
 def weight(value: Any) -> int:
-    """How many items or characters a value has, with all that is in it; for a number, how many machine words.
+    """How many items or characters a value has, nested ones included; for a number, how many machine words.
 
     Raises:
         RefusalError: a string, list or number is larger than the bounds.
@@ -189,7 +189,7 @@ def joined(parts: list[str]) -> str:
 
 
 def as_text(value: Any) -> str:
-    """``str(value)``, which is what the expansion writes.
+    """``str(value)``, the text that the expansion writes.
 
     Raises:
         RefusalError: it would be too long.
@@ -205,7 +205,7 @@ def _check_length(length: int) -> None:
 
 
 _WEIGHTLESS: frozenset[type] = frozenset({int, float, bool})
-"""What most items are, of those that are no texts."""
+"""The types of most items that are not texts."""
 
 
 def _weigh(value: Any) -> int:
@@ -299,8 +299,8 @@ def formatted(value: Any, conversion: int, specification: str) -> str:
 
     Args:
         value: its value.
-        conversion: the letter after its exclamation mark, as a number; -1 where there is none.
-        specification: what follows its colon.
+        conversion: the letter after its exclamation mark, as a number; -1 if there is none.
+        specification: the text after its colon.
 
     Raises:
         RefusalError: it would be too long.

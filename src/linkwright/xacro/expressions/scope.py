@@ -22,7 +22,7 @@ class Context(Protocol):
     Attributes:
         arguments: name -> value of every argument given or declared so far.
         limits: the bounds of the expansion.
-        budget: what is left of them.
+        budget: the remaining budget.
         file: the file being processed.
         place: the element or text being processed.
         attribute: the attribute of that element which is being evaluated, or None.
@@ -68,7 +68,7 @@ class Context(Protocol):
 
 
 class Lazy:
-    """A property that nobody has asked for yet: its text, and where that is written."""
+    """A property that is not evaluated yet: its text, and the place of the text."""
 
     __slots__ = ("attribute", "element", "resolving", "text")
 
@@ -90,7 +90,7 @@ class Scope:
         self.values: dict[str, Any] = {} if values is None else values
 
     def lookup(self, name: str) -> Any:
-        """The value of a name, evaluated if nobody asked for it before.
+        """The value of a name, evaluated at the first lookup.
 
         Raises:
             KeyError: no scope of the chain has it.
@@ -121,9 +121,9 @@ class Scope:
         Args:
             name: the name.
             value: the value; a string is subject to the literal rule.
-            lazy: whether a string is a text to be evaluated when somebody asks for it.
+            lazy: whether a string is evaluated only at its first lookup.
             element: the element that the text is written in, for messages.
-            attribute: the attribute of it that holds the text.
+            attribute: its attribute that contains the text.
         """
         plain = literal(value)
         if lazy and isinstance(plain, str):
@@ -142,7 +142,7 @@ class Scope:
         self.values[name] = value
 
     def inner(self) -> Local:
-        """The environment of a lambda or comprehension that stands in an expression evaluated here."""
+        """The environment of a lambda or comprehension in an expression that is evaluated here."""
         return Local(self, {})
 
     def remove(self, name: str) -> None:
@@ -177,14 +177,14 @@ class Scope:
         chain = self.session.resolving
         if lazy.resolving:
             circle = " -> ".join([*chain[chain.index(name) :], name])
-            hint = phrase('evaluate one of them where it is written: lazy_eval="false"')
+            hint = phrase('evaluate one of them at its definition: lazy_eval="false"')
             raise Fault(
                 "XAC203",
-                phrase("the property '{name}' is defined by itself: {circle}", name=name, circle=circle),
+                phrase("the property '{name}' depends on itself: {circle}", name=name, circle=circle),
                 hint=hint,
             )
         if len(chain) >= self.session.limits.depth:
-            raise Fault("XAC601", phrase("more than {count} properties are defined by one another", count=len(chain)))
+            raise Fault("XAC601", phrase("more than {count} properties depend on one another", count=len(chain)))
         session = self.session
         around = session.place, session.attribute
         if lazy.element is not None:
@@ -237,7 +237,7 @@ class Local:
         self._around.assign(name, value)
 
     def inner(self) -> Local:
-        """The environment of a lambda or comprehension that stands in this one."""
+        """The environment of a lambda or comprehension inside this one."""
         return Local(self, {})
 
     def blocks(self) -> Iterator[str]:

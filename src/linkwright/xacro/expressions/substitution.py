@@ -1,7 +1,7 @@
 """Substitution arguments: ``$(arg name)``, ``$(find package)`` and their like.
 
-What is between the parentheses is split at blanks into a command and its arguments. What comes out is looked through
-once more for ``$(find ...)``, so that the value of an argument may hold one.
+The text between the parentheses is split at blanks into a command and its arguments. Each ``$(find ...)`` in the result
+is evaluated too, so that the value of an argument may contain one.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from linkwright.xacro.faults import Fault
 
 _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")
 _KNOWN = phrase("the commands are {commands}", commands=joined(_COMMANDS))
-_NO_DIRECTORY = phrase("ros/xacro knows the command 'dirname' but fails wherever it stands")
+_NO_DIRECTORY = phrase("ros/xacro knows the command 'dirname', but it always fails")
 _INSTEAD_OF_DIRECTORY = phrase(
     "write $(find PACKAGE)/FOLDER, or ${xacro.abs_filename('FILE')} for a file beside this one"
 )
@@ -51,7 +51,7 @@ def _check_characters(body: str) -> None:
     for sign in "$(":
         at = body.find(sign)
         if at >= 0:
-            raise Fault("XAC213", phrase("'{sign}' may not stand inside '$(...)'", sign=sign), at, at + 1)
+            raise Fault("XAC213", phrase("'{sign}' is not allowed inside '$(...)'", sign=sign), at, at + 1)
 
 
 def _found_again(whole: str, body: str, session: Context) -> str:
@@ -87,13 +87,13 @@ def _one(command: str, what: str, words: list[str]) -> str:
         raise Fault(
             "XAC213",
             phrase(
-                "'$({command} ...)' takes one {what} and {count} are given",
+                "'$({command} ...)' takes one {what}, but {count} are given",
                 command=command,
                 what=term(what),
                 count=len(words),
             )
             if words
-            else phrase("'$({command} ...)' takes one {what} and none is given", command=command, what=term(what)),
+            else phrase("'$({command} ...)' takes one {what}, but none is given", command=command, what=term(what)),
         )
     return words[0]
 
@@ -110,14 +110,14 @@ def _variable(words: list[str], _session: Context) -> str:
     name = _one("env", "name", words)
     value = _environment(name)
     if value is None:
-        hint = phrase("write $(optenv {name} DEFAULT) where it need not be set", name=name)
+        hint = phrase("write $(optenv {name} DEFAULT) if it may be unset", name=name)
         raise Fault("XAC214", phrase("the environment variable '{name}' is not set", name=name), hint=hint)
     return value
 
 
 def _optional_variable(words: list[str], _session: Context) -> str:
     if not words:
-        raise Fault("XAC213", phrase("'$(optenv ...)' takes a name and a default, and nothing is given"))
+        raise Fault("XAC213", phrase("'$(optenv ...)' takes a name and a default, but neither is given"))
     value = _environment(words[0])
     return " ".join(words[1:]) if value is None else value
 
@@ -178,7 +178,7 @@ def _typed(value: str) -> Any:
 
 
 def package_fault(error: LinkwrightError) -> Fault:
-    """The fault for a package that is not found, with the words of the room that looked for it."""
+    """The fault for a package that is not found, with the message of the package finder."""
     diagnostic = error.diagnostics[0]
     fault = Fault(diagnostic.code, diagnostic.message, hint=diagnostic.hint)
     fault.notes.extend(diagnostic.notes)

@@ -1,7 +1,7 @@
 """The names that the language provides to expressions.
 
 They are those of ros/xacro: a few of Python's functions, all of ``math``, and the groups ``math``, ``python`` and
-``xacro``. Functions that could make something very large, or reach what expressions may not see, are guarded.
+``xacro``. Functions that could make very large values, or reach objects that expressions may not see, are guarded.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
     try:
         parts = bounded.split(f"[{inside}]", text)
     except re.error as error:
-        raise ValueError(phrase("'{sep}' are no characters to split at: {error}", sep=sep, error=error)) from None
+        raise ValueError(phrase("cannot split at '{sep}': {error}", sep=sep, error=error)) from None
     return [part for part in parts if part] if skip_empty else parts
 
 

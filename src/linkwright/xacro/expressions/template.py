@@ -1,7 +1,7 @@
 """Texts with ``${...}`` and ``$(...)`` in them, compiled once for each text and evaluated in any scope.
 
-A text that is exactly one token keeps the type of its value, such as a float or a list; anything else is joined to a
-string. What comes out is not evaluated again.
+A text that is exactly one token keeps the type of its value, such as a float or a list; any other result is joined to a
+string. The result is not evaluated again.
 """
 
 from __future__ import annotations
@@ -56,10 +56,10 @@ class Template:
         return _placed(expression.evaluate, start, end)
 
     def _nested(self, token: Token) -> _Part:
-        """A token whose inside is itself a text: that is evaluated first, and what comes out is the source."""
+        """A token whose inside is itself a text: that text is evaluated first, and its value is the source."""
         kind, text, start, end = token
         inner = _placed(compile_template(text).evaluate, start, end)
-        self.changes = True  # nobody knows before it is evaluated
+        self.changes = True  # not known before it is evaluated
 
         def part(scope: Scope) -> Any:
             source = _as_text(inner(scope))
@@ -100,7 +100,7 @@ def _placed(evaluate: _Part, start: int, end: int) -> _Part:
 
 
 def _joined(texts: list[str], parts: list[_Part | None]) -> _Part:
-    """A function that evaluates the parts of a text and joins them; a part without one stands for its text."""
+    """A function that evaluates the parts of a text and joins them; without a part, the text itself is used."""
     evaluated = [(place, part) for place, part in enumerate(parts) if part is not None]
 
     def join(scope: Scope) -> str:

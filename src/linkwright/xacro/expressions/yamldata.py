@@ -21,21 +21,21 @@ UNITS = {
     "!foot": 0.3048,
     "!inches": 0.0254,
 }
-"""What one of each unit is in metres or radians."""
+"""One of each unit in metres or radians."""
 
 
 class YamlMapping(dict[Any, Any]):
-    """A mapping as it lies in YAML data: ros/xacro has a plain dict for it, which knows no dots."""
+    """A mapping inside YAML data: a plain dict in ros/xacro, without access by a dot."""
 
     __slots__ = ()
 
 
 class YamlDict(dict[Any, Any]):
-    """A mapping whose items are reached with a dot too.
+    """A mapping whose items can also be reached with a dot.
 
-    As in ros/xacro, the mappings and lists inside get what they lack, a dot, when they are reached for, and are copies
-    of what lies there: a loop that empties ``data.joints`` leaves ``data`` as it is. What a method gives, such as
-    ``get`` or ``values``, is what lies there.
+    As in ros/xacro, a mapping or list inside gets this access when it is read, as a copy: a loop that empties
+    ``data.joints`` leaves ``data`` as it is. Methods such as ``get`` or ``values`` return the original
+    items.
     """
 
     __slots__ = ()
@@ -61,10 +61,10 @@ class YamlList(list[Any]):
 
 
 _SCALARS: frozenset[type] = frozenset({str, int, float, bool})
-"""What most data ends in; it has no items."""
+"""The types of most leaves of data; they have no items."""
 
 COPIED: frozenset[type] = frozenset({YamlDict, YamlList})
-"""What is made anew whenever it is reached for."""
+"""The types that are copied at every access."""
 
 
 def wrapped(value: Any) -> Any:
@@ -75,7 +75,7 @@ def wrapped(value: Any) -> Any:
 
 
 class YamlError(Exception):
-    """A file that is no YAML; line and column count from 1 and are 0 when they are not known."""
+    """A file that is not YAML; line and column count from 1 and are 0 if they are not known."""
 
     def __init__(self, message: str, line: int = 0, column: int = 0) -> None:
         super().__init__(message)
@@ -105,7 +105,7 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
 
 
 kept: Kept[str, Any] = Kept(200, lambda *_: 1)
-"""Text -> its value, for texts without tags, whose values never differ; who asks gets a copy."""
+"""Text -> its value, for texts without tags, whose values never differ; a caller gets a copy."""
 
 
 def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
@@ -153,7 +153,7 @@ def _copied(value: Any, seen: dict[int, Any]) -> Any:
 
 
 def _unit_loader(base: type, evaluate: Callable[[str], Any]) -> Any:
-    """A loader class that knows units; made anew for each file, because each evaluates in an expansion of its own."""
+    """A loader class that knows units; one for each file, because each evaluates in an expansion of its own."""
 
     class UnitLoader(base):  # type: ignore[misc]
         """The safe loader plus units."""

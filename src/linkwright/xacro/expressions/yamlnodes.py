@@ -1,7 +1,7 @@
-"""From YAML nodes to values, for what nearly all files consist of: mappings and lists of texts and numbers.
+"""From YAML nodes to values, for the content of nearly all files: mappings and lists of texts and numbers.
 
-PyYAML's own way does the same with a dozen calls for each value. Anything out of the ordinary (merge keys, keys that
-are no scalars, dates, tags) is left to it.
+PyYAML's own way does the same with a dozen calls for each value. It still handles the rare cases: merge keys, keys that
+are not scalars, dates, tags.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _LONGEST_NUMBER = 4_000
 _MOST_LARGE_NUMBERS = 1_000
 
 tags: dict[str, str] = {}
-"""Plain scalar -> its tag; what a plain scalar is does not depend on where it stands."""
+"""Plain scalar -> its tag, which does not depend on the place of the scalar."""
 
 
 class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
@@ -56,7 +56,7 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
         self.depth -= 1
 
     def construct_yaml_int(self, node: Any) -> Any:
-        """A whole number. Those that may have the hash of another one, and so make slow keys, are counted."""
+        """Return an integer. Those that may have the hash of another one, and so make slow keys, are counted."""
         if len(node.value) > _LONGEST_NUMBER:
             message = f"the number has more than {_LONGEST_NUMBER:,} characters"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
@@ -105,7 +105,7 @@ class _Construction:
             f"{_PREFIX}null": loader.construct_yaml_null,
         }
         self._begun: set[int] = set()
-        self._done: dict[int, Any] = {}  # node -> its value, for what aliases share
+        self._done: dict[int, Any] = {}  # node -> its value, shared by aliases
 
     def value(self, node: Any) -> Any:
         tag = node.tag

@@ -38,13 +38,13 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
         if name in required or name in optional or name.startswith("xmlns:"):
             continue
         hint = did_you_mean(name, required + optional)
-        message = phrase("'{tag}' knows no attribute '{name}'", tag=node.tag, name=name)
+        message = phrase("'{tag}' does not accept the attribute '{name}'", tag=node.tag, name=name)
         expander.session.warn("XAC302", message, attribute_name(node, name), hint)
 
 
 def warn_of_global(expander: Expander, node: Element, name: str, attribute: str) -> None:
     """Warn that a name which the language provides gets another meaning."""
     if name in expander.session.globals.values:
-        message = phrase("'{name}' is a name that xacro provides, and is given another meaning here", name=name)
+        message = phrase("'{name}' is a name that xacro provides, and is redefined here", name=name)
         span = node.attribute_span(attribute) if attribute == "name" else attribute_name(node, attribute)
         expander.session.warn("XAC306", message, span)

@@ -1,4 +1,4 @@
-"""The tags of the language, but for macro calls: what each one does."""
+"""The tags of the language, except macro calls, and their effects."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.xacro.tags.properties import define_property
 from linkwright.xmltree import Element
 
 _NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # not compiled here: few files need it
-"""What XML allows as a name, nearly."""
+"""A name in XML, nearly."""
 
 
 def declare_argument(expander: Expander, site: Site) -> None:
@@ -31,10 +31,10 @@ def declare_argument(expander: Expander, site: Site) -> None:
 
 
 def expand_condition(expander: Expander, site: Site) -> None:
-    """``<xacro:if value>`` and ``<xacro:unless value>``: keeps what it holds, or does not."""
+    """``<xacro:if value>`` and ``<xacro:unless value>``: keeps its content, or drops it."""
     node, scope, session = site.node, site.scope, expander.session
     output = site.parent.children
-    waiting: list[Any] = []  # the marker stands below the tag, unless something inside takes it
+    waiting: list[Any] = []  # the marker is below the tag, unless a tag inside takes it
     if expander.sweeper.sweep(output, followed=site.followed):
         expander.sweeper.mark(waiting)
     check_attributes(expander, node, ("value",), ())
@@ -47,11 +47,11 @@ def expand_condition(expander: Expander, site: Site) -> None:
             value=node.attributes["value"],
             other_value=value,
         )
-        hint = phrase("it must be true, false or a whole number")
+        hint = phrase("it must be true, false or an integer")
         expander.fail_at("XAC305", message, node, node.attribute_span("value"), hint)
     if keep is (node.tag == "xacro:if"):
         if "$" in node.attributes["value"] and session.changes(node.attributes["value"]):
-            expander.attributes(node, scope)  # ros/xacro evaluates the attributes of what it keeps once more
+            expander.attributes(node, scope)  # ros/xacro evaluates the attributes of elements that it keeps once more
         container = Container(node.tag)
         expander.children(node, container, scope, site.macros)
         expander.splice(container, site)
@@ -109,7 +109,7 @@ def set_attribute(expander: Expander, site: Site) -> None:
         expander.session.take_back(before[1])
     if isinstance(site.parent, Container) and not name.startswith("xmlns:"):
         message = phrase(
-            "ros/xacro drops the attribute '{name}': it stands in <{tag}> and not directly in the element it is for",
+            "ros/xacro drops the attribute '{name}': it is inside <{tag}>, not directly in its element",
             name=name,
             tag=site.parent.tag,
         )
@@ -124,18 +124,18 @@ def set_attribute(expander: Expander, site: Site) -> None:
 
 
 def _warn_of_value(expander: Expander, site: Site, name: str, value: object) -> None:
-    """Warn of a value that is no text, until another one takes its place."""
+    """Warn of a value that is not text, until another one replaces it."""
     node = site.node
     kind = type(value).__name__
     message = (
         phrase(
-            "ros/xacro fails to write the attribute '{name}': its value is no text but of type {kind}",
+            "ros/xacro fails to write the attribute '{name}': its value has the type {kind} and is not text",
             name=name,
             kind=kind,
         )
         if value
         else phrase(
-            "ros/xacro writes the attribute '{name}' empty: its value is no text but of type {kind}",
+            "ros/xacro writes the attribute '{name}' empty: its value has the type {kind} and is not text",
             name=name,
             kind=kind,
         )
@@ -169,4 +169,4 @@ DIRECTIVES: Mapping[str, Directive] = {
     "xacro:property": define_property,
     "xacro:unless": expand_condition,
 }
-"""Tag -> what expands it; any other tag with the prefix is a macro call."""
+"""Tag -> the function that expands it; any other tag with the prefix is a macro call."""

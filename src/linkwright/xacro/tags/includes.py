@@ -25,7 +25,7 @@ def include(expander: Expander, site: Site) -> None:
     optional = _is_optional(expander, node)
     child = next(node.elements(), None)
     if child is not None:
-        session.warn("XAC503", phrase("'{tag}' inside an include means nothing", tag=child.tag), child.span())
+        session.warn("XAC503", phrase("'{tag}' inside an include has no effect", tag=child.tag), child.span())
     contents: list[Element] = []
     for path in _paths(expander, site):
         session.depends_on(path)
@@ -129,7 +129,7 @@ def _document(expander: Expander, site: Site, path: str) -> Document:
 
 
 def xml_hint(diagnostic: Diagnostic) -> Phrase | None:
-    """The hint of a mistake in the XML; for the prefix of this language it says how that is declared."""
+    """The hint of a mistake in the XML; for the prefix of this language, how to declare it."""
     if diagnostic.code == "XML205" and diagnostic.message.startswith("the prefix 'xacro'"):
         return phrase('declare it on the root element: xmlns:xacro="http://www.ros.org/wiki/xacro"')
     return diagnostic.hint
@@ -138,6 +138,6 @@ def xml_hint(diagnostic: Diagnostic) -> Phrase | None:
 def _nearest_file(path: str) -> Phrase | None:
     folder, name = os.path.split(path)
     try:
-        return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are wanted, not paths
+        return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are needed, not paths
     except (OSError, ValueError):
         return phrase("there is no folder '{folder}'", folder=display_path(folder))

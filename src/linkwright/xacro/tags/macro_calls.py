@@ -27,7 +27,7 @@ def define_macro(expander: Expander, site: Site) -> None:
         )
     if "." in name:
         span = node.attribute_span("name")
-        hint = phrase("a dot stands between a namespace and a macro")
+        hint = phrase("a dot separates a namespace from a macro")
         expander.fail_at("XAC407", phrase("the name of the macro '{name}' has a dot", name=name), node, span, hint)
     if name.startswith(PREFIX):
         name = name[len(PREFIX) :]
@@ -67,7 +67,7 @@ def call_macro(expander: Expander, site: Site) -> None:
 class _Call:
     """One call of a macro.
 
-    The arguments and then the blocks are evaluated in the caller's scope, then the defaults of what was not given;
+    The arguments and then the blocks are evaluated in the caller's scope, then the defaults of missing arguments;
     then the body is expanded in a scope of its own.
     """
 
@@ -135,7 +135,7 @@ class _Call:
     # binding the parameters
 
     def _take_arguments(self, macro: Macro, scope: Scope) -> list[Parameter]:
-        """Bind the attributes of the call; what is returned are the parameters that they leave."""
+        """Bind the attributes of the call, and return the parameters that are not bound."""
         expander, node, caller = self._expander, self._node, self._site.scope
         attributes = node.attributes
         for name, text in attributes.items():

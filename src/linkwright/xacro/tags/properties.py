@@ -32,7 +32,9 @@ def define_property(expander: Expander, site: Site) -> None:
         return
     if "default" in attributes:
         if "scope" in attributes:
-            message = phrase("the default of '{name}' is for this scope only; 'scope' means nothing with it", name=name)
+            message = phrase(
+                "the default of '{name}' applies to this scope only; 'scope' has no effect with it", name=name
+            )
             expander.session.warn("XAC308", message, node.attribute_span("scope"))
         if name in scope:
             return
@@ -56,7 +58,7 @@ def _name(expander: Expander, node: Element, scope: Scope) -> str:
         name = expander.text_value(node, "name", scope)
     if not is_identifier(name):
         message = phrase("'{name}' cannot be the name of a property", name=name)
-        hint = phrase("a name consists of letters, digits and underscores, and is no word of Python's")
+        hint = phrase("a name consists of letters, digits and underscores, and is not a Python keyword")
         expander.fail_at("XAC303", message, node, node.attribute_span("name"), hint)
     if name.startswith("__"):
         message = phrase("the name '{name}' begins with two underscores", name=name)
@@ -78,7 +80,7 @@ def _flag(expander: Expander, node: Element, attribute: str, scope: Scope, *, de
 
 
 def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
-    """Take a value away. False where there is none: then, as in ros/xacro, the element defines a block of this name."""
+    """Remove a value. False if there is none: then, as in ros/xacro, the element defines a block of this name."""
     span = node.attribute_span("name")
     if name not in scope:
         expander.session.warn("XAC310", phrase("there is no property '{name}' to remove", name=name), span)
@@ -92,7 +94,7 @@ def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
 
 
 def _target(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
-    """The scope that a property goes to, and whether that is the one it stands in."""
+    """The scope that a property goes to, and whether that is the scope of its tag."""
     where = node.attributes.get("scope")
     if where == "global":
         return scope.document_scope(), False

@@ -1,1 +1,1 @@
-"""Expansions that are traced, for what they tell: arguments, the provenance of elements, the log of properties."""
+"""Traced expansions, for the arguments, the provenance of elements and the log of properties."""

@@ -1,9 +1,9 @@
 """The arguments that a description takes, whether or not it can be expanded without them.
 
-The file is expanded with a session that never lacks an argument: one that is not there gets the default that some file
-declares for it, or an empty text, and is noted as required. All files that were read that way are then looked through
-for what lies in branches not taken and in macros not called; where the expansion came to no end, includes that it did
-not reach are followed as far as their names can be told.
+The file is expanded with a session that never lacks an argument: a missing one gets the default that some file
+declares for it, or an empty text, and is noted as required. All files that were read that way are then searched,
+including branches not taken and macros not called. If the expansion did not finish, includes that it did
+not reach are followed as far as their names are known.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ class Argument:
     Attributes:
         name: its name.
         default: its default as written, or None if the files declare none.
-        span: where it is declared; where it is first used if nothing declares it.
-        required: whether the description cannot be expanded unless it is given. That may be so in spite of a default:
+        span: where it is declared; its first use if nothing declares it.
+        required: whether the description cannot be expanded without it. That may be so in spite of a default:
             the attributes of the root are evaluated before any declaration.
-        used: whether anything asks for it.
-        value: what it is worth with the arguments given, or None where that cannot be told.
+        used: whether any text uses it.
+        value: its value with the given arguments, or None if that is not known.
         given: whether it was given.
     """
 
@@ -56,9 +56,9 @@ class Arguments:
     """The arguments of a description, as `examine_arguments` found them.
 
     Attributes:
-        arguments: the arguments, in the order in which they are met.
+        arguments: the arguments, in the order of their first use.
         unused: a warning for each argument that was given and that nothing declares or uses.
-        problems: why the expansion came to no end, if it did not; arguments may be missing from the list then.
+        problems: why the expansion did not finish, if so; arguments may be missing from the list then.
     """
 
     arguments: tuple[Argument, ...]
@@ -92,9 +92,9 @@ class _Session(TracedSession):
 
     Attributes:
         documents: path -> document of every file read.
-        declared: name -> the first element met that declares it.
-        missing: names that were asked for when nothing had given them a value.
-        asked: names that were asked for.
+        declared: name -> the first element that declares it.
+        missing: names that were used before they had a value.
+        asked: names that were used.
     """
 
     def __init__(self, inputs: Inputs) -> None:
@@ -106,7 +106,7 @@ class _Session(TracedSession):
         self._defaults: dict[str, str] = {}
 
     def read(self, path: str) -> Document:
-        """The document of a file; what it declares is a default for what is missing from then on."""
+        """The document of a file; its declarations are defaults for arguments that are missing from then on."""
         document = super().read(path)
         if path not in self.documents:
             self.documents[path] = document
@@ -114,14 +114,14 @@ class _Session(TracedSession):
         return document
 
     def expect(self, document: Document) -> None:
-        """Take the defaults that a document declares for what may be missing before it is declared."""
+        """Record a document's default for each argument that may be missing before its declaration."""
         for element in document.root.walk():
             if element.tag == "xacro:arg" and "name" in element.attributes:
                 default = element.attributes.get("default", "")
                 self._defaults.setdefault(element.attributes["name"], "" if "$" in default else default)
 
     def argument(self, name: str) -> str:
-        """The value of an argument, or what stands for it."""
+        """The value of an argument, or its replacement."""
         self.asked[name] = None
         if name not in self.arguments:
             self.missing[name] = None
@@ -139,7 +139,7 @@ class _Findings:
     """The findings about arguments, by name.
 
     Attributes:
-        complete: whether the expansion came to its end, so that what it asked for is all that it needs.
+        complete: whether the expansion finished, so that it used every argument that it needs.
     """
 
     inputs: Inputs
@@ -214,7 +214,7 @@ class _Findings:
 
 
 def _follow_includes(session: _Session) -> None:
-    """Read the includes that an expansion did not come to, as far as their names can be told."""
+    """Read the includes that an expansion did not reach, as far as their names are known."""
     scope = Scope(session.globals, session)
     pending = list(session.documents.items())
     seen = set(session.documents)
@@ -234,7 +234,7 @@ def _follow_includes(session: _Session) -> None:
 
 
 def _uses(element: Element) -> Iterator[tuple[str, Span | None]]:
-    """The arguments that an element asks for, in its attributes and the texts directly inside."""
+    """The arguments that an element uses, in its attributes and the texts directly inside."""
     for attribute, value in element.attributes.items():
         for match in _found(value):
             name = match["plain"] or match["called"]

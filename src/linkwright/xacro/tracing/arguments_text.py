@@ -11,7 +11,7 @@ from linkwright.xacro.tracing.provenance_text import place
 
 
 def arguments_text(arguments: tuple[Argument, ...]) -> str:
-    """The arguments, one a line: name, default, place, and what is special about it."""
+    """The arguments, one a line: name, default, place, and remarks."""
     if not arguments:
         return "the file takes no arguments\n"
     names = max(len(argument.name) for argument in arguments)
@@ -24,7 +24,7 @@ def arguments_text(arguments: tuple[Argument, ...]) -> str:
 
 
 def incomplete(examined: Arguments) -> list[Diagnostic]:
-    """A remark that the list may lack arguments, when the expansion came to no end."""
+    """A remark that the list may lack arguments, if the expansion did not finish."""
     if not examined.problems:
         return []
     first = examined.problems[0]

@@ -17,11 +17,11 @@ from linkwright.xmltree import Element
 
 
 def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bool) -> None:
-    """Expand a file for the log alone; what is wrong with it is not told.
+    """Expand a file for the log alone; its mistakes are not reported.
 
     Args:
-        inputs: what the expansion starts from.
-        put: takes each line of the log.
+        inputs: the inputs of the expansion.
+        put: receives each line of the log.
         everywhere: whether the properties and parameters of macros and namespaces are logged too.
     """
     log = _Log(put, everywhere=everywhere)
@@ -32,21 +32,21 @@ def log_properties(inputs: Inputs, put: Callable[[str], None], *, everywhere: bo
 
 
 class _Log:
-    """Puts a `_Table` into each scope as soon as it is seen."""
+    """Puts a `_Table` into each scope at its first probe."""
 
     def __init__(self, put: Callable[[str], None], *, everywhere: bool) -> None:
         self._put = put
         self._everywhere = everywhere
 
     def probe(self, expander: Expander, site: Site) -> None:
-        """Log the properties of the scope that a probe stands in."""
+        """Log the properties of the scope of a probe."""
         scope, about = site.scope, site.node.origin
         depth = _depth(scope)
         if scope.values.__class__ is dict and (depth == 1 or self._everywhere):
             session = expander.session
             known, scope.values = scope.values, _Table(session, self._put, depth - 1)
             if session.frame is not None:
-                session.place = session.frame.site  # which gives the parameters that are there already
+                session.place = session.frame.site  # which gives the existing parameters
             for name, value in known.items():
                 scope.values[name] = value
         if not (isinstance(about, Element) and about.tag == "xacro:macro"):
@@ -67,7 +67,7 @@ class _Table(dict[str, Any]):
 
     def __setitem__(self, name: str, value: Any) -> None:
         super().__setitem__(name, value)
-        if name in self._waiting:  # not set anew: it is evaluated because it is used
+        if name in self._waiting:  # not set again: it is evaluated because it is used
             self._waiting.discard(name)
             self._tell("use", name, value)
         else:

@@ -39,7 +39,7 @@ class AttributeProvenance:
         value: its value in the result.
         written: its text in the source, such as ``${prefix}_link``.
         span: the place of that text.
-        values: what the text refers to, with the values it had.
+        values: the names in the text, with their values.
         calls: the calls and includes around that place, innermost first; they are others than the element's when
             ``<xacro:attribute>`` has set the attribute.
     """
@@ -60,7 +60,7 @@ class TextProvenance:
         value: the text in the result, without the blanks around it.
         written: the text in the source.
         span: its place.
-        values: what it refers to, with the values it had.
+        values: the names in it, with their values.
     """
 
     value: str
@@ -76,7 +76,7 @@ class Provenance:
     Attributes:
         element: the element as it is in the result.
         span: where it is written.
-        calls: the macro calls and includes that brought it where it is, innermost first.
+        calls: the macro calls and includes around it, innermost first.
         attributes: the provenance of each attribute, in document order.
         texts: the provenance of each text directly inside, blank ones left out.
         children: the provenance of the elements inside.
@@ -104,11 +104,11 @@ def provenance_of(inputs: Inputs, root: Element, element: Element) -> Provenance
 
 
 class Tracer:
-    """Expands once more with a recorder, and tells what that has seen.
+    """Expands again with a recorder, and returns the provenance that it recorded.
 
     Args:
-        inputs: what the expansion starts from.
-        root: the root of what came out the first time.
+        inputs: the inputs of the expansion.
+        root: the root of the first result.
     """
 
     def __init__(self, inputs: Inputs, root: Element) -> None:
@@ -123,10 +123,10 @@ class Tracer:
             self._twins[id(ours)] = theirs
 
     def trace(self, element: Element) -> Provenance:
-        """The provenance of an element of what came out the first time.
+        """The provenance of an element of the first result.
 
         Raises:
-            LinkwrightError: XAC802 when something else came out now.
+            LinkwrightError: XAC802 if the second result differs.
         """
         with room_for(self._inputs.limits):
             return self._trace(element)

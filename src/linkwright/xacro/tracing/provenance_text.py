@@ -15,11 +15,11 @@ _OUTSIDE = {
     "package": "where the package is",
     "variable": "from the environment",
 }
-"""What is said of a value that no file gives."""
+"""Descriptions of values that no file gives."""
 
 
 def provenance_text(provenance: Provenance) -> str:
-    """For a terminal: the element as it comes out, the calls that brought it there, and what was evaluated."""
+    """For a terminal: the resulting element, the calls that led to it, and the texts that were evaluated."""
     return "\n".join([write_element(provenance.element).rstrip("\n"), "", *provenance_lines(provenance)]) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""The recorder: what an expansion did for each element that it made."""
+"""The recorder: the steps of an expansion for each element that it made."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class Moment:
     Attributes:
         node: the element as it is written.
         frame: the innermost macro call or include then.
-        values: attribute -> what it refers to.
-        texts: text as it is written, with what it refers to, for the texts with expressions in it.
+        values: attribute -> the names in it.
+        texts: text as it is written, with the names in it, for the texts with expressions.
     """
 
     node: Element
@@ -39,7 +39,7 @@ class Moment:
 
 @dataclass(frozen=True)
 class Setting:
-    """A use of ``<xacro:attribute>``: its element, the call or include then, and what its value refers to."""
+    """A use of ``<xacro:attribute>``: its element, the call or include then, and the names in its value."""
 
     node: Element
     name: str
@@ -55,7 +55,7 @@ class Recorder:
         given: the names of the arguments that were given.
 
     Attributes:
-        directives: what the expansion is to be done with.
+        directives: the directives for the expansion.
     """
 
     def __init__(self, given: Collection[str] = ()) -> None:
@@ -73,13 +73,13 @@ class Recorder:
         self._parameters: dict[int, dict[str, Value]] = {}
         self._of_frame: dict[int, tuple[Value, ...]] = {}
         self._arguments: dict[str, Element] = {}
-        self._kept: list[Any] = []  # what is known by its id must live on
+        self._kept: list[Any] = []  # objects known by their id must stay alive
 
     def call(self, expander: Expander, site: Site) -> None:
         """Expand a macro call, and record it."""
         self._watched(call_macro)(expander, site)
 
-    # what was recorded
+    # the recorded moments
 
     def moment(self, element: Element) -> Moment | None:
         """How an element was made."""
@@ -261,7 +261,7 @@ def _holder(scope: Scope, name: str) -> Scope | None:
 
 
 def _parameter(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
-    """A parameter of a call: what the call gives it, or its default."""
+    """A parameter of a call: its argument, or its default."""
     text = shown(value.text if isinstance(value, Lazy) else literal(value))
     if parameter.name in call.attributes:
         place, written = call.attribute_span(parameter.name), written_attribute(call, parameter.name)

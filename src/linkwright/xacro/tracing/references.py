@@ -50,7 +50,7 @@ class Reference(NamedTuple):
 
 
 def references(text: str) -> list[Reference]:
-    """The names in a text, each path once, in the order in which they stand there."""
+    """The names in a text, each path once, in the order of the text."""
     found = dict.fromkeys(_references(text))
     return list(found)
 
@@ -68,7 +68,7 @@ def shown(value: Any) -> str:
 
 
 def written_attribute(element: Any, name: str) -> str | None:
-    """An attribute's value as the source has it, or None when it is not there."""
+    """An attribute's value as the source has it, or None if it is not written there."""
     source = element.source
     if source is None:
         return None
@@ -125,7 +125,7 @@ class _Paths(ast.NodeVisitor):
                 if isinstance(part, ast.Subscript):
                     self.visit(part.slice)
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-            for part in (node.func.value, *node.args, *node.keywords):  # the method itself is no value to show
+            for part in (node.func.value, *node.args, *node.keywords):  # the method itself is not a value to show
                 self.visit(part)
         else:
             self.generic_visit(node)

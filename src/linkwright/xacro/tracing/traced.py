@@ -1,9 +1,9 @@
 """Expansions that are traced: for explanations and logs, at no cost to those that are not.
 
 The trees are copied with a probe at the beginning of every element and macro, and before every text with a dollar. A
-probe is a tag of the language like any other: whoever watches says what it does, and sees the element that is being
-made, the scope, and the calls and includes around it. Probes stay in what comes out, since a block is expanded twice,
-and are taken away at the end.
+probe is a tag of the language like any other: the observer defines its effect, and sees the element that is being
+made, the scope, and the calls and includes around it. Probes stay in the result, since a block is expanded twice,
+and are removed at the end.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from linkwright.xmltree import Document, Element, Node, Text
 _PREFIX = "xacro:"
 
 PROBE = "xacro:.probe"
-"""The tag of probes, which no file can hold: its name is none that XML allows."""
+"""The tag of probes, which no file can contain: XML does not allow its name."""
 
 
 class TracedSession(Session):
     """A session whose files are read with probes in them.
 
     Args:
-        inputs: what the expansion starts from.
+        inputs: the inputs of the expansion.
         probes: whether to put them in.
     """
 
@@ -55,13 +55,13 @@ def expand_traced(
     """Expand with other directives than usual; no banner, and no warning of unused arguments.
 
     Args:
-        inputs: what the expansion starts from.
+        inputs: the inputs of the expansion.
         session: its session.
-        directives: tag -> what expands it; that of `PROBE` is one of them when there are probes.
-        call: what expands macro calls.
+        directives: tag -> the function that expands it, that of `PROBE` included if there are probes.
+        call: expands macro calls.
 
     Raises:
-        LinkwrightError: what is wrong with the description.
+        LinkwrightError: the mistakes of the description.
     """
     document = main_document(session, inputs.text)
     if inputs.text is not None and PROBE in directives:
@@ -71,7 +71,7 @@ def expand_traced(
 
 
 def with_probes(document: Document) -> Document:
-    """A copy with probes; the `origin` of a probe is the element or text of the original that it stands in front of."""
+    """A copy with probes; the `origin` of a probe is the element or text of the original that follows it."""
     root = Element(document.root.tag, document.root.attributes, document.root.source, document.root.offset)
     pending = [(document.root, root)]
     while pending:
@@ -91,7 +91,7 @@ def with_probes(document: Document) -> Document:
 
 
 def without_probes(document: Document) -> Document:
-    """The document, its probes taken away in place."""
+    """The document, its probes removed in place."""
     pending = [document.root]
     while pending:
         element = pending.pop()
@@ -107,7 +107,7 @@ def without_probes(document: Document) -> Document:
 
 
 def echo(memory: object) -> Element:
-    """A probe that is left in what comes out; its `origin` is what is remembered of the element that it is in."""
+    """A probe that stays in the result; its `origin` is the memory of the element around it."""
     return Element(PROBE, origin=memory)
 
 
