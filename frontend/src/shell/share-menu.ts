@@ -44,7 +44,7 @@ export class ShareMenu {
         label: scale === 1 ? words.screenshot : words.screenshotScaled(scale),
         icon: "camera",
         disabled: stage === null,
-        run: () => void this.takePicture(scale),
+        run: () => void this.saveImage(scale),
       })),
       {
         label: recording ? words.stopVideo(timeText(video?.seconds ?? 0)) : words.startVideo,
@@ -63,9 +63,9 @@ export class ShareMenu {
     return this.session.robot === null;
   }
 
-  private async takePicture(scale: number): Promise<void> {
-    const picture = await this.stage?.picture(scale);
-    if (picture) saveBlob(this.fileName("png"), picture);
+  private async saveImage(scale: number): Promise<void> {
+    const image = await this.stage?.picture(scale);
+    if (image) saveBlob(this.fileName("png"), image);
   }
 
   private keepVideo(video: Blob): void {

@@ -26,7 +26,7 @@ export interface Instead {
 /** Two descriptions in one scene: how they differ, and how their links are drawn. */
 export class ComparisonState {
   readonly changed = new Signal();
-  private told: ComparedDescriptions | null = null;
+  private descriptions: ComparedDescriptions | null = null;
   private marking = true;
 
   constructor(connection: Connection) {
@@ -36,7 +36,7 @@ export class ComparisonState {
 
   /** Null where one description is shown. */
   get compared(): ComparedDescriptions | null {
-    return this.told;
+    return this.descriptions;
   }
 
   /** Whether links that differ are coloured by their difference. */
@@ -51,18 +51,18 @@ export class ComparisonState {
 
   /** The look of a link in a display; null for that of its description. */
   instead(display: string, link: string): Instead | null {
-    const { told } = this;
-    if (!told || display === "") return null;
-    const isOld = display === told.old.display;
-    if (!isOld && display !== told.new.display) return null;
-    const mark = this.marking ? (isOld ? told.old : told.new).marks[link] : undefined;
+    const { descriptions } = this;
+    if (!descriptions || display === "") return null;
+    const isOld = display === descriptions.old.display;
+    if (!isOld && display !== descriptions.new.display) return null;
+    const mark = this.marking ? (isOld ? descriptions.old : descriptions.new).marks[link] : undefined;
     if (isOld) return { color: rgb(MARK_COLORS[mark ?? "old"]), behind: true, firm: mark !== undefined };
     return mark ? { color: rgb(MARK_COLORS[mark]) } : null;
   }
 
   /** Whether a display shows the old description. */
   isOld(display: string): boolean {
-    return this.told !== null && display !== "" && this.told.old.display === display;
+    return this.descriptions !== null && display !== "" && this.descriptions.old.display === display;
   }
 
   /**
@@ -70,18 +70,18 @@ export class ComparisonState {
    * one that has other shapes, or of another display than that of the old robot.
    */
   twinOf(display: string, link: string): string | undefined {
-    return this.isOld(display) ? this.told?.shapes[link] : undefined;
+    return this.isOld(display) ? this.descriptions?.shapes[link] : undefined;
   }
 
   /** The link or joint that shows a difference; null for one that nothing shows. */
   elementOf(item: ComparedItem): ElementName | null {
-    const display = item.in_old ? this.told?.old.display : this.told?.new.display;
+    const display = item.in_old ? this.descriptions?.old.display : this.descriptions?.new.display;
     return display && item.element !== "" ? { display, kind: item.element_kind, name: item.element } : null;
   }
 
   private take(message: ComparedDescriptions | null): void {
-    if (this.told === null && message === null) return;
-    this.told = message;
+    if (this.descriptions === null && message === null) return;
+    this.descriptions = message;
     this.changed.emit();
   }
 }

@@ -11,12 +11,12 @@ export class RecordingControl {
   readonly refused = new Signal<string>();
   /** The user requested to view a finished one. */
   readonly wanted = new Signal<RecordedFile>();
-  private told: RecordingState | null = null;
+  private latest: RecordingState | null = null;
   private asked = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      this.told = null;
+      this.latest = null;
       this.asked = false;
       this.changed.emit();
     });
@@ -25,40 +25,40 @@ export class RecordingControl {
 
   /** Whether topics can be recorded; not beside a recording that is shown. */
   get possible(): boolean {
-    return this.told?.possible ?? false;
+    return this.latest?.possible ?? false;
   }
 
   get isRecording(): boolean {
-    return (this.told?.path ?? "") !== "";
+    return (this.latest?.path ?? "") !== "";
   }
 
   /** The folder that is written, on the machine of the server. */
   get path(): string {
-    return this.told?.path ?? "";
+    return this.latest?.path ?? "";
   }
 
   /** The length of the recording, s. */
   get length(): number {
-    return this.told?.length ?? 0;
+    return this.latest?.length ?? 0;
   }
 
   /** Bytes that are written. */
   get size(): number {
-    return this.told?.size ?? 0;
+    return this.latest?.size ?? 0;
   }
 
   /** The part of the last minutes that is saved, 0 to 1; null while none is. */
   get saved(): number | null {
-    return this.told?.saved ?? null;
+    return this.latest?.saved ?? null;
   }
 
   get problem(): string {
-    return this.told?.problem ?? "";
+    return this.latest?.problem ?? "";
   }
 
   /** The recordings made since the program runs, the last first. */
   get files(): readonly RecordedFile[] {
-    return this.told?.files ?? [];
+    return this.latest?.files ?? [];
   }
 
   /** Records some topics; none for all current and future ones. */
@@ -79,8 +79,8 @@ export class RecordingControl {
   }
 
   private take(state: RecordingState): void {
-    const before = this.told;
-    this.told = state;
+    const before = this.latest;
+    this.latest = state;
     this.changed.emit();
     if (!this.asked || before === null) return;
     const [newest] = state.files;

@@ -1,5 +1,5 @@
 /** The view of an image in its window: the place of its corner, px, and its scale. */
-export interface PictureView {
+export interface ImageView {
   readonly x: number;
   readonly y: number;
   readonly scale: number;
@@ -16,11 +16,11 @@ const LEAST_TEXT = 10;
  * @param text size of the image's smallest text, px.
  * @param point of the image, px: moves to the middle, as far as the image allows.
  */
-export function legibleView(picture: Size, window: Size, text: number, point: readonly [number, number], margin = 16): PictureView {
-  const fits = Math.min((window[0] - 2 * margin) / picture[0], (window[1] - 2 * margin) / picture[1]);
+export function legibleView(image: Size, window: Size, text: number, point: readonly [number, number], margin = 16): ImageView {
+  const fits = Math.min((window[0] - 2 * margin) / image[0], (window[1] - 2 * margin) / image[1]);
   const scale = Math.min(1, Math.max(LEAST_TEXT / text, fits));
   const place = (axis: 0 | 1): number => {
-    const [size, room] = [picture[axis] * scale, window[axis]];
+    const [size, room] = [image[axis] * scale, window[axis]];
     if (size <= room - 2 * margin) return (room - size) / 2;
     return Math.min(margin, Math.max(room - margin - size, room / 2 - point[axis] * scale));
   };

@@ -44,7 +44,7 @@ export class Modelling {
   /** Something was dropped onto the scene; see `takeDrop`. */
   readonly dropped = new Signal();
   readonly snapping: Snapping;
-  private told = NOTHING;
+  private world = NOTHING;
   private names: readonly string[] = [];
   private mode: GizmoMode = "translate";
   private inHand: Placing | null = null;
@@ -65,32 +65,32 @@ export class Modelling {
 
   /** Whether there is a world that can be edited. */
   get available(): boolean {
-    return this.told.available;
+    return this.world.available;
   }
 
   get active(): boolean {
-    return this.told.active;
+    return this.world.active;
   }
 
   /** Null for a world that was never saved. */
   get file(): string | null {
-    return this.told.file;
+    return this.world.file;
   }
 
   get unsaved(): boolean {
-    return this.told.unsaved;
+    return this.world.unsaved;
   }
 
   get canUndo(): boolean {
-    return this.told.can_undo;
+    return this.world.can_undo;
   }
 
   get canRedo(): boolean {
-    return this.told.can_redo;
+    return this.world.can_redo;
   }
 
   get things(): readonly WorldThing[] {
-    return this.told.things;
+    return this.world.things;
   }
 
   /** Names, in the order of selecting. */
@@ -132,7 +132,7 @@ export class Modelling {
   }
 
   find(name: string): WorldThing | null {
-    return this.told.things.find((thing) => thing.name === name) ?? null;
+    return this.world.things.find((thing) => thing.name === name) ?? null;
   }
 
   /** `toggle` adds unselected objects, and removes selected ones. */
@@ -233,8 +233,8 @@ export class Modelling {
   }
 
   private take(state: ModellingState): void {
-    const before = new Set(this.told.things.map(({ name }) => name));
-    this.told = state;
+    const before = new Set(this.world.things.map(({ name }) => name));
+    this.world = state;
     const news = state.things.map(({ name }) => name).filter((name) => !before.has(name));
     const left = state.active ? this.names.filter((name) => this.find(name)) : [];
     if (!state.active && this.inHand) this.place(null);

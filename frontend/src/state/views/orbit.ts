@@ -133,9 +133,9 @@ export function orbitOf(values: ViewValues): { distance: number; yaw: number; pi
 }
 
 /** The values of a camera that looks from one point at another. */
-export function aroundFrom(focal: Vector, eye: Vector): ViewValues {
-  const distance = clampDistance(distanceBetween(focal, eye));
-  const [x, y, z] = scale(add(eye, focal, -1), 1 / distance);
+export function aroundFrom(focal: Vector, viewpoint: Vector): ViewValues {
+  const distance = clampDistance(distanceBetween(focal, viewpoint));
+  const [x, y, z] = scale(add(viewpoint, focal, -1), 1 / distance);
   return {
     Distance: distance,
     Yaw: wrapYaw(Math.atan2(y, x)),

@@ -24,7 +24,7 @@ const DIRECTIONS = PITCHES.flatMap((pitch, higher) =>
 const orbit = new OrbitController();
 
 /** Whether nothing hides a place from a viewpoint. */
-export type IsSeen = (eye: Vector, place: Vector) => boolean;
+export type IsSeen = (viewpoint: Vector, place: Vector) => boolean;
 
 /** The values of an Orbit that shows all of a world from above. */
 export function overview(values: ViewValues, world: Span, size: ViewSize): ViewValues {
@@ -41,16 +41,16 @@ export function around(values: ViewValues, { min, max }: Span, size: ViewSize, i
   const ring = Array.from({ length: PLACES }, (_, i) => add(middle, turn([1, 0, 0], (i * 2 * Math.PI) / PLACES), span / 2 + room));
   const all = orbit.fit({ ...values, Pitch: ROBOT_PITCH }, { min: add(min, [1, 1, 1], -room), max: add(max, [1, 1, 1], room) }, size);
   const far = number(all, "Distance", 0);
-  const covered = (eye: Vector): number => ring.filter((place) => !isSeen(eye, place)).length / PLACES;
+  const covered = (viewpoint: Vector): number => ring.filter((place) => !isSeen(viewpoint, place)).length / PLACES;
   for (const nearer of NEARER) {
     let best: { score: number; values: ViewValues } | null = null;
     for (const { most, pitch, side } of DIRECTIONS) {
       if (best && most <= best.score) continue;
       const Yaw = wrapYaw(number(values, "Yaw", 0) + side);
       const Pitch = ROBOT_PITCH + pitch;
-      const eye = add(middle, direction(Yaw, Pitch), nearer * far);
-      if (!isSeen(eye, middle) || !isSeen(eye, top)) continue;
-      const score = most - covered(eye);
+      const viewpoint = add(middle, direction(Yaw, Pitch), nearer * far);
+      if (!isSeen(viewpoint, middle) || !isSeen(viewpoint, top)) continue;
+      const score = most - covered(viewpoint);
       if (!best || score > best.score) best = { score, values: { ...all, Yaw, Pitch, Distance: nearer * far } };
     }
     if (best) return best.values;

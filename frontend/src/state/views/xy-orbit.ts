@@ -42,9 +42,9 @@ export class XYOrbitController extends OrbitController {
     if (!ahead || !below) return this.zero();
     const [far, down] = [distanceBetween(camera.position, ahead), distanceBetween(camera.position, below)];
     const distance = (far * down) / (RAISE * far + down);
-    const eye = add(camera.position, camera.up, -RAISE * distance);
-    const focal = onGround({ origin: eye, direction: scale(camera.back, -1) });
-    return focal ? aroundFrom(focal, eye) : this.zero();
+    const viewpoint = add(camera.position, camera.up, -RAISE * distance);
+    const focal = onGround({ origin: viewpoint, direction: scale(camera.back, -1) });
+    return focal ? aroundFrom(focal, viewpoint) : this.zero();
   }
 
   override motion(drag: Pick<Drag, "left" | "middle" | "right" | "shift">): OrbitMotion {
