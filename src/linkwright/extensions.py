@@ -68,8 +68,8 @@ def extensions(group: str) -> Mapping[str, EntryPoint]:
 @cache
 def _all_groups() -> Mapping[str, Mapping[str, EntryPoint]]:
     groups: dict[str, dict[str, EntryPoint]] = {}
-    found = [each for distribution, text in _declarations() for each in _declared(distribution, text)]
-    for group, entry in sorted(found, key=lambda each: (not each[1].value.startswith(_OURS), each[1].name)):
+    found = [item for distribution, text in _declarations() for item in _declared(distribution, text)]
+    for group, entry in sorted(found, key=lambda item: (not item[1].value.startswith(_OURS), item[1].name)):
         groups.setdefault(group, {}).setdefault(entry.name, entry)
     return groups
 

@@ -82,23 +82,23 @@ def _dataclass(cls: Any = None, /, *, frozen: bool = False, slots: bool = False,
         del written["__hash__"]  # because there is an `__eq__`
     shared = _SHARED | (_comparing(fields, frozen=frozen) if eq else {}) | (_FROZEN if frozen else {})
     shared |= _KEPT if frozen and slots else {}
-    made = {
+    members = {
         **shared,
         **written,
         "__init__": _first_init,
-        "__match_args__": tuple(name for name, each in fields.items() if each.init),
+        "__match_args__": tuple(name for name, entry in fields.items() if entry.init),
         _FIELDS: fields,
         _OPTIONS: (frozen, slots),
     }
     if slots:
-        made |= {"__slots__": tuple(new), "__qualname__": cls.__qualname__}
-        return type(cls)(cls.__name__, cls.__bases__, made)
-    for name, each in own.items():
-        if each.default is not _MISSING:
-            made[name] = each.default
+        members |= {"__slots__": tuple(new), "__qualname__": cls.__qualname__}
+        return type(cls)(cls.__name__, cls.__bases__, members)
+    for name, entry in own.items():
+        if entry.default is not _MISSING:
+            members[name] = entry.default
         elif name in vars(cls):
             delattr(cls, name)
-    for name, value in made.items():
+    for name, value in members.items():
         if vars(cls).get(name, _MISSING) is not value:
             setattr(cls, name, value)
     return cls
@@ -119,7 +119,7 @@ def _own_fields(cls: type) -> Iterator[tuple[str, _Field]]:
 
 def _first_init(self: Any, *args: Any, **kwargs: Any) -> None:
     """The ``__init__`` of a class without objects so far: it compiles that of all later objects."""
-    cls: Any = next(each for each in type(self).__mro__ if vars(each).get("__init__") is _first_init)
+    cls: Any = next(base for base in type(self).__mro__ if vars(base).get("__init__") is _first_init)
     cls.__init__ = _compiled_init(cls)
     cls.__init__(self, *args, **kwargs)
 
@@ -127,13 +127,13 @@ def _first_init(self: Any, *args: Any, **kwargs: Any) -> None:
 def _compiled_init(cls: Any) -> Callable[..., None]:
     frozen, slots = vars(cls)[_OPTIONS]
     fields: Iterable[_Field] = getattr(cls, _FIELDS).values()
-    filled = [each for each in fields if each.is_set]
+    filled = [entry for entry in fields if entry.is_set]
     scope: dict[str, Any] = {"MISSING": _MISSING, "cls": cls, "set_value": _set, "set_class": _set_class}
-    for each in filled:
-        scope[f"factory_{each.name}"] = each.factory
-        scope[f"default_{each.name}"] = each.default
-    slow = [f"set_value(self, {each.name!r}, {each.value})" for each in filled]
-    fast = [f"self.{each.name} = {each.value}" for each in filled]
+    for entry in filled:
+        scope[f"factory_{entry.name}"] = entry.factory
+        scope[f"default_{entry.name}"] = entry.default
+    slow = [f"set_value(self, {entry.name!r}, {entry.value})" for entry in filled]
+    fast = [f"self.{entry.name} = {entry.value}" for entry in filled]
     if frozen and slots:
         # To set a value past `__setattr__` takes a call. So an object gets its values while it is of a class with the
         # same slots that does not refuse, which takes half as long.
@@ -145,33 +145,33 @@ def _compiled_init(cls: Any) -> Callable[..., None]:
         body = slow if frozen else fast
     if hasattr(cls, "__post_init__"):
         body.append("self.__post_init__()")
-    parameters = ", ".join(("self", *(each.parameter for each in fields if each.init)))
+    parameters = ", ".join(("self", *(entry.parameter for entry in fields if entry.init)))
     source = f"def __init__({parameters}):\n" + "".join(f"    {line}\n" for line in body or ["pass"])
     exec(compile(source, f"<__init__ of {cls.__qualname__}>", "exec"), scope)  # noqa: S102 - names of our own classes
-    made: Callable[..., None] = scope["__init__"]
-    made.__qualname__ = f"{cls.__qualname__}.__init__"
-    return made
+    initializer: Callable[..., None] = scope["__init__"]
+    initializer.__qualname__ = f"{cls.__qualname__}.__init__"
+    return initializer
 
 
-def _replace(thing: Any, /, **changes: Any) -> Any:
-    for name, each in getattr(thing, _FIELDS).items():
-        if each.init:
-            changes.setdefault(name, getattr(thing, name))
+def _replace(instance: Any, /, **changes: Any) -> Any:
+    for name, entry in getattr(instance, _FIELDS).items():
+        if entry.init:
+            changes.setdefault(name, getattr(instance, name))
         elif name in changes:
             raise TypeError(f"field {name} is declared with init=False, it cannot be specified with replace()")
-    return type(thing)(**changes)
+    return type(instance)(**changes)
 
 
 # --- shared by all classes --------------------------------------------------------------------------------------------
 
 
 def _repr(self: Any) -> str:
-    shown = (f"{name}={getattr(self, name)!r}" for name, each in getattr(self, _FIELDS).items() if each.repr)
+    shown = (f"{name}={getattr(self, name)!r}" for name, entry in getattr(self, _FIELDS).items() if entry.repr)
     return f"{type(self).__qualname__}({', '.join(shown)})"
 
 
 def _comparing(fields: dict[str, _Field], *, frozen: bool) -> dict[str, Any]:
-    names = [name for name, each in fields.items() if each.compare]
+    names = [name for name, entry in fields.items() if entry.compare]
     values: Callable[[Any], Any] = attrgetter(*names) if names else lambda _: ()
 
     def equal(self: Any, other: Any) -> Any:
@@ -206,7 +206,7 @@ def _set_state(self: Any, state: list[Any]) -> None:
         _set(self, name, value)
 
 
-class _Told:
+class _StandardAttribute:
     """An attribute that `dataclasses` sets on a class, computed on first access."""
 
     def __init__(self, name: str) -> None:
@@ -215,13 +215,13 @@ class _Told:
     def __get__(self, instance: object, owner: type) -> Any:
         import dataclasses
 
-        def told(each: _Field) -> Any:
-            default = {"default_factory": each.factory, "default": each.default}
-            given = {name: value for name, value in default.items() if value is not _MISSING}
-            return dataclasses.field(init=each.init, repr=each.repr, compare=each.compare, **given)
+        def standard_field(entry: _Field) -> Any:
+            default = {"default_factory": entry.factory, "default": entry.default}
+            defaults = {name: value for name, value in default.items() if value is not _MISSING}
+            return dataclasses.field(init=entry.init, repr=entry.repr, compare=entry.compare, **defaults)
 
         cls = next(each for each in owner.__mro__ if vars(each).get(self._name) is self)
-        fields = [(name, each.type, told(each)) for name, each in vars(cls)[_FIELDS].items()]
+        fields = [(name, each.type, standard_field(each)) for name, each in vars(cls)[_FIELDS].items()]
         twin = dataclasses.make_dataclass(cls.__name__, fields, frozen=vars(cls)[_OPTIONS][0])
         value = vars(twin)[self._name]
         setattr(cls, self._name, value)
@@ -230,7 +230,7 @@ class _Told:
 
 _SHARED: dict[str, Any] = {
     "__repr__": _repr,
-    **{name: _Told(name) for name in ("__dataclass_fields__", "__dataclass_params__")},
+    **{name: _StandardAttribute(name) for name in ("__dataclass_fields__", "__dataclass_params__")},
 }
 _FROZEN: dict[str, Any] = {"__setattr__": _refuse_to_set, "__delattr__": _refuse_to_delete}
 _KEPT: dict[str, Any] = {"__getstate__": _get_state, "__setstate__": _set_state}
@@ -242,12 +242,12 @@ _KEPT: dict[str, Any] = {"__getstate__": _get_state, "__setstate__": _set_state}
 class _NamedTupleMeta(type):
     def __new__(cls, name: str, _bases: tuple[type, ...], written: dict[str, Any]) -> Any:
         fields = written.get("__annotations__", {})
-        defaults = [written[each] for each in fields if each in written]
-        made = namedtuple(name, fields, defaults=defaults, module=written["__module__"])  # type: ignore[misc]  # noqa: PYI024
-        for each, value in written.items():
-            if each not in fields and each not in ("__module__", "__slots__", "__classcell__"):
-                setattr(made, each, value)
-        return made
+        defaults = [written[attribute] for attribute in fields if attribute in written]
+        named_tuple = namedtuple(name, fields, defaults=defaults, module=written["__module__"])  # type: ignore[misc]  # noqa: PYI024
+        for attribute, value in written.items():
+            if attribute not in fields and attribute not in ("__module__", "__slots__", "__classcell__"):
+                setattr(named_tuple, attribute, value)
+        return named_tuple
 
 
 def _named_tuple() -> Any:

@@ -42,7 +42,7 @@ class _WholeWrites(io.RawIOBase):
         return size
 
 
-def _take_all() -> None:
+def _write_completely() -> None:
     """Let unbuffered standard output (``python -u``, ``PYTHONUNBUFFERED``) raise an error if a disk is full.
 
     A write to such a stream may write only a part, on a full disk, and Python drops the rest.
@@ -58,7 +58,7 @@ def take_any_text() -> None:
     Files and pipes use UTF-8, like files of descriptions, and like Python itself from 3.15 on (PEP 686). A
     character that a terminal lacks is written as its number, as with an encoding in ``PYTHONIOENCODING``.
     """
-    _take_all()
+    _write_completely()
     chosen = bool(os.environ.get("PYTHONIOENCODING"))
     for stream in (sys.stdin, sys.stdout, sys.stderr):
         if not isinstance(stream, io.TextIOWrapper) or stream.encoding.lower().replace("-", "") == "utf8":

@@ -31,16 +31,16 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
     """
     content = data.encode("utf-8") if isinstance(data, str) else data
     target = os.path.realpath(os.fspath(path))
-    kept = _permissions(target)
-    if kept is None and os.path.exists(target):
+    permissions = _permissions(target)
+    if permissions is None and os.path.exists(target):
         with open(target, "wb", buffering=0) as device:
             _write_all(device.fileno(), content)
         return
-    mode = kept if mode is None else mode
+    mode = permissions if mode is None else mode
     try:
         _replace(target, content, mode)
     except OSError as error:
-        if kept is None or error.errno in NO_SPACE:
+        if permissions is None or error.errno in NO_SPACE:
             raise
         _write_in_place(target, content)
 

@@ -54,8 +54,8 @@ class PackageFinder:
     ) -> None:
         self._environment = os.environ if environment is None else environment
         if start is None:
-            given = self._environment.get(START_VARIABLE, "").split(os.pathsep)
-            start = [Path.cwd(), *(Path(folder) for folder in given if folder)]
+            folders = self._environment.get(START_VARIABLE, "").split(os.pathsep)
+            start = [Path.cwd(), *(Path(folder) for folder in folders if folder)]
         starts = [start] if isinstance(start, Path) else start
         self._starts = tuple(dict.fromkeys(_absolute(start) for start in starts))
         self._extra = {name: Path(share) for name, share in (extra or {}).items()}

@@ -54,19 +54,19 @@ def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> 
         return share
     layouts.mkdir(parents=True, exist_ok=True)
     _forget_old(layouts)
-    made = Path(tempfile.mkdtemp(dir=layouts, prefix="new-"))
+    new_folder = Path(tempfile.mkdtemp(dir=layouts, prefix="new-"))
     try:
         for path, link in links.items():
-            target = made / name / path
+            target = new_folder / name / path
             target.parent.mkdir(parents=True, exist_ok=True)
             if isinstance(link, str):
                 target.write_text(link, encoding="utf-8")
             else:
                 target.symlink_to(link)
         with suppress(OSError):  # another process was faster
-            made.rename(share.parent)
+            new_folder.rename(share.parent)
     finally:
-        shutil.rmtree(made, ignore_errors=True)
+        shutil.rmtree(new_folder, ignore_errors=True)
     if not share.is_dir():
         raise OSError("the links were not made")
     return share

@@ -206,10 +206,10 @@ class Expander:
         if budget.elements < 0:
             self._too_many(node)
         attributes = self.attributes(node, scope) if plan.evaluated else plan.attributes.copy()
-        made = Element(node.tag, attributes, node.source, node.offset, session.frame)
-        output.append(made)
+        element = Element(node.tag, attributes, node.source, node.offset, session.frame)
+        output.append(element)
         if plan.steps or plan.steps is None:
-            self.children(node, made, scope, macros)
+            self.children(node, element, scope, macros)
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
         """Expand the elements inside of a macro call, into a container."""

@@ -114,15 +114,15 @@ def definition_elsewhere(
     match = re.search(pattern, text)
     if match is None:
         return None
-    told = {"tag": term(tag), "name": name}
+    values = {"tag": term(tag), "name": name}
     hint = None
     if not prefix:
-        message = phrase("a {tag} '{name}' is written here without the prefix 'xacro:'", **told)
+        message = phrase("a {tag} '{name}' is written here without the prefix 'xacro:'", **values)
     elif used_at is not None and match.start() < used_at and _is_conditional(text[: match.start()]):
-        message = phrase("a {tag} '{name}' is defined here, under a condition that does not hold", **told)
+        message = phrase("a {tag} '{name}' is defined here, under a condition that does not hold", **values)
         hint = phrase("use it under the same condition, or define it for the other case, too")
     else:
-        message = phrase("a {tag} '{name}' is defined here, which is too late or not in scope there", **told)
+        message = phrase("a {tag} '{name}' is defined here, which is too late or not in scope there", **values)
     span = source.span(match.start(), match.start() + len(f"<{prefix}{tag}"))
     return Elsewhere(Note(message, span), hint)
 
@@ -176,11 +176,11 @@ def text_part(text: Text, start: int | None, end: int | None) -> Span | None:
     source = text.source
     if source is None:
         return None
-    whole = source.text
-    limit = whole.find("<", text.offset)
-    limit = len(whole) if limit < 0 else limit
+    content = source.text
+    limit = content.find("<", text.offset)
+    limit = len(content) if limit < 0 else limit
     if start is None or end is None:
         return source.span(text.offset, limit)
-    if whole.startswith(text.data, text.offset):
+    if content.startswith(text.data, text.offset):
         return source.span(text.offset + start, text.offset + end)
-    return source.span(raw_offset(whole, text.offset, limit, start), raw_offset(whole, text.offset, limit, end))
+    return source.span(raw_offset(content, text.offset, limit, start), raw_offset(content, text.offset, limit, end))

@@ -38,12 +38,12 @@ def main_document(session: Session, text: str | None = None) -> Document:
     try:
         document = session.read(session.file) if text is None else parse(text, session.file)
     except LinkwrightError as error:
-        found = error.diagnostics[0]
-        hint = xml_hint(found)
-        if hint == found.hint:
+        first = error.diagnostics[0]
+        hint = xml_hint(first)
+        if hint == first.hint:
             raise
         raise LinkwrightError(
-            Diagnostic(found.code, found.message, found.span, notes=found.notes, hint=hint, source=found.source)
+            Diagnostic(first.code, first.message, first.span, notes=first.notes, hint=hint, source=first.source)
         ) from None
     plan_document(document)
     return document

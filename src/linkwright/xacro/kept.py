@@ -44,6 +44,6 @@ class Kept(Generic[_Key, _Value]):
             self._size = own + sum(size_of(*item) for item in list(values.items()))
             if self._size > self._most:
                 self._start = (self._start + 1) % _STRIDE
-                for each in list(values)[self._start :: _STRIDE]:
-                    values.pop(each, None)
+                for dropped in list(values)[self._start :: _STRIDE]:
+                    values.pop(dropped, None)
         values[key] = value

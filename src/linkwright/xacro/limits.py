@@ -55,9 +55,9 @@ class room_for:  # noqa: N801 - it is called in a ``with`` statement, as a funct
             if _active == 0:
                 _before = sys.getrecursionlimit()
             _active += 1
-            wanted = _before + self._limits.nesting * _FRAMES_PER_LEVEL
-            if wanted > sys.getrecursionlimit():
-                sys.setrecursionlimit(wanted)
+            limit = _before + self._limits.nesting * _FRAMES_PER_LEVEL
+            if limit > sys.getrecursionlimit():
+                sys.setrecursionlimit(limit)
         self._collection.__enter__()
 
     def __exit__(self, *_: object) -> None:

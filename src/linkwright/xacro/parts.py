@@ -87,12 +87,14 @@ class _PartsExpander(Expander):
     """
 
     def __init__(self, session: Session) -> None:
-        directives: Mapping[str, Directive] = {tag: self._leaving_out(each) for tag, each in DIRECTIVES.items()}
+        directives: Mapping[str, Directive] = {
+            tag: self._leaving_out(directive) for tag, directive in DIRECTIVES.items()
+        }
         super().__init__(session, directives, self._leaving_out(call_macro))
         self.trusted = True
         self.remarks_to_trust: int | None = None
         self._failures = 0
-        self._definitions_told: set[tuple[str, str]] = set()
+        self._reported_definitions: set[tuple[str, str]] = set()
 
     def attributes(self, node: Element, scope: Scope) -> dict[str, str]:
         """The attributes that could be evaluated, and a mark where others could not."""
@@ -133,14 +135,16 @@ class _PartsExpander(Expander):
         def expand(expander: Expander, site: Site) -> None:
             session, nesting = self.session, self._nesting
             frame, file = session.frame, session.file
-            told: list[Diagnostic] = []
+            reported: list[Diagnostic] = []
             if self.trusted or not _depends_on_values(site.node):
                 try:
                     directive(expander, site)
                 except LinkwrightError as error:
                     if self.has_too_many_errors or any(map(is_final, error.diagnostics)):
                         raise
-                    told = [found for found in error.diagnostics if self._is_told(found, site.node)]
+                    reported = [
+                        diagnostic for diagnostic in error.diagnostics if self._is_reported(diagnostic, site.node)
+                    ]
                 except _LeftOutError:
                     pass
                 else:
@@ -149,19 +153,19 @@ class _PartsExpander(Expander):
             site.parent.attributes[_GAP] = ""
             if self._may_define_names(site.node):
                 self._trust_no_more()
-            for found in told:
-                self.keep(found)
+            for diagnostic in reported:
+                self.keep(diagnostic)
 
         return expand
 
-    def _is_told(self, found: Diagnostic, node: Element) -> bool:
-        if found.code in _OF_THE_DEFINITION:
-            if (found.code, found.message) in self._definitions_told:
+    def _is_reported(self, diagnostic: Diagnostic, node: Element) -> bool:
+        if diagnostic.code in _OF_THE_DEFINITION:
+            if (diagnostic.code, diagnostic.message) in self._reported_definitions:
                 return False
-            self._definitions_told.add((found.code, found.message))
-        if self.trusted or found.code in _TRUE_BY_THEMSELVES:
+            self._reported_definitions.add((diagnostic.code, diagnostic.message))
+        if self.trusted or diagnostic.code in _TRUE_BY_THEMSELVES:
             return True
-        return found.code.startswith(("XML", "PKG")) and node.tag == "xacro:include"
+        return diagnostic.code.startswith(("XML", "PKG")) and node.tag == "xacro:include"
 
     def _trust_no_more(self) -> None:
         if self.trusted:
@@ -205,7 +209,7 @@ def _without_gaps(document: Document) -> Document:
 
 
 def _has_gap(element: Element) -> bool:
-    return any(_GAP in each.attributes or any(map(_is_gap, each.children)) for each in element.walk())
+    return any(_GAP in inner.attributes or any(map(_is_gap, inner.children)) for inner in element.walk())
 
 
 def _is_gap(node: object) -> bool:

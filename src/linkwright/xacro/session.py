@@ -92,7 +92,7 @@ class Session:
         self.root_dir = root_dir
         self._overlay = overlay or Overlay()
         self.diagnostics: list[Diagnostic] = []
-        self._told: set[tuple[str, str, Span | None]] = set()
+        self._reported: set[tuple[str, str, Span | None]] = set()
         self._packages = packages
         self._known_packages: dict[str, str] = {}
         self._main_file = file
@@ -168,7 +168,7 @@ class Session:
                 '\'{name}\' is defined without a value; write <xacro:property name="{name}" value="..."/>', name=name
             )
         else:
-            hint = did_you_mean(name, [known for known in environment.names() if known not in provided])
+            hint = did_you_mean(name, [other for other in environment.names() if other not in provided])
             if hint is None and len(name) > len("pi"):
                 hint = did_you_mean(name, provided)
         fault = Fault("XAC201", phrase("the property '{name}' is not defined", name=name), start, end, hint)
@@ -268,11 +268,11 @@ class Session:
         try:
             text, encoding = self._overlay.read(self.on_disk(path))
         except LinkwrightError as error:
-            found = error.diagnostics[0]
+            diagnostic = error.diagnostics[0]
             fault = Fault(
                 "XAC506",
-                found.message,
-                hint=found.hint if found.code == "XML106" else _nearest_file(self.on_disk(path)),
+                diagnostic.message,
+                hint=diagnostic.hint if diagnostic.code == "XML106" else _nearest_file(self.on_disk(path)),
             )
             raise fault from None
         try:
@@ -330,35 +330,35 @@ class Session:
         place = self.place
         if span is None and place is not None:
             span = self._place_of_call(place, called)
-        if (code, message, span) in self._told:
+        if (code, message, span) in self._reported:
             return None
-        self._told.add((code, message, span))
+        self._reported.add((code, message, span))
         source = place.source if place is not None and span is not None else None
-        found = Diagnostic(code, message, span, severity, trail(self.frame), hint, source)
-        self.diagnostics.append(found)
-        return found
+        diagnostic = Diagnostic(code, message, span, severity, trail(self.frame), hint, source)
+        self.diagnostics.append(diagnostic)
+        return diagnostic
 
-    def take_back(self, found: Diagnostic) -> None:
+    def withdraw(self, diagnostic: Diagnostic) -> None:
         """Drop a finding that a later definition resolved."""
-        self.diagnostics.remove(found)
-        self._told.discard((found.code, found.message, found.span))
+        self.diagnostics.remove(diagnostic)
+        self._reported.discard((diagnostic.code, diagnostic.message, diagnostic.span))
 
     def _place_of_call(self, place: Element | Text, function: str | None) -> Span | None:
         attribute = self.attribute
         if isinstance(place, Element) and attribute is None:
             return place.span()
         text = place.data if isinstance(place, Text) else place.attributes.get(attribute or "", "")
-        found = re.search(rf"(?<![\w.]){re.escape(function)}(?=\s*\()", text) if function else None
-        start, end = found.span() if found else (None, None)
+        match = re.search(rf"(?<![\w.]){re.escape(function)}(?=\s*\()", text) if function else None
+        start, end = match.span() if match else (None, None)
         if isinstance(place, Text):
             return text_part(place, start, end)
         return attribute_part(place, attribute or "", start, end) or place.span()
 
     def _warn_of_encoding(self, source: SourceText, encoding: str) -> None:
-        told = ("XAC905", source.name, None)
-        if told in self._told:
+        key = ("XAC905", source.name, None)
+        if key in self._reported:
             return
-        self._told.add(told)
+        self._reported.add(key)
         message = phrase(
             "ros/xacro cannot read '{path}': it is in {encoding} and not in UTF-8",
             path=source.name,
@@ -383,15 +383,15 @@ class Session:
 
         return warning
 
-    def say(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
+    def reporter(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
         """Make ``xacro.message``, ``xacro.warning`` or ``xacro.error``, by which a description addresses its user."""
 
-        def said(*words: Any, **_options: Any) -> str:
+        def report(*words: Any, **_options: Any) -> str:
             text = foreign(" ".join(map(sandbox.as_text, words))) or phrase("here")
             self.warn(code, text, severity=severity, called=f"xacro.{name}")
             return ""
 
-        return said
+        return report
 
 
 # Not compiled here: a printable text, as nearly every value is, has none of these.

@@ -274,12 +274,12 @@ class _Reader:
     # comments and processing instructions
 
     def _comment(self, data: str) -> None:
-        self._keep(Comment(data, self._source, self._parser.CurrentByteIndex))
+        self._append(Comment(data, self._source, self._parser.CurrentByteIndex))
 
     def _instruction(self, target: str, data: str) -> None:
-        self._keep(ProcessingInstruction(target, data, self._source, self._parser.CurrentByteIndex))
+        self._append(ProcessingInstruction(target, data, self._source, self._parser.CurrentByteIndex))
 
-    def _keep(self, node: Comment | ProcessingInstruction) -> None:
+    def _append(self, node: Comment | ProcessingInstruction) -> None:
         if not self._in_doctype:
             self._open[-1].children.append(node)
 

@@ -45,7 +45,10 @@ def tags_alone(text: str) -> str:
 def _control_characters(text: str, at: int) -> str:
     if text[at : at + 1] not in _CONTROLS:
         return text
-    return "".join(" " if each in _BLANKS else _STAND_INS[each] if each in _CONTROLS else each for each in text)
+    return "".join(
+        " " if character in _BLANKS else _STAND_INS[character] if character in _CONTROLS else character
+        for character in text
+    )
 
 
 def _less_than_in_values(text: str, at: int) -> str:

@@ -48,40 +48,40 @@ def parse_as_tinyxml(
     source = SourceText(name, text)
     read_as = text if read_as is None else read_as
     for forgive in (_text_before_root, _second_declaration, _dashes, _ampersands):
-        read_as, told = forgive(source, read_as)
-        if told:
-            warnings.append(forbidden(told.message, told.span, source, told.hint, readers))
+        read_as, mistake = forgive(source, read_as)
+        if mistake:
+            warnings.append(forbidden(mistake.message, mistake.span, source, mistake.hint, readers))
     document, more = _parsed(source, read_as, readers)
     if warnings or more:
         put_back(document, text)
     return document, (*warnings, *more)
 
 
-class _Told(NamedTuple):
+class _Mistake(NamedTuple):
     message: Phrase
     span: Span
     hint: Phrase
 
 
-def _text_before_root(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
+def _text_before_root(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
     before = _BEFORE_ROOT.match(source.text)
     if before is None:
         return read_as, None
     place = source.span(before.start(1), before.start(1) + len(before[1].rstrip()))
     advice = phrase("an XML file may have only comments before its root element")
-    return _without(read_as, before), _Told(phrase("there is text before the root element"), place, advice)
+    return _without(read_as, before), _Mistake(phrase("there is text before the root element"), place, advice)
 
 
-def _second_declaration(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
+def _second_declaration(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
     second = _SECOND_DECLARATION.match(source.text)
     if second is None:
         return read_as, None
     place = source.span(second.start(1), second.start(1) + len("<?xml"))
     message = phrase("a second XML declaration follows the first")
-    return _without(read_as, second), _Told(message, place, phrase("remove it"))
+    return _without(read_as, second), _Mistake(message, place, phrase("remove it"))
 
 
-def _dashes(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
+def _dashes(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
     text = source.text
     dashed = [found for found in _OUTSIDE_TAGS.finditer(text) if _has_dashes(found[1])]
     if not dashed:
@@ -90,10 +90,10 @@ def _dashes(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
         read_as = read_as[: found.start(1)] + found[1].replace("-", "=") + read_as[found.end(1) :]
     at = text.index("--", dashed[0].start(1))
     message = phrase("'--' is not allowed inside a comment")
-    return read_as, _Told(message, source.span(at, at + 2), phrase("use other characters, such as '=='"))
+    return read_as, _Mistake(message, source.span(at, at + 2), phrase("use other characters, such as '=='"))
 
 
-def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
+def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
     text = source.text
     if not can_stand_in(text) or _DEFINITION in text:
         return read_as, None
@@ -103,12 +103,14 @@ def _ampersands(source: SourceText, read_as: str) -> tuple[str, _Told | None]:
     for at in bare:
         read_as = read_as[:at] + stand_in("&") + read_as[at + 1 :]
     place = source.span(bare[0], bare[0] + 1)
-    return read_as, _Told(phrase("'&' does not begin an entity"), place, phrase("write '&amp;' for the character '&'"))
+    return read_as, _Mistake(
+        phrase("'&' does not begin an entity"), place, phrase("write '&amp;' for the character '&'")
+    )
 
 
-def _without(text: str, found: re.Match[str]) -> str:
+def _without(text: str, match: re.Match[str]) -> str:
     """The text with the first group of a match blanked."""
-    return text[: found.start(1)] + blanked(found[1]) + text[found.end(1) :]
+    return text[: match.start(1)] + blanked(match[1]) + text[match.end(1) :]
 
 
 def blanked(text: str) -> str:
@@ -125,32 +127,32 @@ def _parsed(source: SourceText, read_as: str, readers: Phrase) -> tuple[Document
     try:
         return parse(source.text, source.name, blanks=False, read_as=read_as), ()
     except LinkwrightError as error:
-        found = error.diagnostics[0]
-        if found.code == _UNDECLARED:
+        first = error.diagnostics[0]
+        if first.code == _UNDECLARED:
             document = parse(source.text, source.name, blanks=False, read_as=read_as, any_prefix=True)
-            return document, (found.but(severity=Severity.WARNING),)
-        end = _end_of_root(found, read_as)
+            return document, (first.but(severity=Severity.WARNING),)
+        end = _end_of_root(first, read_as)
         if end is not None and _is_passed_over(read_as[end:]):
-            told, read_as = _passed_over(source, end, readers), read_as[:end] + blanked(read_as[end:])
+            warning, read_as = _passed_over(source, end, readers), read_as[:end] + blanked(read_as[end:])
         else:
-            told, read_as = (
-                found.but(severity=Severity.WARNING, notes=(Note(readers),)),
+            warning, read_as = (
+                first.but(severity=Severity.WARNING, notes=(Note(readers),)),
                 _repaired(source, error, read_as),
             )
         try:
             document, more = _parsed(source, read_as, readers)
         except LinkwrightError:
             raise error from None
-        if told.code == _AFTER_ROOT and any(diagnostic.code == _AFTER_ROOT for diagnostic in more):
+        if warning.code == _AFTER_ROOT and any(diagnostic.code == _AFTER_ROOT for diagnostic in more):
             return document, more
-        return document, (told, *more)
+        return document, (warning, *more)
 
 
 def _repaired(source: SourceText, error: LinkwrightError, text: str) -> str:
     """The text with all mistakes of the error's kind replaced; the error, where TinyXML2 has one there, too."""
-    found = error.diagnostics[0]
-    if found.code == _NOT_XML and found.span is not None and can_stand_in(source.text):
-        at = source.offset(found.span.line, found.span.column)
+    diagnostic = error.diagnostics[0]
+    if diagnostic.code == _NOT_XML and diagnostic.span is not None and can_stand_in(source.text):
+        at = source.offset(diagnostic.span.line, diagnostic.span.column)
         for repair in REPAIRS:
             repaired = repair(text, at)
             if repaired != text:
@@ -165,12 +167,12 @@ def _passed_over(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
     return Diagnostic(_AFTER_ROOT, message, source.span(end, end + 1), Severity.WARNING, (Note(readers),), hint, source)
 
 
-def _end_of_root(found: Diagnostic, text: str) -> int | None:
+def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
     """Where the content after the root may begin, by the error that it causes."""
-    if found.span is None or found.source is None:
+    if diagnostic.span is None or diagnostic.source is None:
         return None
-    at = found.source.offset(found.span.line, found.span.column)
-    return at if found.code == _AFTER_ROOT or (found.code == _NOT_XML and text.startswith("</", at)) else None
+    at = diagnostic.source.offset(diagnostic.span.line, diagnostic.span.column)
+    return at if diagnostic.code == _AFTER_ROOT or (diagnostic.code == _NOT_XML and text.startswith("</", at)) else None
 
 
 def _is_passed_over(rest: str) -> bool:

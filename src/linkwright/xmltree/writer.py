@@ -116,17 +116,17 @@ def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None], indent: str 
 
 def _text_of_original(copy: LazyCopy, indent: str) -> str:
     """The text of a copy that was never accessed."""
-    kept, original = copy.plan, copy.original
-    if isinstance(kept, KeptText) and kept.written is not None and kept.written[0] == indent:
-        return kept.written[1]
+    cache, original = copy.plan, copy.original
+    if isinstance(cache, KeptText) and cache.written is not None and cache.written[0] == indent:
+        return cache.written[1]
     while isinstance(original, LazyCopy) and original.original is not None:
         original = original.original
     assert original is not None, "asked for only where there is one"
     pieces: list[str] = []
     _write_nodes([original], pieces.append, indent)
     text = "".join(pieces)
-    if isinstance(kept, KeptText):
-        kept.written = (indent, text)
+    if isinstance(cache, KeptText):
+        cache.written = (indent, text)
     return text
 
 

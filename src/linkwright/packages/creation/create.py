@@ -74,15 +74,15 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
     for line in summary(request):
         report(line)
     package = request.destination / request.name
-    made = False
+    is_created = False
     try:
         package.mkdir(parents=True)
-        made = True
+        is_created = True
         report(f"creating folder {shown(package)}")
         for step in steps(request):
             _carry_out(step, package, report)
     except OSError as error:
-        if made:
+        if is_created:
             shutil.rmtree(package, ignore_errors=True)  # half a package would be in the way of the next attempt
         where = shown(Path(error.filename)) if error.filename else shown(package)
         message = phrase("cannot create '{where}': {strerror}", where=where, strerror=foreign(error.strerror or error))

@@ -21,8 +21,8 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
         finder: finds the packages.
         base: the environment to extend; its own entries stay first.
     """
-    made = dict(base)
-    made[START_VARIABLE] = os.pathsep.join(map(str, finder.starts))
+    environment = dict(base)
+    environment[START_VARIABLE] = os.pathsep.join(map(str, finder.starts))
     known = set(base.get(_AMENT, "").split(os.pathsep))
     prefixes: dict[str, None] = {}
     folders: dict[str, None] = {}
@@ -37,9 +37,9 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
         elif str(prefix) not in known:
             prefixes[str(prefix)] = None
             folders.update((str(folder), None) for folder in python_folders(prefix, name))
-    _append(made, _AMENT, prefixes)
-    _append(made, _PYTHON, folders)
-    return made
+    _append(environment, _AMENT, prefixes)
+    _append(environment, _PYTHON, folders)
+    return environment
 
 
 def python_folders(prefix: Path, package: str) -> Iterator[Path]:

@@ -126,8 +126,8 @@ class CopyRule:
         """Whether the patterns take the last of some paths, the others being those of the folders around it."""
         if any(pattern.is_excluded and pattern.matches(path) for pattern in self.patterns for path in paths):
             return False
-        wanted = (pattern for pattern in self.patterns if not pattern.is_excluded)
-        return not self.only_matching or any(pattern.matches(paths[-1]) for pattern in wanted)
+        included = (pattern for pattern in self.patterns if not pattern.is_excluded)
+        return not self.only_matching or any(pattern.matches(paths[-1]) for pattern in included)
 
 
 @dataclass
@@ -260,11 +260,11 @@ class CMakeFile:
 
     def _copied_from_build(self, rule: CopyRule, item: str, into: PurePosixPath) -> Iterator[InstalledFile]:
         below = into if item.endswith("/") else into / PurePosixPath(item).name
-        for made, file in self._generated.items():
-            if made == item:
-                yield file._replace(destination=str(into / (rule.renamed or PurePosixPath(made).name)))
-            elif made.startswith(f"{item.rstrip('/')}/"):
-                inside = PurePosixPath(made).relative_to(item)
+        for path, file in self._generated.items():
+            if path == item:
+                yield file._replace(destination=str(into / (rule.renamed or PurePosixPath(path).name)))
+            elif path.startswith(f"{item.rstrip('/')}/"):
+                inside = PurePosixPath(path).relative_to(item)
                 if rule.takes(item, inside):
                     yield file._replace(destination=str(below / inside))
 
@@ -290,19 +290,19 @@ def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
     file = CMakeFile(source)
     program = CMakeProgram(package)
     for command in program.run(source):
-        _take(file, command, program)
+        _read_command(file, command, program)
     file.unknown += [f"the effect of its command {name}() is not known here" for name in program.unknown]
     return file
 
 
-def _take(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
-    name, given, words = command.name, command.arguments, command.words
+def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
+    name, arguments, words = command.name, command.arguments, command.words
     if not is_followed(name):
         file.foreign.append(name)
     if name in _COMPILED and "INTERFACE" not in words and words:
         file.compiled.append(words[0])
-    if name == "project" and given:
-        file.project = file.project or given[0]
+    if name == "project" and arguments:
+        file.project = file.project or arguments[0]
     elif name in ("add_executable", "ament_auto_add_executable") and words and not is_open(words[0]):
         file.targets.add(words[0])
     elif name == "rclcpp_components_register_node":
@@ -313,10 +313,10 @@ def _take(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
         source = within_package(words[0], command.folder)
         file._generated[_in_build(words[1], program)] = InstalledFile(source, "", dict(program.variables))
     elif name == "file" and len(words) > 1 and words[0] in ("WRITE", "APPEND"):
-        made = _in_build(words[1], program)
-        before = file._generated.get(made) if words[0] == "APPEND" else None
+        path = _in_build(words[1], program)
+        before = file._generated.get(path) if words[0] == "APPEND" else None
         content = (before.content or "" if before else "") + "".join(words[2:])
-        file._generated[made] = InstalledFile(_NAME, "", None, content)
+        file._generated[path] = InstalledFile(_NAME, "", None, content)
     elif name in ("install", "catkin_install_python") and words:
         _install(file, command)
     elif name == "rosidl_generate_interfaces":
@@ -326,23 +326,23 @@ def _take(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
     elif name == "ament_python_install_module" and words:
         file.modules.append(within_package(words[0], command.folder))
     elif name == "ament_environment_hooks":
-        _take_hooks(file, command, program)
+        _read_hooks(file, command, program)
     elif name in ("ament_index_register_resource", "pluginlib_export_plugin_description_file") and words:
-        _take_resource(file, command)
+        _read_resource(file, command)
     elif name == "xacro_add_files" and "INSTALL" in words:
         file.unknown += [f"'{word.removesuffix('.xacro')}' would have to be made by xacro" for word in words[:1]]
     elif name in ("ament_package", "ament_auto_package"):
         file.is_ament = True
         if "INSTALL_TO_SHARE" in words:
             share = f"share/{file.project.text if file.project else ''}"
-            _add(file, CopyRule("DIRECTORY", given[words.index("INSTALL_TO_SHARE") + 1 :], share), command)
+            _add(file, CopyRule("DIRECTORY", arguments[words.index("INSTALL_TO_SHARE") + 1 :], share), command)
 
 
 def _in_build(word: str, program: CMakeProgram) -> str:
     return word if word.startswith(BUILD) else f"{program.variables['CMAKE_CURRENT_BINARY_DIR']}/{word}"
 
 
-def _take_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
+def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> None:
     """Read environment hooks: copied, or made from a template whose name ends with ``.in``."""
     for word in command.words:
         if is_open(word):
@@ -357,7 +357,7 @@ def _take_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> Non
             file._made[into] = InstalledFile(hook, into)
 
 
-def _take_resource(file: CMakeFile, command: Command) -> None:
+def _read_resource(file: CMakeFile, command: Command) -> None:
     """An entry of the resource index, and the description of a plugin that it leads to."""
     words, project = command.words, file.project.text if file.project else ""
     if command.name == "ament_index_register_resource":
@@ -372,9 +372,9 @@ def _take_resource(file: CMakeFile, command: Command) -> None:
 
 
 def _install(file: CMakeFile, command: Command) -> None:
-    given, words = command.arguments, command.words
+    arguments, words = command.arguments, command.words
     kind = words[0]
-    items = tuple(takewhile(lambda argument: argument.text not in _KEYWORDS, given[1:]))
+    items = tuple(takewhile(lambda argument: argument.text not in _KEYWORDS, arguments[1:]))
     if kind in ("FILES", "PROGRAMS", "DIRECTORY"):
         destination = _following(words, "DESTINATION") or _FOLDERS_OF_TYPES.get(_following(words, "TYPE") or "")
         if destination is None or is_open(destination):

@@ -59,8 +59,8 @@ class Condition:
         """Whether it holds; None if that is not known."""
         if len(self.words) > _MOST_WORDS:
             return None
-        found = self._either()
-        return found if self._at == len(self.words) else None
+        answer = self._either()
+        return answer if self._at == len(self.words) else None
 
     def _next(self, *keywords: str) -> bool:
         if self._at < len(self.words) and self.words[self._at].keyword in keywords:
@@ -120,17 +120,17 @@ class Condition:
             return None
         right = self.words[self._at]
         self._at += 1
-        given = self._value(left)
+        value = self._value(left)
         if operator == "IN_LIST":
             items = self.variables.get(right.text)
-            return None if items is None or is_open(items + given) else given in items.split(";")
+            return None if items is None or is_open(items + value) else value in items.split(";")
         other = right.text if operator == "MATCHES" else self._value(right)
-        if is_open(given) or is_open(other):
+        if is_open(value) or is_open(other):
             return None
         if operator == "MATCHES":
-            return self._matches(given, other)
+            return self._matches(value, other)
         kind = next((kind for kind in ("STR", "VERSION_") if operator.startswith(kind)), "")
-        sign = _order(kind, given, other)
+        sign = _order(kind, value, other)
         return None if sign is None else _ORDERS[operator.removeprefix(kind)](sign)
 
     def _matches(self, text: str, pattern: str) -> bool | None:
@@ -148,9 +148,9 @@ class Condition:
     def _truth(self, word: Word) -> bool | None:
         if is_open(word.text):
             return None
-        said = _constant(word.text)
-        if said is not None or word.is_quoted:
-            return bool(said)
+        constant = _constant(word.text)
+        if constant is not None or word.is_quoted:
+            return bool(constant)
         value = self.variables.get(word.text)
         if value is None or is_open(value):
             return None

@@ -360,7 +360,7 @@ class CMakeProgram:
             for variable in ("CATKIN_PACKAGE_SHARE_DESTINATION", "CATKIN_PACKAGE_BIN_DESTINATION"):
                 self.variables[variable] = f"{'share' if 'SHARE' in variable else 'lib'}/{words[0]}"
         elif name == "set" and words:
-            self._set_as_told(words)
+            self._set_values(words)
         elif name == "option" and words:
             self._set(words[0], words[2] if len(words) > 2 else "OFF")
         elif name == "unset" and words:
@@ -379,7 +379,7 @@ class CMakeProgram:
         elif name == "cmake_parse_arguments" and len(words) >= 4:
             self._parse_arguments(words)
 
-    def _set_as_told(self, words: list[str]) -> None:
+    def _set_values(self, words: list[str]) -> None:
         name, values = words[0], words[1:]
         if name.startswith("ENV{"):
             return
@@ -434,13 +434,13 @@ class CMakeProgram:
 
     def _parse_arguments(self, words: list[str]) -> None:
         if words[0] == "PARSE_ARGV":
-            given = items_of(self._value("ARGV"))[int(words[1]) if words[1].isdecimal() else 0 :]
-            words = [*words[2:6], *given]
-        prefix, options, single, many, *given = words
+            arguments = items_of(self._value("ARGV"))[int(words[1]) if words[1].isdecimal() else 0 :]
+            words = [*words[2:6], *arguments]
+        prefix, options, single, many, *arguments = words
         kinds = {name: kind for kind, names in enumerate((options, single, many)) for name in items_of(names)}
         values: dict[str, list[str]] = {}
         current = "UNPARSED_ARGUMENTS"
-        for word in (item for text in given for item in items_of(text)):
+        for word in (item for text in arguments for item in items_of(text)):
             if word in kinds:
                 values[word] = ["TRUE"] if kinds[word] == 0 else []
                 current = "UNPARSED_ARGUMENTS" if kinds[word] == 0 else word
@@ -455,8 +455,8 @@ class CMakeProgram:
         for token in statement.tokens:
             text = self._filled(token)
             self._count += len(text) // _OF_A_COMMAND
-            for each in [text] if token.is_quoted else items_of(text):
-                yield Argument(each, token.start, token.end, statement.source)
+            for item in [text] if token.is_quoted else items_of(text):
+                yield Argument(item, token.start, token.end, statement.source)
 
     def _filled(self, token: Token) -> str:
         """The text of an argument with the values of known variables in it."""

@@ -96,13 +96,13 @@ def _changed(what: str, items: list[str], words: list[str]) -> list[str]:
 
 
 def _transformed(item: str, words: Sequence[str]) -> str:
-    what, *given = words
-    if what in ("APPEND", "PREPEND") and len(given) == 1:
-        return item + given[0] if what == "APPEND" else given[0] + item
-    if what in ("TOLOWER", "TOUPPER", "STRIP") and not given:
+    what, *arguments = words
+    if what in ("APPEND", "PREPEND") and len(arguments) == 1:
+        return item + arguments[0] if what == "APPEND" else arguments[0] + item
+    if what in ("TOLOWER", "TOUPPER", "STRIP") and not arguments:
         return _cased(what, item)
-    if what == "REPLACE" and len(given) == 2:
-        return _replaced(given[0], given[1], item)
+    if what == "REPLACE" and len(arguments) == 2:
+        return _replaced(arguments[0], arguments[1], item)
     raise _NotKnownError
 
 
@@ -113,36 +113,36 @@ def string_command(words: Sequence[str], value_of: Callable[[str], str]) -> dict
         words: its arguments.
         value_of: gives the value of a variable.
     """
-    what, *given = words
+    what, *arguments = words
     try:
-        target, value = _string(what, given, value_of)
+        target, value = _string(what, arguments, value_of)
     except (_NotKnownError, ValueError, IndexError):
-        return {word: UNKNOWN for word in given if word.isidentifier()}
+        return {word: UNKNOWN for word in arguments if word.isidentifier()}
     return {target: UNKNOWN if is_open(value) else value}
 
 
-def _string(what: str, given: list[str], value_of: Callable[[str], str]) -> tuple[str, str]:
+def _string(what: str, args: list[str], value_of: Callable[[str], str]) -> tuple[str, str]:
     if what == "REPLACE":
-        return given[2], "".join(given[3:]).replace(given[0], given[1])
-    if what == "REGEX" and given[0] == "REPLACE":
-        return given[3], _replaced(given[1], given[2], "".join(given[4:]))
-    if what == "REGEX" and given[0] in ("MATCH", "MATCHALL"):
-        found = [text for text, _ in _found(given[1], "".join(given[3:]))]
-        return given[2], ";".join(found if given[0] == "MATCHALL" else found[:1])
+        return args[2], "".join(args[3:]).replace(args[0], args[1])
+    if what == "REGEX" and args[0] == "REPLACE":
+        return args[3], _replaced(args[1], args[2], "".join(args[4:]))
+    if what == "REGEX" and args[0] in ("MATCH", "MATCHALL"):
+        found = [text for text, _ in _found(args[1], "".join(args[3:]))]
+        return args[2], ";".join(found if args[0] == "MATCHALL" else found[:1])
     if what in ("APPEND", "PREPEND"):
-        old, new = value_of(given[0]), "".join(given[1:])
-        return given[0], old + new if what == "APPEND" else new + old
+        old, new = value_of(args[0]), "".join(args[1:])
+        return args[0], old + new if what == "APPEND" else new + old
     if what in ("CONCAT", "JOIN"):
-        return (given[0], "".join(given[1:])) if what == "CONCAT" else (given[1], given[0].join(given[2:]))
+        return (args[0], "".join(args[1:])) if what == "CONCAT" else (args[1], args[0].join(args[2:]))
     if what in ("TOLOWER", "TOUPPER", "STRIP"):
-        return given[1], _cased(what, given[0])
+        return args[1], _cased(what, args[0])
     if what == "LENGTH":
-        return given[1], str(len(given[0].encode()))
+        return args[1], str(len(args[0].encode()))
     if what == "SUBSTRING":
-        start, count = int(given[1]), int(given[2])
-        return given[3], given[0][start:] if count < 0 else given[0][start : start + count]
+        start, count = int(args[1]), int(args[2])
+        return args[3], args[0][start:] if count < 0 else args[0][start : start + count]
     if what == "FIND":
-        return given[2], str(given[0].rfind(given[1]) if "REVERSE" in given[3:] else given[0].find(given[1]))
+        return args[2], str(args[0].rfind(args[1]) if "REVERSE" in args[3:] else args[0].find(args[1]))
     raise _NotKnownError
 
 

@@ -80,10 +80,10 @@ class PythonFile:
     @cached_property
     def _assigned(self) -> dict[str, ast.expr | None]:
         """Name -> the assigned expression; None if there are several, or if it is not a single expression."""
-        found: dict[str, ast.expr | None] = {}
+        bindings: dict[str, ast.expr | None] = {}
         for node in ast.walk(self.tree):
-            _note_bindings(node, found)
-        return found
+            _note_bindings(node, bindings)
+        return bindings
 
     def assigned(self, name: str) -> ast.expr | None:
         """The expression that a name is assigned, when that happens exactly once in the file."""
@@ -177,10 +177,10 @@ class PythonFile:
         if isinstance(node.op, ast.Div):
             return joined([left, right])
         if isinstance(node.op, ast.Mod) and isinstance(left, str):
-            given = right if isinstance(right, tuple) else (right,)
-            if all(isinstance(value, (str, int)) for value in given) and left.count("%") == len(given):
+            operands = right if isinstance(right, tuple) else (right,)
+            if all(isinstance(value, (str, int)) for value in operands) and left.count("%") == len(operands):
                 try:
-                    return left % given
+                    return left % operands
                 except (TypeError, ValueError):
                     return UNKNOWN
         return UNKNOWN
@@ -193,51 +193,51 @@ class PythonFile:
         if last in _SHARES:
             package = self.value(node.args[0] if node.args else argument_of(node, "package"), depth + 1)
             return SharePath(package) if isinstance(package, str) else UNKNOWN
-        given = [self.value(argument, depth + 1) for argument in node.args]
-        if name in _JOINS and given:
+        arguments = [self.value(argument, depth + 1) for argument in node.args]
+        if name in _JOINS and arguments:
             if last == "PathJoinSubstitution":
-                return joined(given[0]) if isinstance(given[0], tuple) else UNKNOWN
-            return joined(given)
+                return joined(arguments[0]) if isinstance(arguments[0], tuple) else UNKNOWN
+            return joined(arguments)
         if last == "joinpath" and isinstance(node.func, ast.Attribute):
-            return joined([self.value(node.func.value, depth + 1), *given])
+            return joined([self.value(node.func.value, depth + 1), *arguments])
         if last in ("as_posix", "find") and isinstance(node.func, ast.Attribute):
             owner = self.value(node.func.value, depth + 1)
             return owner if isinstance(owner, SharePath) or last == "as_posix" else UNKNOWN
-        if name == "str" and len(given) == 1:
-            return given[0]
-        if last in ("glob", "iglob") and name in ("glob", "glob.glob", "iglob", "glob.iglob") and given:
+        if name == "str" and len(arguments) == 1:
+            return arguments[0]
+        if last in ("glob", "iglob") and name in ("glob", "glob.glob", "iglob", "glob.iglob") and arguments:
             recursive = argument_of(node, "recursive")
             is_recursive = isinstance(recursive, ast.Constant) and bool(recursive.value)
-            return Pattern(given[0], is_recursive) if isinstance(given[0], str) else UNKNOWN
+            return Pattern(arguments[0], is_recursive) if isinstance(arguments[0], str) else UNKNOWN
         if last == "TextSubstitution":
             return self.value(argument_of(node, "text"), depth + 1)
         return UNKNOWN
 
 
-def _note_bindings(node: ast.AST, found: dict[str, ast.expr | None]) -> None:
+def _note_bindings(node: ast.AST, bindings: dict[str, ast.expr | None]) -> None:
     if isinstance(node, ast.Assign):
         for target in node.targets:
-            _bind(target, node.value, found)
+            _bind(target, node.value, bindings)
     elif isinstance(node, ast.AnnAssign) and node.value is not None:
-        _bind(node.target, node.value, found)
+        _bind(node.target, node.value, bindings)
     elif isinstance(node, (ast.AugAssign, ast.NamedExpr, ast.For, ast.AsyncFor, ast.comprehension)):
-        _bind(node.target, None, found)
+        _bind(node.target, None, bindings)
     elif isinstance(node, ast.withitem) and node.optional_vars is not None:
-        _bind(node.optional_vars, None, found)
+        _bind(node.optional_vars, None, bindings)
     elif isinstance(node, ast.arg):
-        found[node.arg] = None
+        bindings[node.arg] = None
     elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-        found[node.name] = None
+        bindings[node.name] = None
 
 
-def _bind(target: ast.expr, value: ast.expr | None, found: dict[str, ast.expr | None]) -> None:
+def _bind(target: ast.expr, value: ast.expr | None, bindings: dict[str, ast.expr | None]) -> None:
     if isinstance(target, ast.Name):
-        found[target.id] = None if target.id in found else value
+        bindings[target.id] = None if target.id in bindings else value
     elif isinstance(target, (ast.Tuple, ast.List)):
         for part in target.elts:
-            _bind(part, None, found)
+            _bind(part, None, bindings)
     elif isinstance(target, ast.Starred):
-        _bind(target.value, None, found)
+        _bind(target.value, None, bindings)
 
 
 def _parsed(text: str) -> ast.Module:

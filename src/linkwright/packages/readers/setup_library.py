@@ -64,19 +64,19 @@ def weight(value: Any, most: int) -> int:
     """
     count, pending = 0, [value]
     while pending and count <= most:
-        each = pending.pop()
+        item = pending.pop()
         count += 1
-        if isinstance(each, str):
-            count += len(each) // 64
-        elif isinstance(each, dict):
-            count += len(each)
-            pending += each.values()
-        elif isinstance(each, (list, tuple, set, frozenset)):
-            pending += each
+        if isinstance(item, str):
+            count += len(item) // 64
+        elif isinstance(item, dict):
+            count += len(item)
+            pending += item.values()
+        elif isinstance(item, (list, tuple, set, frozenset)):
+            pending += item
     return min(count, most)
 
 
-def formatted(template: str, *given: Any, **named: Any) -> str:
+def formatted(template: str, *arguments: Any, **named: Any) -> str:
     """``template.format(...)``, where it makes nothing wide and reaches into no object.
 
     Raises:
@@ -84,10 +84,10 @@ def formatted(template: str, *given: Any, **named: Any) -> str:
     """
     if _WIDE.search(template) or "." in "".join(re.findall(r"\{[^}]*\}", template)):
         raise NotKnownError
-    return template.format(*given, **named)
+    return template.format(*arguments, **named)
 
 
-def percent(template: str, given: Any) -> str:
+def percent(template: str, arguments: Any) -> str:
     """``template % given``, where it makes nothing wide.
 
     Raises:
@@ -95,7 +95,7 @@ def percent(template: str, given: Any) -> str:
     """
     if _WIDE.search(template):
         raise NotKnownError
-    return str(template % given)
+    return str(template % arguments)
 
 
 class PackageLibrary:
@@ -121,7 +121,7 @@ class PackageLibrary:
         self.functions: dict[str, Callable[..., Any]] = {
             **{f"os.path.{name}": function for name, function in path.items()},
             "os.walk": self._walk,
-            "os.listdir": lambda path=".": sorted(each.name for each in self._listed(path)),
+            "os.listdir": lambda path=".": sorted(entry.name for entry in self._listed(path)),
             "os.getcwd": self._folder.as_posix,
             "os.fspath": str,
             "glob.glob": self._glob,
@@ -135,7 +135,7 @@ class PackageLibrary:
             "is_file": path["isfile"],
             "is_dir": path["isdir"],
             "exists": path["exists"],
-            "iterdir": lambda path: sorted(path / each.name for each in self._listed(path)),
+            "iterdir": lambda path: sorted(path / entry.name for entry in self._listed(path)),
             "glob": self._path_glob,
             "rglob": lambda path, pattern: self._path_glob(path, f"**/{pattern}"),
             **dict.fromkeys(("resolve", "absolute"), lambda path: PurePosixPath(self._absolute(path))),
@@ -186,4 +186,4 @@ class PackageLibrary:
         if ".." in pattern.split("/") or pattern.startswith("/"):
             raise NotKnownError
         top = self._real(path)
-        return bounded(sorted(path / each.relative_to(top).as_posix() for each in top.glob(pattern)))  # type: ignore[no-any-return]  # what it is given
+        return bounded(sorted(path / entry.relative_to(top).as_posix() for entry in top.glob(pattern)))  # type: ignore[no-any-return]  # what it is given

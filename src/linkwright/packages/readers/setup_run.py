@@ -169,12 +169,12 @@ class _Run:
             raise NotKnownError
 
     def _import(self, node: ast.Import | ast.ImportFrom) -> None:
-        for each in node.names:
+        for alias in node.names:
             if isinstance(node, ast.ImportFrom):
-                self._scopes[-1][each.asname or each.name] = _Named(f"{node.module}.{each.name}")
+                self._scopes[-1][alias.asname or alias.name] = _Named(f"{node.module}.{alias.name}")
             else:
-                name = each.name if each.asname else each.name.partition(".")[0]
-                self._scopes[-1][each.asname or name] = _Named(name)
+                name = alias.name if alias.asname else alias.name.partition(".")[0]
+                self._scopes[-1][alias.asname or name] = _Named(name)
 
     def _augment(self, node: ast.AugAssign) -> None:
         value = self._value(ast.BinOp(_loaded(node.target), node.op, node.value))
@@ -202,8 +202,8 @@ class _Run:
             self._scopes[-1][target.id] = value
         elif isinstance(target, (ast.Tuple, ast.List)):
             parts = [_UNKNOWN] * len(target.elts) if value is _UNKNOWN else list(self._items(value))
-            for each, part in zip(target.elts, parts, strict=True):
-                self._bind(each, part)
+            for element, part in zip(target.elts, parts, strict=True):
+                self._bind(element, part)
         elif isinstance(target, ast.Subscript):
             owner = self._value(target.value)
             if isinstance(owner, list) and isinstance(target.slice, ast.Slice):
@@ -274,17 +274,17 @@ class _Run:
         return values
 
     def _sequence(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
-        made: Callable[[Any], Any] = {ast.List: list, ast.Tuple: tuple, ast.Set: set}[type(node)]
-        return made(self._elements(node.elts))
+        construct: Callable[[Any], Any] = {ast.List: list, ast.Tuple: tuple, ast.Set: set}[type(node)]
+        return construct(self._elements(node.elts))
 
     def _dict(self, node: ast.Dict) -> dict[Any, Any]:
-        made: dict[Any, Any] = {}
+        mapping: dict[Any, Any] = {}
         for key, value in zip(node.keys, node.values, strict=True):
             if key is None:
-                made |= self._known(value)
+                mapping |= self._known(value)
             else:
-                made[self._known(key)] = self._value(value)
-        return made
+                mapping[self._known(key)] = self._value(value)
+        return mapping
 
     def _joined(self, node: ast.JoinedStr) -> str:
         parts: list[str] = []
@@ -311,8 +311,8 @@ class _Run:
 
     def _logic(self, node: ast.BoolOp) -> Any:
         value = None
-        for each in node.values:
-            value = self._known(each)
+        for operand in node.values:
+            value = self._known(operand)
             if bool(value) == isinstance(node.op, ast.Or):
                 break
         return value
@@ -339,10 +339,10 @@ class _Run:
     def _comprehension(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp) -> Any:
         self._scopes.append({})
         try:
-            made = list(self._rounds(node.generators, lambda: self._value(node.elt)))
+            items = list(self._rounds(node.generators, lambda: self._value(node.elt)))
         finally:
             self._scopes.pop()
-        return set(made) if isinstance(node, ast.SetComp) else made
+        return set(items) if isinstance(node, ast.SetComp) else items
 
     def _rounds(self, generators: list[ast.comprehension], value: Callable[[], Any]) -> Iterator[Any]:
         if not generators:
@@ -375,9 +375,9 @@ class _Run:
 
     def _method(self, owner: Any, name: str) -> Callable[..., Any]:
         if isinstance(owner, str) and name == "format":
-            return lambda *given, **named: formatted(owner, *given, **named)
+            return lambda *arguments, **named: formatted(owner, *arguments, **named)
         if isinstance(owner, PurePosixPath) and name in self._library.path_methods:
-            return lambda *given, **named: self._library.path_methods[name](owner, *given, **named)
+            return lambda *arguments, **named: self._library.path_methods[name](owner, *arguments, **named)
         if any(isinstance(owner, kind) and name in names for kind, names in METHODS.items()):
             method: Callable[..., Any] = getattr(owner, name)
             return method
@@ -396,7 +396,7 @@ class _Run:
                 named |= self._known(keyword.value)
             else:
                 named[keyword.arg] = self._value(keyword.value)
-        given = self._elements(node.args)
+        arguments = self._elements(node.args)
         if isinstance(called, _Named):
             if called.name.rpartition(".")[2] == "setup":
                 raise _SetupCalledError(named.get("data_files"))
@@ -404,13 +404,13 @@ class _Run:
         if not callable(called):
             raise NotKnownError
         is_kept = getattr(called, "__name__", "") in ("append", "insert", "setdefault", "add") or called in self._own
-        if not is_kept and any(value is _UNKNOWN for value in (*given, *named.values())):
+        if not is_kept and any(value is _UNKNOWN for value in (*arguments, *named.values())):
             raise NotKnownError
-        made = called(*(self._named_function(value) for value in given), **named)
+        result = called(*(self._named_function(value) for value in arguments), **named)
         return (
-            list(made)
-            if isinstance(made, (map, filter, zip, enumerate, Mapping)) and not isinstance(made, dict)
-            else made
+            list(result)
+            if isinstance(result, (map, filter, zip, enumerate, Mapping)) and not isinstance(result, dict)
+            else result
         )
 
     def _named_function(self, value: Any) -> Any:
@@ -426,15 +426,15 @@ class _Run:
         names = [posonlyarg.arg for posonlyarg in (*parameters.posonlyargs, *parameters.args)]
         defaults = dict(zip(reversed(names), reversed(self._elements(parameters.defaults)), strict=False))
         only = {
-            each.arg: _UNKNOWN if default is None else self._value(default)
-            for each, default in zip(parameters.kwonlyargs, parameters.kw_defaults, strict=True)
+            parameter.arg: _UNKNOWN if default is None else self._value(default)
+            for parameter, default in zip(parameters.kwonlyargs, parameters.kw_defaults, strict=True)
         }
         outer = self._scopes[1:]
 
-        def called(*given: Any, **named: Any) -> Any:
-            scope = {**defaults, **only, **dict(zip(names, given, strict=False)), **named}
+        def called(*arguments: Any, **named: Any) -> Any:
+            scope = {**defaults, **only, **dict(zip(names, arguments, strict=False)), **named}
             if parameters.vararg is not None:
-                scope[parameters.vararg.arg] = given[len(names) :]
+                scope[parameters.vararg.arg] = arguments[len(names) :]
             before, self._scopes = self._scopes, [self._scopes[0], *outer, scope]
             self._depth += 1
             try:

@@ -75,10 +75,10 @@ def _hash_of(item: Any) -> int:
 
 
 def _backwards(name: str) -> Callable[..., Any]:
-    def search(text: Any, wanted: Any, *rest: Any) -> Any:
-        if isinstance(wanted, (str, bytes)) and len(wanted) * len(text) > _MOST_COMPARED:
+    def search(text: Any, part: Any, *rest: Any) -> Any:
+        if isinstance(part, (str, bytes)) and len(part) * len(text) > _MOST_COMPARED:
             raise RefusalError(phrase("the texts are too long for '{name}'", name=name))
-        return getattr(text, name)(wanted, *rest)
+        return getattr(text, name)(part, *rest)
 
     return search
 

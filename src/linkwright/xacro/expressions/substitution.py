@@ -54,10 +54,10 @@ def _check_characters(body: str) -> None:
             raise Fault("XAC213", phrase("'{sign}' is not allowed inside '$(...)'", sign=sign), at, at + 1)
 
 
-def _found_again(whole: str, body: str, session: Context) -> str:
+def _found_again(text: str, body: str, session: Context) -> str:
     words = body.split()
     if words and words[0] in _COMMANDS and words[0] != "find":
-        return whole
+        return text
     return _command(body, session, only_find=True)
 
 

@@ -159,7 +159,7 @@ class Provider(Protocol):
         """The value of an argument."""
         ...
 
-    def say(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
+    def reporter(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
         """Make ``xacro.message``, ``xacro.warning`` or ``xacro.error``, by which a description addresses its user."""
         ...
 
@@ -180,10 +180,10 @@ def global_names(session: Provider) -> dict[str, Any]:
         {
             **functions,
             "arg": session.argument,
-            "message": session.say("message", "XAC704", Severity.INFO),
-            "warning": session.say("warning", "XAC703", Severity.WARNING),
-            "error": session.say("error", "XAC702", Severity.ERROR),
-            "print_location": session.say("print_location", "XAC705", Severity.INFO),
+            "message": session.reporter("message", "XAC704", Severity.INFO),
+            "warning": session.reporter("warning", "XAC703", Severity.WARNING),
+            "error": session.reporter("error", "XAC702", Severity.ERROR),
+            "print_location": session.reporter("print_location", "XAC705", Severity.INFO),
             "fatal": _fatal,
             "tokenize": tokenize,
         },

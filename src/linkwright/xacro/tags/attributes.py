@@ -17,7 +17,7 @@ def check_attributes(expander: Expander, node: Element, required: tuple[str, ...
     attributes = node.attributes
     for name in required:
         if name not in attributes:
-            near = nearest(name, [given for given in attributes if given not in optional])
+            near = nearest(name, [attribute for attribute in attributes if attribute not in optional])
             missing = (
                 phrase("write {name}=\"...\" for '{near}'", name=name, near=near[0])
                 if near

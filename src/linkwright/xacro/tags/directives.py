@@ -106,7 +106,7 @@ def set_attribute(expander: Expander, site: Site) -> None:
     value = expander.value(node, "value", site.scope)
     before = expander.unwritable.pop((id(site.parent), name), None)
     if before is not None:  # its value is not written
-        expander.session.take_back(before[1])
+        expander.session.withdraw(before[1])
     if isinstance(site.parent, Container) and not name.startswith("xmlns:"):
         message = phrase(
             "ros/xacro drops the attribute '{name}': it is inside <{tag}>, not directly in its element",
@@ -142,9 +142,9 @@ def _warn_of_value(expander: Expander, site: Site, name: str, value: object) -> 
     )
     written = node.attributes["value"].strip()
     hint = phrase("make it a text: {written}", written="${str(" + written[2:-1].strip() + ")}")
-    found = expander.session.warn("XAC903", message, node.attribute_span("value"), hint)
-    if found is not None:
-        expander.unwritable[id(site.parent), name] = (site.parent, found)
+    diagnostic = expander.session.warn("XAC903", message, node.attribute_span("value"), hint)
+    if diagnostic is not None:
+        expander.unwritable[id(site.parent), name] = (site.parent, diagnostic)
 
 
 def _check_name(expander: Expander, node: Element, attribute: str, what: str, name: str) -> None:

@@ -109,21 +109,21 @@ def _document(expander: Expander, site: Site, path: str) -> Document:
         return expander.session.read(path)
     except LinkwrightError as error:
         node, frame = site.node, expander.session.frame
-        found = error.diagnostics[0]
-        if found.span is None:
-            hint = found.hint or _nearest_file(expander.session.on_disk(path))
+        first = error.diagnostics[0]
+        if first.span is None:
+            hint = first.hint or _nearest_file(expander.session.on_disk(path))
             diagnostic = Diagnostic(
-                found.code,
-                found.message,
+                first.code,
+                first.message,
                 node.attribute_span("filename"),
                 notes=trail(frame),
                 hint=hint,
                 source=node.source,
             )
         else:
-            notes = (*found.notes, Frame(None, node, frame).note(), *trail(frame))
+            notes = (*first.notes, Frame(None, node, frame).note(), *trail(frame))
             diagnostic = Diagnostic(
-                found.code, found.message, found.span, notes=notes, hint=xml_hint(found), source=found.source
+                first.code, first.message, first.span, notes=notes, hint=xml_hint(first), source=first.source
             )
         raise LinkwrightError(diagnostic) from None
 

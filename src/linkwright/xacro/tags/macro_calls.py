@@ -53,7 +53,7 @@ def call_dynamically(expander: Expander, site: Site) -> None:
     if not node.attributes.get("macro"):
         expander.fail_at("XAC301", phrase("'xacro:call' lacks its attribute 'macro'"), node, node.span())
     name = expander.text_value(node, "macro", site.scope)
-    attributes = {given: value for given, value in node.attributes.items() if given != "macro"}
+    attributes = {attribute: value for attribute, value in node.attributes.items() if attribute != "macro"}
     call = Element(PREFIX + name, attributes, node.source, node.offset)
     call.children = node.children
     _Call(expander, site._replace(node=call), name, written_in="macro").run()
@@ -82,9 +82,9 @@ class _Call:
         expander, site = self._expander, self._site
         macro, around, macros = self._resolve()
         scope = Scope(around, expander.session)
-        missing = self._take_arguments(macro, scope)
-        missing = self._take_blocks(macro, missing, scope)
-        missing = self._take_defaults(macro, missing, scope)
+        missing = self._bind_arguments(macro, scope)
+        missing = self._bind_blocks(macro, missing, scope)
+        missing = self._bind_defaults(macro, missing, scope)
         if missing:
             self._report_missing(macro, missing)
         container = self._expand_body(macro, scope, MacroTable(macros))
@@ -134,7 +134,7 @@ class _Call:
 
     # binding the parameters
 
-    def _take_arguments(self, macro: Macro, scope: Scope) -> list[Parameter]:
+    def _bind_arguments(self, macro: Macro, scope: Scope) -> list[Parameter]:
         """Bind the attributes of the call, and return the parameters that are not bound."""
         expander, node, caller = self._expander, self._node, self._site.scope
         attributes = node.attributes
@@ -153,7 +153,7 @@ class _Call:
                 seen.add(parameter.name)
         return left
 
-    def _take_blocks(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
+    def _bind_blocks(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
         if not left and not self._node.children:
             return left
         blocks = self._expander.blocks(self._node, self._site.scope, self._site.macros).elements()
@@ -171,7 +171,7 @@ class _Call:
             self._report_unused_block(macro, unused)
         return remaining
 
-    def _take_defaults(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
+    def _bind_defaults(self, macro: Macro, left: list[Parameter], scope: Scope) -> list[Parameter]:
         remaining = []
         for parameter in left:
             if parameter.forward or parameter.default is not None:

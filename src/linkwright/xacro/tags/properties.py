@@ -38,7 +38,7 @@ def define_property(expander: Expander, site: Site) -> None:
             expander.session.warn("XAC308", message, node.attribute_span("scope"))
         if name in scope:
             return
-    attribute = next((given for given in ("value", "default") if given in attributes), None)
+    attribute = next((key for key in ("value", "default") if key in attributes), None)
     if attribute is None:
         target, _ = _target(expander, node, name, scope)
         target.bind(f"**{name}", node)

@@ -83,8 +83,8 @@ def examine_arguments(inputs: Inputs) -> Arguments:
     except LinkwrightError as error:
         problems = error.diagnostics
         _follow_includes(session)
-    found = _Findings(inputs, session, complete=not problems)
-    return Arguments(found.arguments(), found.unused(), problems)
+    findings = _Findings(inputs, session, complete=not problems)
+    return Arguments(findings.arguments(), findings.unused(), problems)
 
 
 class _Session(TracedSession):

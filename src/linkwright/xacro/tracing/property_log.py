@@ -69,23 +69,23 @@ class _Table(dict[str, Any]):
         super().__setitem__(name, value)
         if name in self._waiting:  # not set again: it is evaluated because it is used
             self._waiting.discard(name)
-            self._tell("use", name, value)
+            self._log("use", name, value)
         else:
-            self._tell("set", name, value)
+            self._log("set", name, value)
 
     def __getitem__(self, name: str) -> Any:
         value = super().__getitem__(name)
         if isinstance(value, Lazy):
             self._waiting.add(name)
         else:
-            self._tell("use", name, value)
+            self._log("use", name, value)
         return value
 
     def get(self, name: str, default: Any = None) -> Any:
         """The value of a name; using it is logged."""
         return self[name] if name in self else default  # noqa: SIM401 - it is `get` itself
 
-    def _tell(self, what: str, name: str, value: Any) -> None:
+    def _log(self, what: str, name: str, value: Any) -> None:
         if isinstance(value, Scope):
             return
         if isinstance(value, Element):

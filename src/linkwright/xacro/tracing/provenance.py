@@ -165,7 +165,7 @@ class Tracer:
         )
 
     def _calls(self, frame: Frame | None) -> tuple[Call, ...]:
-        return tuple(Call(each.macro, each.site.span(), self._recorder.parameters(each)) for each in frames(frame))
+        return tuple(Call(call.macro, call.site.span(), self._recorder.parameters(call)) for call in frames(frame))
 
 
 def _texts(element: Element, moment: Moment) -> Iterator[TextProvenance]:

@@ -66,7 +66,7 @@ def _call_lines(call: Call) -> Iterator[str]:
 
 
 def _element_lines(provenance: Provenance, around: Provenance) -> Iterator[str]:
-    attributes = [attribute for attribute in provenance.attributes if _is_told(attribute, provenance)]
+    attributes = [attribute for attribute in provenance.attributes if _is_shown(attribute, provenance)]
     texts = [text for text in provenance.texts if text.written != text.value]
     other = provenance is not around and provenance.calls != around.calls
     if not attributes and not texts and not other:
@@ -86,24 +86,24 @@ def _element_lines(provenance: Provenance, around: Provenance) -> Iterator[str]:
 
 
 def _value_row(value: Value) -> tuple[str, str, str]:
-    told = value.kind
+    source = value.kind
     if value.span is not None:
-        told += f" {place(value.span)}"
+        source += f" {place(value.span)}"
         if value.written is not None and "$" in value.written:
-            told += f" {_quoted(value.written)}"
+            source += f" {_quoted(value.written)}"
     elif value.kind in _OUTSIDE:
-        told += f", {_OUTSIDE[value.kind]}"
-    return value.name, value.value, told
+        source += f", {_OUTSIDE[value.kind]}"
+    return value.name, value.value, source
 
 
 def _table(rows: list[tuple[str, str, str]]) -> Iterator[str]:
     first = max((len(name) for name, _, _ in rows), default=0)
     second = min(max((len(value) for _, value, _ in rows), default=0), 30)
-    for name, value, told in rows:
-        yield f"{name:{first}} = {value:{second}}  ({told})"
+    for name, value, source in rows:
+        yield f"{name:{first}} = {value:{second}}  ({source})"
 
 
-def _is_told(attribute: AttributeProvenance, provenance: Provenance) -> bool:
+def _is_shown(attribute: AttributeProvenance, provenance: Provenance) -> bool:
     return attribute.written != attribute.value or not _is_inside(attribute, provenance)
 
 

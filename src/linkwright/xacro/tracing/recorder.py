@@ -83,8 +83,8 @@ class Recorder:
 
     def moment(self, element: Element) -> Moment | None:
         """How an element was made."""
-        known = self._moments.get(id(element))
-        return known[1] if known else None
+        moment = self._moments.get(id(element))
+        return moment[1] if moment else None
 
     def setting(self, element: Element, name: str) -> Setting | None:
         """The ``<xacro:attribute>`` that set an attribute of an element, or None when it is written on it."""
@@ -146,11 +146,11 @@ class Recorder:
             scope = scope.parent
 
     def _probe(self, expander: Expander, site: Site) -> None:
-        made, about = site.parent, site.node.origin
+        element, about = site.parent, site.node.origin
         if isinstance(about, Moment):  # a block that is expanded once more
-            self._remember(made, about)
+            self._remember(element, about)
         elif isinstance(about, Text):
-            known = self.moment(made)
+            known = self.moment(element)
             if known is not None:
                 known.texts.append((about, self._values(expander, about.data, site.scope)))
             return
@@ -163,8 +163,8 @@ class Recorder:
                 if "$" in text:
                     moment.values[name] = self._values(expander, text, site.scope)
             about = moment
-            self._remember(made, moment)
-        made.children.append(echo(about))
+            self._remember(element, moment)
+        element.children.append(echo(about))
 
     def _remember(self, element: Element, moment: Moment) -> None:
         self._moments[id(element)] = (element, moment)

@@ -35,12 +35,12 @@ def read_xml(source: SourceText) -> CallingFile:
             default = values.get("default", values.get("value"))
             file.declare(element.attributes["name"], default, tuple(_offered(element)))
         elif element.tag == "include" and "file" in values:
-            given = {
+            arguments = {
                 child.attributes.get("name", ""): markup_text(child.attributes["value"], source.name)
                 for child in element.elements()
                 if child.tag in ("arg", "let") and "value" in child.attributes
             }
-            file.inclusions.append(Inclusion(values["file"], given))
+            file.inclusions.append(Inclusion(values["file"], arguments))
         for key, value in element.attributes.items():
             lines = [values[key]] if key == "command" else list(_commands(value, source.name))
             _note(file, lines, element.attribute_span(key))
@@ -59,12 +59,12 @@ def read_yaml(source: SourceText) -> CallingFile:
 
     file = CallingFile(source.name)
     try:
-        whole = yaml.safe_load(source.text)
+        document = yaml.safe_load(source.text)
     except (yaml.YAMLError, RecursionError, ValueError):
         return file
-    if isinstance(whole, dict) and isinstance(whole.get("launch"), list):
-        for each in whole["launch"]:
-            _read_entity(each, source, file)
+    if isinstance(document, dict) and isinstance(document.get("launch"), list):
+        for entity in document["launch"]:
+            _read_entity(entity, source, file)
     return file
 
 
@@ -80,7 +80,7 @@ def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
             continue
         if tag == "include" and "file" in attributes:
             given = _mappings(attributes.get("arg", attributes.get("let")), "name")
-            arguments = {str(each["name"]): markup_text(str(each.get("value", "")), source.name) for each in given}
+            arguments = {str(item["name"]): markup_text(str(item.get("value", "")), source.name) for item in given}
             file.inclusions.append(Inclusion(markup_text(str(attributes["file"]), source.name), arguments))
         for text in _strings(value):
             _note(file, list(_commands(text, source.name)), source.span(max(source.text.find(text), 0)))
@@ -90,14 +90,14 @@ def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
 
 def _mappings(value: Any, key: str) -> list[dict[Any, Any]]:
     """The mappings of a list that have a key."""
-    return [each for each in value if isinstance(each, dict) and key in each] if isinstance(value, list) else []
+    return [item for item in value if isinstance(item, dict) and key in item] if isinstance(value, list) else []
 
 
 def _strings(value: Any) -> Iterator[str]:
     if isinstance(value, str):
         yield value
-    for each in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
-        yield from _strings(each)
+    for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from _strings(item)
 
 
 def _note(file: CallingFile, lines: list[Text], span: Span | None) -> None:

@@ -40,7 +40,7 @@ class _Reader:
             if isinstance(node, ast.Call) and called_name(node) in functions:
                 calls.setdefault(called_name(node), []).append((node, scope))
         self._texts = PythonTexts(file, calls)
-        self._told: set[ast.AST] = set()
+        self._handled: set[ast.AST] = set()
 
     def read(self) -> None:
         """Collect the calls and inclusions of the file."""
@@ -48,12 +48,12 @@ class _Reader:
             if isinstance(node, ast.Call) and called_name(node).endswith("DeclareLaunchArgument"):
                 self._declaration(node, scope)
             elif isinstance(node, ast.Call) and called_name(node).endswith("Command") and node.args:
-                self._told.update(_lists_of(node.args[0], scope))  # whose items may be parts of words
+                self._handled.update(_lists_of(node.args[0], scope))  # whose items may be parts of words
         for node, scope in self._nodes:
-            if node in self._told:
-                self._told.update(ast.iter_child_nodes(node))
+            if node in self._handled:
+                self._handled.update(ast.iter_child_nodes(node))
             elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-                self._told.add(node.value)  # a docstring
+                self._handled.add(node.value)  # a docstring
             elif isinstance(node, ast.Call):
                 self._call(node, scope)
             elif isinstance(node, (ast.JoinedStr, ast.BinOp, ast.Constant, ast.List)):
@@ -74,7 +74,7 @@ class _Reader:
         if name == "Command":
             written = node.args[0] if node.args else argument_of(node, "command")
             self._note(xacro_command(self._texts.text(written, scope)), node, is_command=True)
-            self._told.update(ast.iter_child_nodes(node))
+            self._handled.update(ast.iter_child_nodes(node))
         elif name == "IncludeLaunchDescription":
             self._inclusion(node, scope)
         elif name == "robot_description" and isinstance(node.func, ast.Attribute):
@@ -86,14 +86,14 @@ class _Reader:
         """A text, or the words of a list, that may be a command line."""
         value = self._texts.value(node, scope)
         if isinstance(value, Items):
-            words = [each for each in value.values if isinstance(each, tuple)]
+            words = [item for item in value.values if isinstance(item, tuple)]
             line = joined((*word, " ") for word in words) if len(words) == len(value.values) else ()
         else:
             line = value if isinstance(value, tuple) else ()
         if any(isinstance(piece, str) and "xacro" in piece for piece in line):
             self._note(xacro_command(line), node, is_command=True)
         if not isinstance(node, ast.List):
-            self._told.update(ast.iter_child_nodes(node))
+            self._handled.update(ast.iter_child_nodes(node))
 
     def _expansion(self, node: ast.Call, name: str, scope: Scope) -> None:
         """Any function that is given a description and a mapping expands the one with the other."""
@@ -114,7 +114,7 @@ class _Reader:
 
     def _of_builder(self, node: ast.Call, scope: Scope) -> None:
         """``MoveItConfigsBuilder(...).robot_description(...)``."""
-        builder = next((each for each in ast.walk(node.func) if _is_builder(each)), None)
+        builder = next((inner for inner in ast.walk(node.func) if _is_builder(inner)), None)
         if not isinstance(builder, ast.Call):
             return
         robot = self._texts.text(builder.args[0] if builder.args else argument_of(builder, "robot_name"), scope)
@@ -153,9 +153,9 @@ class _Reader:
             text = path[-1] if path and isinstance(path[-1], str) else ""
         return text.endswith(_ENDINGS)
 
-    def _note(self, found: tuple[Text, dict[str, Text]] | None, node: ast.expr, *, is_command: bool = False) -> None:
-        if found is not None:
-            self._file.calls.append(XacroCall(*found, self._python.span(node), is_command))
+    def _note(self, call: tuple[Text, dict[str, Text]] | None, node: ast.expr, *, is_command: bool = False) -> None:
+        if call is not None:
+            self._file.calls.append(XacroCall(*call, self._python.span(node), is_command))
 
 
 def _lists_of(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
@@ -174,7 +174,7 @@ def _texts_of(entries: Mapping[str, Value]) -> Iterator[tuple[str, Text]]:
             name,
             value
             if isinstance(value, tuple)
-            else joined(each for each in getattr(value, "values", ()) if isinstance(each, tuple)),
+            else joined(item for item in getattr(value, "values", ()) if isinstance(item, tuple)),
         )
 
 

@@ -87,11 +87,11 @@ def _bind(node: ast.AST, scope: Scope) -> None:
         _bind_added(node.func, node.args, scope)
 
 
-def _bind_added(method: ast.Attribute, given: list[ast.expr], scope: Scope) -> None:
+def _bind_added(method: ast.Attribute, args: list[ast.expr], scope: Scope) -> None:
     """Record the items that a list or mapping of this scope gets by ``append``, ``extend`` or ``update``."""
     bindings = scope.names.get(method.value.id) if isinstance(method.value, ast.Name) else None
-    if bindings and len(given) == 1 and method.attr in ("append", "extend", "update"):
-        added = ast.copy_location(ast.List(given, ast.Load()), given[0]) if method.attr == "append" else given[0]
+    if bindings and len(args) == 1 and method.attr in ("append", "extend", "update"):
+        added = ast.copy_location(ast.List(args, ast.Load()), args[0]) if method.attr == "append" else args[0]
         bindings.append(Binding(added, is_added=True))
 
 
@@ -114,8 +114,8 @@ def parameters(function: Function) -> list[str]:
 def defaults(function: Function) -> Iterator[tuple[str, ast.expr]]:
     """The parameters of a function that have a default, with it."""
     names = parameters(function)
-    given = function.args.defaults
-    yield from zip(names[len(names) - len(given) :], given, strict=True)
+    values = function.args.defaults
+    yield from zip(names[len(names) - len(values) :], values, strict=True)
     for argument, default in zip(function.args.kwonlyargs, function.args.kw_defaults, strict=True):
         if default is not None:
             yield argument.arg, default

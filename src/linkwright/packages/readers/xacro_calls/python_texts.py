@@ -141,10 +141,10 @@ class PythonTexts:
         if isinstance(node.op, (ast.Add, ast.BitOr)):
             return _sum(left, right)
         if isinstance(node.op, ast.Mod) and (pattern := _plain(_as_text(left))):
-            given = [*map(_as_text, right.values)] if isinstance(right, Items) else [_as_text(right)]
+            texts = [*map(_as_text, right.values)] if isinstance(right, Items) else [_as_text(right)]
             parts = pattern.split("%s")
-            if len(parts) == len(given) + 1 and "%" not in "".join(parts):
-                return _filled(parts, given)
+            if len(parts) == len(texts) + 1 and "%" not in "".join(parts):
+                return _filled(parts, texts)
         return _OPEN
 
     def _item(self, node: ast.Subscript, scope: Scope) -> Value:
@@ -223,14 +223,14 @@ class PythonTexts:
         if pattern is None:
             return _OPEN
         named = {keyword.arg: self.text(keyword.value, scope) for keyword in node.keywords if keyword.arg}
-        given = [self.text(arg, scope) for arg in node.args]
+        texts = [self.text(arg, scope) for arg in node.args]
         parts = _FIELD.split(pattern)
         if "{" in "".join(parts[::2]):
             return _OPEN
         filled: list[Text] = []
         for index, key in enumerate(parts[1::2]):
             at = int(key) if key.isdigit() else index
-            filled.append(named.get(key, _OPEN) if key and not key.isdigit() else (given + [_OPEN] * (at + 1))[at])
+            filled.append(named.get(key, _OPEN) if key and not key.isdigit() else (texts + [_OPEN] * (at + 1))[at])
         return _filled(parts[::2], filled)
 
     # --- names ------------------------------------------------------------------------------------------------
@@ -276,7 +276,7 @@ class PythonTexts:
     def _one_of(self, node: ast.expr | None, values: Sequence[Value]) -> Value:
         """One of several values, if the condition of each is not known."""
         lasting = [value for value in values if value != _OPEN]
-        if len(lasting) < 2 or not all(isinstance(each, tuple) for each in lasting):
+        if len(lasting) < 2 or not all(isinstance(item, tuple) for item in lasting):
             return lasting[0] if lasting else _OPEN
         return self._rows_of(node, lasting, is_certain=False)
 
@@ -307,21 +307,21 @@ class PythonTexts:
                         return value
                     return value.values[names.index(name)] if isinstance(value, Items) else _OPEN
         default = dict(defaults(function)).get(name)
-        given: list[Value] = []
+        values: list[Value] = []
         for call, calling in self.calls.get(function.name, ()):
             positions = parameters(function)
             at = positions.index(name) if name in positions else len(call.args)
             written = argument_of(call, name) or (call.args[at] if at < len(call.args) else default)
-            given.append(self.value(written, calling))
-        if not given:  # all callers are in other files
+            values.append(self.value(written, calling))
+        if not values:  # all callers are in other files
             value = self.value(default, outer)
             return Entries({**value.values, **UNKNOWN_ENTRIES}) if isinstance(value, Entries) else value
-        return given[0] if len(given) == 1 else self._one_of(call, given)
+        return values[0] if len(values) == 1 else self._one_of(call, values)
 
     def _parametrized(self, node: ast.expr, scope: Scope) -> list[str]:
         value = self.value(node, scope)
         if isinstance(value, Items):
-            return [_plain(_as_text(each)) or "" for each in value.values]
+            return [_plain(_as_text(item)) or "" for item in value.values]
         return [word.strip() for word in (_plain(_as_text(value)) or "").split(",")]
 
 
@@ -333,7 +333,7 @@ def _plain(text: Text) -> str | None:
 
 def _as_text(value: Value) -> Text:
     if isinstance(value, Items):
-        return joined(_as_text(each) for each in value.values)
+        return joined(_as_text(item) for item in value.values)
     return _OPEN if isinstance(value, Entries) else value
 
 
@@ -351,9 +351,9 @@ def _sum(left: Value, right: Value) -> Value:
     return _OPEN
 
 
-def _filled(parts: Sequence[str], given: Sequence[Text]) -> Text:
+def _filled(parts: Sequence[str], texts: Sequence[Text]) -> Text:
     """The parts of a pattern with the given texts between them."""
-    found = literal(parts[0])
-    for text, part in zip(given, parts[1:], strict=True):
-        found = (*found, *text, *literal(part))
-    return found
+    result = literal(parts[0])
+    for text, part in zip(texts, parts[1:], strict=True):
+        result = (*result, *text, *literal(part))
+    return result

@@ -162,7 +162,7 @@ def selections(text: Text, choices: Mapping[str, Choice], given: Mapping[str, st
     combined: list[dict[str, int]] = [{}]
     for name in choices_in(text, choices, given):
         rows = range(len(choices[name].rows) or 1)
-        combined = [{**each, name: row} for each in combined for row in rows][:_MOST_PATHS]
+        combined = [{**combination, name: row} for combination in combined for row in rows][:_MOST_PATHS]
     return (Selection(rows, given) for rows in combined)
 
 

@@ -28,9 +28,9 @@ DECLARED = {
 
 def included(context, file, *names):
     """Return one of the launch files beside this one, which is given values of ours."""
-    given = context.launch_configurations
+    arguments = context.launch_configurations
     source = PythonLaunchDescriptionSource(str(HERE / "launch" / file))
-    return IncludeLaunchDescription(source, launch_arguments=[(name, given[name]) for name in names])
+    return IncludeLaunchDescription(source, launch_arguments=[(name, arguments[name]) for name in names])
 
 
 def start(context):

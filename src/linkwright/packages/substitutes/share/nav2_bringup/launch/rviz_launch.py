@@ -19,10 +19,10 @@ NAMES = ("tf", "tf_static", "goal_pose", "clicked_point", "initialpose")
 
 def start(context):
     """Return RViz, with whose end all ends."""
-    given = context.launch_configurations
-    config, namespace, remappings = given["rviz_config"], "", []
+    arguments = context.launch_configurations
+    config, namespace, remappings = arguments["rviz_config"], "", []
     if is_true(context, "use_namespace"):
-        namespace = given["namespace"]
+        namespace = arguments["namespace"]
         config = ReplaceString(config, {"<robot_namespace>": f"/{namespace.strip('/')}"}).perform(context)
         remappings = [(f"/{name}", name) for name in NAMES]
     return [

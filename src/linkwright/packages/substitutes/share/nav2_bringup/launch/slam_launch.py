@@ -21,13 +21,13 @@ ARGUMENTS = {
 
 def start(context):
     """Return the map saver and the mapping node, with its parameters if the file has some."""
-    given = context.launch_configurations
-    arguments = {"use_sim_time": given["use_sim_time"]}
-    if HasNodeParams(given["params_file"], "slam_toolbox").perform(context) == "True":
-        arguments["slam_params_file"] = given["params_file"]
+    configurations = context.launch_configurations
+    arguments = {"use_sim_time": configurations["use_sim_time"]}
+    if HasNodeParams(configurations["params_file"], "slam_toolbox").perform(context) == "True":
+        arguments["slam_params_file"] = configurations["params_file"]
     path = get_package_share_path("slam_toolbox") / "launch" / "online_sync_launch.py"
     mapping = IncludeLaunchDescription(PythonLaunchDescriptionSource(str(path)), launch_arguments=arguments.items())
-    given["use_composition"] = "False"
+    configurations["use_composition"] = "False"
     return [*managed(context, "lifecycle_manager_slam", SERVERS), mapping]
 
 

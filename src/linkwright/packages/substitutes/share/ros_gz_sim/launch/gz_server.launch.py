@@ -18,8 +18,8 @@ ARGUMENTS = {
 
 def start(context):
     """Return the server with the world that was given."""
-    given = {name: LaunchConfiguration(name).perform(context) for name in ("world_sdf_file", "world_sdf_string")}
-    parameters = {name: value for name, value in given.items() if value}
+    arguments = {name: LaunchConfiguration(name).perform(context) for name in ("world_sdf_file", "world_sdf_string")}
+    parameters = {name: value for name, value in arguments.items() if value}
     return [Node(package="ros_gz_sim", executable="gzserver", output="screen", parameters=[parameters])]
 
 

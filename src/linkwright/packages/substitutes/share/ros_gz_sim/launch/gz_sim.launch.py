@@ -23,8 +23,8 @@ ARGUMENTS = {
 
 def start(context):
     """Return the server, or the substitute for the window if only the window is requested."""
-    given = LaunchConfiguration("gz_args").perform(context) or LaunchConfiguration("ign_args").perform(context)
-    command = gz_server(shlex.split(given))
+    arguments = LaunchConfiguration("gz_args").perform(context) or LaunchConfiguration("ign_args").perform(context)
+    command = gz_server(shlex.split(arguments))
     required = IfCondition(LaunchConfiguration("on_exit_shutdown")).evaluate(context)
     return [
         Node(
