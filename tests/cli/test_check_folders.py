@@ -249,7 +249,7 @@ def test_fixes_are_written_and_counted(here, capsys):
     assert (here / "b.urdf").read_text() == LONG_AXIS
     assert main(["check", "b.urdf", "--fix", *ONLY]) == 0
     assert (here / "b.urdf").read_text() == LONG_AXIS.replace("0 0 2", "0 0 1")
-    assert "mended 1 finding in 1 file" in capsys.readouterr().err
+    assert "fixed 1 finding in 1 file" in capsys.readouterr().err
     assert main(["check", "b.urdf", "--diff", *ONLY]) == 0
 
 

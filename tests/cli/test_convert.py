@@ -126,7 +126,7 @@ def test_what_mujoco_refuses_is_said(folder, capsys, monkeypatch):
 
     monkeypatch.setattr("linkwright.simulation.scene.scene.Scene", Refused)
     assert main(["convert", "arm.xacro", "--to", "mjcf"]) == 1
-    assert "MuJoCo refuses it: mesh volume is too small: mesh0" in capsys.readouterr().err
+    assert "MuJoCo rejects the model: mesh volume is too small: mesh0" in capsys.readouterr().err
 
 
 def test_a_model_becomes_urdf(folder, capsys):

@@ -93,7 +93,7 @@ def test_files_outside_the_packages_that_went_in_are_told(model, capsys, monkeyp
     monkeypatch.chdir(home)
     assert main(["export", "box.glb", "box.xacro"]) == 0
     said = capsys.readouterr().err
-    assert "what 3 files outside the packages say is in it" in said
+    assert "the export contains 3 files from outside the packages" in said
     named = [word for word in said.split() if "secret" in word or "own" in word or "shared" in word]
     assert [name.rpartition("/")[2] for name in named] == ["secret.xacro", "secret.yaml", "secret.obj"]
 

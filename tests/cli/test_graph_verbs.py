@@ -330,7 +330,7 @@ def test_service_echo_says_when_nothing_is_told(in_graph, capsys):
         graph.create_node("user").create_timer(0.05, lambda: signal.raise_signal(signal.SIGINT))
 
     in_graph(silent)
-    assert "nothing is told of '/add_two_ints' yet" in run(capsys, "service", "echo", "/add_two_ints", status=130)[1]
+    assert "service '/add_two_ints' has no events yet" in run(capsys, "service", "echo", "/add_two_ints", status=130)[1]
 
 
 def test_unknown_service(capsys):
@@ -345,7 +345,7 @@ def test_a_service_that_hangs_is_given_up(in_graph, capsys):
 
     in_graph(lambda graph: graph.create_node("slow").create_service("std_srvs/srv/Empty", "hang", never))
     words = ["service", "call", "/hang", "std_srvs/srv/Empty", "--timeout", "0.2"]
-    assert "did not answer in 0.2 s" in run(capsys, *words, status=1)[1]
+    assert "did not respond within 0.2 s" in run(capsys, *words, status=1)[1]
 
 
 def test_get_service_is_the_class_that_is_called():

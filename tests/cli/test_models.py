@@ -54,7 +54,7 @@ def test_a_model_is_fetched_found_checked_and_removed(toy, home, capsys):
     assert main(["models", "check", "toy"]) == 1
     assert "MODEL104" in capsys.readouterr().err
     assert main(["models", "get", "toy"]) == 0
-    assert "is fetched again" in capsys.readouterr().err
+    assert "is downloaded again" in capsys.readouterr().err
     assert main(["models", "remove", "toy"]) == 0
     assert main(["models", "remove", "toy"]) == 1
     assert "MODEL102" in capsys.readouterr().err

@@ -53,4 +53,4 @@ def test_the_manifest_and_parts_of_it(capsys: pytest.CaptureFixture[str]) -> Non
     error = said(capsys, "xml", "arm", "-t", "licence", status=1)
     assert "package.xml of 'arm' has no element <licence>" in error
     assert "did you mean 'license'?" in error
-    assert "there are" in said(capsys, "xml", "arm", "-t", "zzzzzz", status=1)
+    assert "available: depend" in said(capsys, "xml", "arm", "-t", "zzzzzz", status=1)

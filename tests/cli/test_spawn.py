@@ -65,7 +65,7 @@ def test_what_the_simulation_refuses_is_one_error(asked, tmp_path, capsys):
     assert main(["spawn", robot(tmp_path)]) == 1
     said = capsys.readouterr().err
     assert said.count("error[CLI333]") == 1
-    assert "does not take 'r': it is there" in said
+    assert "rejects 'r': it is there" in said
 
 
 def test_without_a_simulation_it_is_said_how_to_start_one(in_graph, tmp_path, capsys, monkeypatch):

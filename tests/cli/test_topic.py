@@ -243,9 +243,9 @@ def test_echo_of_a_topic_that_is_not_there(in_graph, capsys):
         (["/joint_states", "--field", "header.stmp"], "did you mean 'stamp'?"),
         (["/joint_states", "--field", "header..stamp"], "Invalid field 'header..stamp'"),
         (["/joint_states", "sensor_msgs/msg/JointStat"], "did you mean 'JointState'"),
-        (["/joint_states", "--filter", "x.data"], "a filter knows no 'x'"),
+        (["/joint_states", "--filter", "x.data"], "a filter has no name 'x'"),
         (["/joint_states", "--filter", "m.__class__"], "a filter cannot use '__class__'"),
-        (["/joint_states", "--filter", "m.nothing > 1"], "the filter fails"),
+        (["/joint_states", "--filter", "m.nothing > 1"], "the filter failed"),
         (["/joint_states", "--filter", "m."], "the filter is not a Python expression"),
     ],
 )
@@ -344,7 +344,7 @@ def test_pub_from_a_file(in_graph, tmp_path):
     ("kind", "values", "said"),
     [
         ("std_msgs/msg/String", "data: [", "the values are not YAML"),
-        ("std_msgs/msg/String", "data:hello", "YAML wants a blank after the colon: 'data: hello'"),
+        ("std_msgs/msg/String", "data:hello", "YAML requires a space after the colon: 'data: hello'"),
         ("std_msgs/msg/String", "{dat: x}", "did you mean 'data'?"),
         ("geometry_msgs/msg/Twist", "{linear: {x: fast}}", "field 'linear.x' is of type double"),
         ("geometry_msgs/msg/Twist", "{linear: {w: 1.0}, angular: {q: 2}}", "has no field 'q'"),

@@ -74,11 +74,11 @@ def test_what_is_heard_with_command_times_and_how_late(capsys):
     write_wav("d.wav", np.zeros(RATE, np.int16))
     assert main(["voice", "try", *files, "d.wav", "--engine", "level"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.partition(", known")[0] for line in lines] == [
+    assert [line.partition(", recognized")[0] for line in lines] == [
         "a.wav: 'forward' (0.90), command forward, 0.50 s to 1.00 s",
         "b.wav: none of the phrases, 0.50 s to 1.00 s",
         "c.wav: 'stop' (0.90), command stop, 0.50 s to 1.00 s",
-        "d.wav: nothing is heard",
+        "d.wav: nothing recognized",
     ]
     assert " s later" in lines[0]
 
@@ -89,9 +89,9 @@ def test_partials_and_other_commands(capsys, home):
     assert main([*words, "--engine", "level", "--partials", "--commands", "mine.yaml"]) == 0
     lines = [line.partition(", 0.5")[0] for line in capsys.readouterr().out.splitlines()]
     assert lines == [
-        "a.wav: so far 'stop' (0.60)",
+        "a.wav: partial: 'stop' (0.60)",
         "a.wav: 'stop' (0.90), command halt",
-        "b.wav: so far 'forward' (0.60)",
+        "b.wav: partial: 'forward' (0.60)",
         "b.wav: 'forward' (0.90), no command",
     ]
 
@@ -125,7 +125,7 @@ def test_words_are_enrolled_listed_and_forgotten(capsys, home):
     assert main(["voice", "enrol", "前进", word("a.wav"), word("b.wav")]) == 0
     printed = capsys.readouterr()
     assert printed.out == "'前进': 2 recordings\n"
-    assert "more surely with 3" in printed.err
+    assert "3 recordings make the recognition more reliable" in printed.err
     assert (home / "config" / "linkwright" / "voice" / "words.json").is_file()
     assert main(["voice", "words"]) == 0
     assert capsys.readouterr().out == "'前进': 2 recordings\n"

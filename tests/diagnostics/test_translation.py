@@ -130,8 +130,8 @@ def test_a_list_of_many_names_ends_with_how_many_more_there_are() -> None:
 
 def test_a_line_about_what_a_command_does(monkeypatch: pytest.MonkeyPatch) -> None:
     findings = counted("{count} finding", "{count} findings", 3)
-    line = phrase("mended {findings} in {files}", findings=findings, files=counted("{count} file", "{count} files", 1))
-    assert localized(line) == "mended 3 findings in 1 file"
+    line = phrase("fixed {findings} in {files}", findings=findings, files=counted("{count} file", "{count} files", 1))
+    assert localized(line) == "fixed 3 findings in 1 file"
     monkeypatch.setenv("LANG", "zh_CN.UTF-8")
     assert localized(line) == "在 1 个文件里改好了 3 个问题"
     assert localized("something else") == "something else"

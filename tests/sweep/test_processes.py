@@ -90,7 +90,7 @@ def test_ctrl_c_keeps_what_is_done_and_resume_goes_on(tmp_path):
         process.kill()
         process.wait()
     assert process.returncode == 130
-    assert b"2 runs are left; `--resume` goes on" in said
+    assert b"2 runs are left; `--resume` continues the sweep" in said
     assert b"Created file squares.csv" in printed
     assert (tmp_path / "squares.csv").read_text() == "row,n,seed,square,error\n1,1,0,1,\n"
     (tmp_path / "go").write_text("")

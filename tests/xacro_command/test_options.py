@@ -20,7 +20,7 @@ def test_an_empty_value_leaves_the_default_in_force(write, run):
     write("a.xacro", '<xacro:arg name="x" default="d"/><link name="$(arg x)"/>')
     answer = run("a.xacro", "x:=")
     assert '<link name="d"/>' in answer.out
-    assert answer.err == "warning[CLI103]: the argument 'x' is ignored, as xacro does: it is empty\n"
+    assert answer.err == "warning[CLI103]: the argument 'x' is ignored, as in xacro: it is empty\n"
     assert run("a.xacro", "x:=", "-q").err == ""
 
 

@@ -155,7 +155,7 @@ def _profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSProfile
             kind = _POLICIES[name]
             if str(value).upper() not in kind.__members__:
                 known = kind.short_keys()
-                hint = did_you_mean(str(value).lower(), known) or phrase("there are {names}", names=joined(known))
+                hint = did_you_mean(str(value).lower(), known) or phrase("available: {names}", names=joined(known))
                 raise _wrong(
                     source,
                     phrase("'{value}' is no {name} (topic '{topic}')", value=value, name=name, topic=topic),

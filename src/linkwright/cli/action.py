@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _STATUS = {1: "ACCEPTED", 2: "EXECUTING", 3: "CANCELING", 4: "SUCCEEDED", 5: "CANCELED", 6: "ABORTED"}
 _LONGEST_CANCEL = 3.0
-"""Seconds to wait for the server's word on a goal that is called off with Ctrl-C."""
+"""Seconds to wait for the server's response when Ctrl-C cancels a goal."""
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
@@ -46,9 +46,9 @@ def run_list(arguments: argparse.Namespace) -> int:
 def configure_info(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("action_name", metavar="ACTION", help="such as /fibonacci")
+    parser.add_argument("action_name", metavar="ACTION", help="the action, such as /fibonacci")
     parser.add_argument("-t", "--show-types", action="store_true", help="show the action's type beside each node")
-    parser.add_argument("-c", "--count", action="store_true", help="print only how many there are")
+    parser.add_argument("-c", "--count", action="store_true", help="print only the number of results")
 
 
 def run_info(arguments: argparse.Namespace) -> int:
@@ -80,7 +80,7 @@ def run_info(arguments: argparse.Namespace) -> int:
 def configure_type(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("action_name", metavar="ACTION", help="such as /fibonacci")
+    parser.add_argument("action_name", metavar="ACTION", help="the action, such as /fibonacci")
 
 
 def run_type(arguments: argparse.Namespace) -> int:
@@ -97,19 +97,23 @@ def run_type(arguments: argparse.Namespace) -> int:
 def configure_send_goal(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("action_name", metavar="ACTION", help="such as /fibonacci")
-    parser.add_argument("action_type", metavar="TYPE", help="such as example_interfaces/action/Fibonacci")
+    parser.add_argument("action_name", metavar="ACTION", help="the action, such as /fibonacci")
+    parser.add_argument(
+        "action_type", metavar="TYPE", help="the action's type, such as example_interfaces/action/Fibonacci"
+    )
     add_values_arguments(
         parser,
-        values_help="the goal in YAML, such as '{order: 10}'; fields left out have their defaults",
+        values_help="the goal in YAML, such as '{order: 10}'; omitted fields keep their defaults",
         metavar="GOAL",
     )
     parser.add_argument("-f", "--feedback", action="store_true", help="print the feedback")
-    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="give up waiting for a server then")
+    parser.add_argument(
+        "--timeout", metavar="SECONDS", type=positive_float, help="stop waiting for a server after this time"
+    )
 
 
 def run_send_goal(arguments: argparse.Namespace) -> int:
-    """Print what becomes of the goal, as ros2 does. Interrupted, the goal is called off."""
+    """Print the progress of the goal as ros2 does; Ctrl-C cancels the goal."""
     from linkwright.messages import get_action, to_yaml
 
     name = absolute(arguments.action_name)
@@ -127,7 +131,9 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
             raise LinkwrightError(
                 Diagnostic(
                     "CLI430",
-                    phrase("no server of action '{name}' in {timeout} s", name=name, timeout=arguments.timeout),
+                    phrase(
+                        "no server of action '{name}' appeared within {timeout} s", name=name, timeout=arguments.timeout
+                    ),
                 )
             )
         print(f"Sending goal:\n     {to_yaml(goal)}")
@@ -159,7 +165,7 @@ async def _call_off(session: Session, handle: Any) -> None:
     print("Canceling goal...")
     response = await session.answer(handle.cancel_goal_async(), _LONGEST_CANCEL)
     if response is None:
-        print("The server does not answer; the goal may go on")
+        print("The server does not respond; the goal may still be active")
     elif not response.goals_canceling:
         print("Failed to cancel goal")
     else:
@@ -167,7 +173,7 @@ async def _call_off(session: Session, handle: Any) -> None:
 
 
 VERBS = {
-    "info": SubVerb(configure_info, run_info, help="say which nodes serve and call an action"),
+    "info": SubVerb(configure_info, run_info, help="list the nodes that serve and call an action"),
     "list": SubVerb(configure_list, run_list, help="list the actions"),
     "send_goal": SubVerb(
         configure_send_goal, run_send_goal, help="send a goal to an action server and wait for the result"

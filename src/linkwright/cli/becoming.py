@@ -1,4 +1,4 @@
-"""Going on as another program, which then gets the signals and has the exit status."""
+"""Replace this process by another program, which then gets the signals and sets the exit status."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 
 
 def become(command: list[str], environment: Mapping[str, str]) -> int:
-    """Go on as another program; on Windows, run it and return its exit status.
+    """Replace this process by a program; on Windows, run it and return its exit status.
 
     Raises:
-        LinkwrightError: CLI110, it cannot be run.
+        LinkwrightError: CLI110, the program cannot be run.
     """
     sys.stdout.flush()
     sys.stderr.flush()

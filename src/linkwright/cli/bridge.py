@@ -17,7 +17,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "networks",
         metavar="NETWORK",
         nargs=2,
-        help="dds or zenoh, with a domain after a colon where ROS_DOMAIN_ID is not meant: dds:5",
+        help="dds or zenoh; a colon and a number name a domain other than ROS_DOMAIN_ID: dds:5",
     )
     parser.add_argument(
         "--allow",
@@ -25,8 +25,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         action="extend",
         default=[],
-        help="carry only topics, services and actions of these names; a name stands for all below it, too, and * in it "
-        "for anything but a slash",
+        help="carry only topics, services and actions with these names; a name includes all names below it, "
+        "and * matches anything except a slash",
     )
     parser.add_argument(
         "--deny",
@@ -34,16 +34,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         action="extend",
         default=[],
-        help="do not carry those of these names, whatever is allowed",
+        help="do not carry those with these names, even if --allow includes them",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Carry until interrupted.
+    """Run the bridge until it is interrupted.
 
     Raises:
-        LinkwrightError: CLI451 to CLI454, an argument is not well formed or a network cannot be joined; DDS101 to
-            DDS112, a setting is not.
+        LinkwrightError: CLI451 to CLI454, an argument is malformed or a network cannot be joined; DDS101 to DDS112, a
+            setting is malformed.
     """
     from linkwright.bridge.bridge import new_bridge_id, run_bridge
     from linkwright.bridge.filters import NameFilter
@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
             Diagnostic(
                 "CLI452",
                 phrase("both networks are the same: {network}", network=first.label),
-                hint=phrase("a bridge joins two, such as: linkwright bridge dds zenoh"),
+                hint=phrase("a bridge connects two networks, such as: linkwright bridge dds zenoh"),
             )
         )
     names = NameFilter(arguments.allow, arguments.deny)

@@ -1,4 +1,4 @@
-"""Calling services of running nodes from a verb."""
+"""Call services of running nodes from a command."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ APPEARS_WITHIN = 5.0
 
 
 class NoAnswerError(LinkwrightError):
-    """A service was not there in time, or did not answer in time."""
+    """A service did not appear or did not respond in time."""
 
 
 async def call(
@@ -28,18 +28,18 @@ async def call(
     timeout: float | None = None,
     longer: float = 0.0,
 ) -> Any:
-    """The response of a service.
+    """Call a service and return its response.
 
     Args:
-        session: of the verb.
+        session: the session of the command.
         service_type: such as ``rcl_interfaces/srv/GetParameters``.
-        service_name: absolute.
-        request: what to ask.
-        timeout: how long to wait for the response, in seconds; as long as it takes when left out.
-        longer: how much longer than `APPEARS_WITHIN` to wait for the service, in seconds; the user is told.
+        service_name: the absolute name.
+        request: the request.
+        timeout: how long to wait for the response, in seconds; without limit if omitted.
+        longer: how much longer than `APPEARS_WITHIN` to wait for the service, in seconds; the user is informed.
 
     Raises:
-        NoAnswerError: CLI421, the service is not there; CLI422, it does not answer in time.
+        NoAnswerError: CLI421, the service does not exist; CLI422, it does not respond in time.
     """
     from linkwright.messages import get_service
 
@@ -58,7 +58,7 @@ async def call(
                         service_name=service_name,
                         service_type=service_type,
                     ),
-                    hint=phrase("the node may have ended, or was made without this service"),
+                    hint=phrase("the node may have exited, or may not offer this service"),
                 )
             )
         future = client.call_async(request)
@@ -68,7 +68,7 @@ async def call(
                 Diagnostic(
                     "CLI422",
                     phrase(
-                        "service '{service_name}' did not answer in {timeout:g} s",
+                        "service '{service_name}' did not respond within {timeout:g} s",
                         service_name=service_name,
                         timeout=timeout,
                     ),
@@ -80,7 +80,7 @@ async def call(
 
 
 def node_names(session: Session, *, hidden: bool = False) -> list[str]:
-    """Full names of the nodes, sorted, each as often as there are nodes of it."""
+    """Return the full names of the nodes, sorted; duplicate names are repeated."""
     from linkwright.graph.names.rules import is_hidden, join
 
     found = (join(namespace, name) for name, namespace in session.node.get_node_names_and_namespaces())
@@ -88,22 +88,22 @@ def node_names(session: Session, *, hidden: bool = False) -> list[str]:
 
 
 async def find_node(session: Session, name: str, *, hidden: bool = False, timeout: float = 1.0) -> str:
-    """The full name of a running node.
+    """Return the full name of a running node.
 
     Args:
-        session: of the verb.
-        name: with or without the leading slash.
-        hidden: whether it may be a hidden one.
+        session: the session of the command.
+        name: the node's name, with or without the leading slash.
+        hidden: whether hidden nodes count.
         timeout: how long to wait for it, in seconds.
 
     Raises:
-        LinkwrightError: CLI423, there is none.
+        LinkwrightError: CLI423, there is no such node.
     """
     full = absolute_or_given(name)
     if not await session.until(lambda: full in node_names(session, hidden=hidden), timeout):
         known = node_names(session, hidden=hidden)
         nothing = (
-            phrase("there are: {known}", known=joined(dict.fromkeys(known)))
+            phrase("running nodes: {known}", known=joined(dict.fromkeys(known)))
             if known
             else phrase("no nodes are running")
         )

@@ -1,4 +1,4 @@
-"""``linkwright check``: read robots and worlds, print what is in them, and say what is wrong with them."""
+"""``linkwright check``: check robots and worlds, and print their contents and the findings."""
 
 from __future__ import annotations
 
@@ -64,34 +64,38 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "words",
         metavar="FILE|FOLDER|NAME:=VALUE",
         nargs="+",
-        help="URDF, xacro and SDF files, folders that are searched for descriptions, worlds and packages, and values"
-        " for the files' <xacro:arg>",
+        help="URDF, xacro and SDF files, folders to search for descriptions, worlds and packages, and values "
+        "for the files' <xacro:arg>",
     )
     parser.add_argument(
         "--package",
         action="store_true",
-        help="check too the packages that the files lie in, as is done for folders",
+        help="also check the packages that contain the files, as for folders",
     )
-    parser.add_argument("--all", action="store_true", help="print each finding, not the first of those that are alike")
-    parser.add_argument("--format", choices=FORMATS, help="how to print what is found (default: text)")
-    parser.add_argument("--strict", action="store_true", help="warnings make the exit status 1 too")
-    parser.add_argument("--select", metavar="RULES", action="append", help="report only these, such as LW2,axis-zero")
-    parser.add_argument("--ignore", metavar="RULES", action="append", help="do not report these")
-    parser.add_argument("--config", metavar="FILE", help="the settings, instead of the nearest linkwright.toml")
-    parser.add_argument("--statistics", action="store_true", help="print how often each code was found")
-    parser.add_argument("--fix", action="store_true", help="mend what can be mended safely, in the files")
-    parser.add_argument("--unsafe-fixes", action="store_true", help="mend too what may change the meaning")
-    parser.add_argument("--diff", action="store_true", help="print what the fixes would change, and change nothing")
+    parser.add_argument("--all", action="store_true", help="print every finding, not only the first of similar ones")
+    parser.add_argument("--format", choices=FORMATS, help="the output format (default: text)")
+    parser.add_argument("--strict", action="store_true", help="exit with status 1 for warnings too")
+    parser.add_argument(
+        "--select", metavar="RULES", action="append", help="report only these rules, such as LW2,axis-zero"
+    )
+    parser.add_argument("--ignore", metavar="RULES", action="append", help="do not report these rules")
+    parser.add_argument(
+        "--config", metavar="FILE", help="the settings file to use instead of the nearest linkwright.toml"
+    )
+    parser.add_argument("--statistics", action="store_true", help="print the number of findings for each code")
+    parser.add_argument("--fix", action="store_true", help="apply safe fixes to the files")
+    parser.add_argument("--unsafe-fixes", action="store_true", help="also apply fixes that may change the meaning")
+    parser.add_argument("--diff", action="store_true", help="print the changes of the fixes without writing them")
     parser.set_defaults(**_DEFAULTS)
 
 
 def without_options(words: list[str]) -> SimpleNamespace | None:
-    """The arguments that files, folders and values give; None where there are none."""
+    """Return the arguments for files, folders and values alone; None if there are none."""
     return SimpleNamespace(words=words, **_DEFAULTS) if words else None
 
 
 def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
-    """Check; the tree and findings in forms for programs go to standard output, findings as text to standard error."""
+    """Check the files; the tree and machine-readable findings go to standard output, text to standard error."""
     paths = [Path(word) for word in arguments.words if ":=" not in word]
     if not paths:
         return _usage("name a file or folder to check")
@@ -129,7 +133,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """The settings of the command line, for every file; `folders` are those that are checked."""
+    """The settings of the command line, for every file; `folders` are the folders to check."""
 
     values: dict[str, str]
     select: tuple[str, ...] | None
@@ -141,7 +145,7 @@ class _Words:
     callers: list[ArgumentSets] = field(default_factory=list)
 
     def finder(self, file: Path) -> PackageFinder:
-        """Where the packages are for a file: one finder for each folder, and one search of each source tree for all."""
+        """Return the package finder for a file: one for each folder, with one search of each source tree for all."""
         from linkwright.packages import PackageFinder
 
         folder = file.absolute().parent
@@ -152,7 +156,7 @@ class _Words:
         return self.finders[folder]
 
     def sets(self, file: Path, packages: Sequence[Path]) -> tuple[ArgumentSet, ...]:
-        """The values that callers give to a file's arguments; what calls is read once for all files."""
+        """Return the values that callers give to a file's arguments; the callers are read once for all files."""
         from linkwright.descriptions.argument_sets import ArgumentSets
 
         if not self.callers:
@@ -160,7 +164,7 @@ class _Words:
         return self.callers[0].of(file, self.finder(file))
 
     def unknown_selector(self) -> str | None:
-        """The finding on a selector that selects nothing, or None."""
+        """Return the finding on a selector that selects nothing, or None."""
         from linkwright.lint.selector_words import is_selector, selector_hint
 
         for word in (*(self.select or ()), *self.ignore):
@@ -169,7 +173,7 @@ class _Words:
         return None
 
     def settings(self, path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
-        """The settings for a file or folder, with what is wrong with their text."""
+        """Return the settings for a file or folder, with the findings on their text."""
         from linkwright.lint.configuration import read_settings, settings_for
         from linkwright.lint.selector_words import canonical
 
@@ -179,7 +183,7 @@ class _Words:
 
 
 def _contents(checked: Checked) -> str:
-    """A summary of a file: the tree of a robot's links, or the models in a world."""
+    """Return a summary of a file: the tree of a robot's links, or the models in a world."""
     if checked.robot is not None:
         from linkwright.urdf import tree_text
 
@@ -192,7 +196,7 @@ def _contents(checked: Checked) -> str:
 
 
 def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Checked | None]:
-    """Everything found, each thing once, and what came of the file where one was named."""
+    """Return all findings without duplicates, and the result of the file if only one was named."""
     from linkwright.lint.contexts import Contexts
     from linkwright.lint.engine import examine_package
     from linkwright.lint.folders import Examined, reported, reported_of_package
@@ -228,7 +232,7 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
 
 
 def _add(found: _Found, more: Iterable[Diagnostic]) -> None:
-    """Add what is new; a file that two robots include says the same twice."""
+    """Add the new findings; a file that two robots include has the same findings twice."""
     from linkwright.lint.finding import without_element
 
     for diagnostic in more:
@@ -238,19 +242,19 @@ def _add(found: _Found, more: Iterable[Diagnostic]) -> None:
 
 
 def _place(diagnostic: Diagnostic) -> Span | None:
-    """Where it is, however the file was named: by itself, or by one that includes it."""
+    """Return the location, no matter whether the file was named or included."""
     from linkwright.lint.folders import MISSING_PACKAGE
 
     span = diagnostic.span
     if span is None or diagnostic.code == MISSING_PACKAGE:
-        return None  # it is one thing to mend, however many files name it
+        return None  # there is one thing to fix, however many files name it
     return span._replace(file=str(Path(span.file).resolve()))
 
 
 def _examine(
     file: Path, words: _Words, targets: Targets, text: str | None = None, contexts: Contexts | None = None
 ) -> tuple[Checked, tuple[Diagnostic, ...]]:
-    """Check a file with the arguments of the command line, or else with those that it is given elsewhere."""
+    """Check a file with the arguments of the command line, or else with the arguments of its callers."""
     from linkwright.lint.argument_sets import SetCheck
     from linkwright.lint.engine import examine
     from linkwright.lint.rule import Scope
@@ -324,7 +328,7 @@ def _summarise(found: Sequence[Diagnostic], mended: Sequence[Mended]) -> None:
         count = sum(sum(each.counts.values()) for each in mended)
         files = len({file for each in mended for file in each.texts})
         line = phrase(
-            "mended {findings} in {files}",
+            "fixed {findings} in {files}",
             findings=counted("{count} finding", "{count} findings", count),
             files=counted("{count} file", "{count} files", files),
         )

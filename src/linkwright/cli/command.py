@@ -30,7 +30,7 @@ GROUPS = {
         "xacro": "expand a xacro file to URDF, list its arguments, or explain its elements",
         "diff": "compare two descriptions, or a description with a commit: links, joints, origins, masses",
         "explain": "explain a diagnostic code, or an element or attribute of URDF",
-        "inertia": "compare masses and inertias with the shapes, compute them, or write them",
+        "inertia": "compare masses and inertias with the links' shapes, compute them, or write them",
         "diagram": "draw links and joints as urdf_to_graphviz does (.gv and PDF or SVG)",
         "export": "write a robot as one HTML file for any browser, or as glTF (.glb)",
         "convert": "convert a robot or world to SDF, to URDF, or to MJCF for MuJoCo",
@@ -38,9 +38,8 @@ GROUPS = {
     "packages and launch files": {
         "launch": "run a ROS 2 launch file; rviz2 opens as a page in the browser",
         "run": "run an executable of a package, built or from its sources",
-        "pkg": "create ROS packages, find them, and list their contents",
         "test": "run the launch_testing tests of a file",
-        "shell": "open a shell with ros2, launch_test, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon",
+        "pkg": "create ROS packages, find them, and list their contents",
     },
     "simulation": {
         "drive": "drive a robot in a simulated world; missing masses, collisions and wheels are inferred",
@@ -48,14 +47,14 @@ GROUPS = {
         "world": "list worlds and models, create a world, or check one",
         "spawn": "add a robot or model to a running simulation",
         "sweep": "run a scenario over parameters and seeds in parallel, and tabulate the results",
-        "dataset": "render labelled images of a world in COCO and YOLO form, to train a detector",
     },
     "vision and voice": {
         "vision": "detect objects in images; train and evaluate detectors",
+        "dataset": "render labelled images of a world in COCO and YOLO form, to train a detector",
         "voice": "try speech engines on recordings, and enrol words",
         "models": "download, verify and remove models for speech and vision",
     },
-    "the running graph, as in ros2": {
+    "the running ROS graph": {
         "topic": "list, print, publish and measure topics",
         "node": "list and describe nodes",
         "param": "list, read and set parameters of nodes",
@@ -65,34 +64,43 @@ GROUPS = {
         "lifecycle": "show and change the states of managed nodes",
         "component": "load, list and unload components in containers",
         "control": "show and change the controllers and hardware of ros2_control",
+    },
+    "bags": {
         "bag": "record topics, play recordings, and describe them",
-        "bridge": "carry topics and services between DDS and Zenoh",
+    },
+    "network and diagnosis": {
         "doctor": "explain what is wrong with the running nodes, topics and frames",
+        "bridge": "carry topics and services between DDS and Zenoh",
         "multicast": "send or receive a datagram, to test multicast on the network",
         "daemon": "accepted for compatibility with ros2; Linkwright has no daemon",
     },
-    "this program": {
+    "shell": {
+        "shell": "open a shell with ros2, launch_test, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon",
         "completion": "print the completion script for bash, zsh or fish",
     },
 }
-"""The verbs in the order in which the help lists them, with what it says of them.
+"""The commands in the order in which the help lists them, with their help texts.
 
-Each is a module or package of this package, which is loaded only when it is asked for.
+Each is a module or package of this package, which is loaded only when it is run.
 """
 
 VERBS = {name: text for verbs in GROUPS.values() for name, text in verbs.items()}
-"""What the help says of each verb."""
+"""The help text of each command."""
 
 OTHER_NAMES = {"wtf": "doctor"}
-"""Second names of verbs, which ros2 has; the help does not list them."""
+"""Aliases of commands that ros2 has; the help does not list them."""
 
 _IN_ORDER = frozenset({"pkg", "run", "shell"})
-"""Verbs whose words are taken in order, beside those with verbs of their own: what follows is another command's.
-Elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
+"""Commands whose arguments must be in order, besides those with subcommands: the rest belongs to another program. Other
+commands accept options between arguments (`launch PACKAGE --no-open FILE`)."""
 
-_WITH_A_LOOP = frozenset({"view", "drive", "run", "sim", "spawn", "launch", *GROUPS["the running graph, as in ros2"]})
-"""Verbs that run an event loop or another program, which care for Ctrl-C themselves; before they do there is nothing to
-be cleaned up."""
+_GRAPH_GROUPS = ("the running ROS graph", "bags", "network and diagnosis")
+
+_WITH_A_LOOP = frozenset({"view", "drive", "run", "sim", "spawn", "launch"}).union(
+    *(GROUPS[title] for title in _GRAPH_GROUPS)
+)
+"""Commands that run an event loop or another program, which handle Ctrl-C themselves; before that there is nothing to
+clean up."""
 
 PROGRAM = "linkwright"
 
@@ -100,36 +108,37 @@ SUMMARY_HELP = (
     "A ROS 2 workbench for a robot: "
     "describe it, check it, see it, simulate it, drive it and test it, without installing ROS."
 )
-"""What Linkwright is, in one sentence: the same in pyproject.toml, the READMEs and the documentation."""
+"""The description of Linkwright, the same in pyproject.toml, the READMEs and the documentation."""
 
 MORE_HELP = "`linkwright COMMAND --help` describes a command. `linkwright --version` prints the version."
 
 _OPTIONS = ("--help", "--lang", "--version")
-"""Those that stand before a command, or for one."""
+"""The options that precede or replace a command."""
 
 _COLLECT_AFTER = 50_000
-"""After how many new objects Python looks for garbage; its own 700 would cost a short command a tenth of its time."""
+"""The number of new objects that starts a garbage collection; Python's 700 would cost a short command a tenth of its
+time."""
 
 _COLLECT_FIRST_AFTER = 200_000
-"""The same for the first time: what a program imports before it begins is more, and nothing of it garbage."""
+"""The number for the first collection: imports create more objects, and none of them is garbage."""
 
 
 class Verb(Protocol):
-    """The interface of a verb's module."""
+    """The interface of a command's module."""
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
-        """Declare the verb's arguments."""
+        """Declare the command's arguments."""
 
     def run(self, arguments: argparse.Namespace) -> int:
-        """Do it; returns the exit status."""
+        """Run the command and return the exit status."""
 
 
 def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
     """Run the command line and return its exit status; never raises.
 
     Args:
-        words: the command line after the program's name; this process's when left out.
-        program: the name that usage lines begin with, such as ``ros2``; empty where the verb is the program.
+        words: the command line after the program's name; this process's if omitted.
+        program: the program's name in usage lines, such as ``ros2``; empty if the command is the program.
     """
     whole_process = words is None
     if whole_process:
@@ -140,7 +149,7 @@ def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
         set_language(None)
         if whole_process:
             end_at_once()
-            gc.freeze()  # Python would look through everything once more before it ends
+            gc.freeze()  # Python would collect garbage once more before it exits
 
 
 def _collect_seldom() -> None:
@@ -153,13 +162,13 @@ def _collect_seldom() -> None:
 
 
 def verb(name: str) -> Verb:
-    """The module of a verb."""
+    """Return the module of a command."""
     return cast("Verb", import_module(f"linkwright.cli.{name}"))
 
 
 def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
-    """The argument parser of one verb, as the command reference and the verb itself use it."""
-    from linkwright.cli.parsers import make_parser  # argparse takes as long as the expansion of a small file
+    """Return the argument parser of a command, for the command itself and the command reference."""
+    from linkwright.cli.parsers import make_parser  # importing argparse takes as long as expanding a small file
 
     module = verb(name)
     prog = f"{program} {name}".strip()
@@ -189,13 +198,13 @@ def _dispatch(words: list[str], program: str) -> int:
 
 
 def _without_options(module: Verb, words: list[str]) -> argparse.Namespace | None:
-    """The arguments that a command line without options gives, where the verb knows them without a parser."""
+    """Return the arguments of a command line without options, if the command can read them without a parser."""
     known: Callable[[list[str]], argparse.Namespace | None] | None = getattr(module, "without_options", None)
     return None if known is None or any(word.startswith("-") for word in words) else known(words)
 
 
 def _parsed(name: str, module: Verb, words: list[str], program: str) -> argparse.Namespace | int:
-    """The arguments that a command line gives, or the exit status where it gives none."""
+    """Return the parsed arguments of a command line, or the exit status for an unknown subcommand."""
     parser = parser_for(name, program=program)
     below: Mapping[str, SubVerb] = getattr(module, "VERBS", {})
     if below:
@@ -208,7 +217,7 @@ def _parsed(name: str, module: Verb, words: list[str], program: str) -> argparse
 
 
 def _unknown(name: str, known: Iterable[str], prog: str) -> int:
-    """Say that a word is no command."""
+    """Report an unknown command or option."""
     hint = did_you_mean(name, known) or f"`{prog} --help` lists the commands"
     what = "option" if name.startswith("-") else "command"
     print(f"{prog}: there is no {what} '{name}'; {hint}", file=sys.stderr)

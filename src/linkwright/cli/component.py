@@ -34,12 +34,14 @@ _APPEARS_WITHIN = 1.0
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("container_node_name", metavar="CONTAINER", nargs="?", help="only this one's nodes")
+    parser.add_argument(
+        "container_node_name", metavar="CONTAINER", nargs="?", help="list only the nodes of this container"
+    )
     parser.add_argument("--containers-only", action="store_true", help="list only the containers")
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print them, as ros2 does."""
+    """Print the containers and their components, as ros2 does."""
 
     async def job(session: Session) -> int:
         if arguments.container_node_name is not None:
@@ -58,11 +60,11 @@ def run_list(arguments: argparse.Namespace) -> int:
 
 def configure_types(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("package_name", metavar="PACKAGE", nargs="?", help="only those of this package")
+    parser.add_argument("package_name", metavar="PACKAGE", nargs="?", help="list only the components of this package")
 
 
 def run_types(arguments: argparse.Namespace) -> int:
-    """Print their names below their packages, as ros2 does."""
+    """Print the components' names below their packages, as ros2 does."""
     from linkwright.nodes.registry import COMPONENTS
 
     by_package: dict[str, list[str]] = {}
@@ -74,7 +76,9 @@ def run_types(arguments: argparse.Namespace) -> int:
             print("\n  ".join([package, *plugins]))
         return 0
     if wanted not in by_package:
-        hint = did_you_mean(wanted, by_package) or phrase("there are: {by_package}", by_package=joined(by_package))
+        hint = did_you_mean(wanted, by_package) or phrase(
+            "packages with components: {by_package}", by_package=joined(by_package)
+        )
         raise LinkwrightError(
             Diagnostic("CLI436", phrase("No component types found in package '{wanted}'", wanted=wanted), hint=hint)
         )
@@ -85,13 +89,13 @@ def run_types(arguments: argparse.Namespace) -> int:
 def configure_load(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("container_node_name", metavar="CONTAINER", help="such as /ComponentManager")
+    parser.add_argument("container_node_name", metavar="CONTAINER", help="the container, such as /ComponentManager")
     add_component_arguments(parser)
     parser.add_argument("-q", "--quiet", action="store_true", help="print only the number and name of the node")
 
 
 def run_load(arguments: argparse.Namespace) -> int:
-    """Load it, and print the node's number and name."""
+    """Load a component, and print the node's number and name."""
 
     async def job(session: Session) -> int:
         container = await find_container(session, arguments.container_node_name)
@@ -108,15 +112,15 @@ def run_load(arguments: argparse.Namespace) -> int:
 def configure_unload(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("container_node_name", metavar="CONTAINER", help="such as /ComponentManager")
+    parser.add_argument("container_node_name", metavar="CONTAINER", help="the container, such as /ComponentManager")
     parser.add_argument(
-        "component_uid", metavar="NUMBER", type=int, nargs="+", help="the node's number, as `component list` tells"
+        "component_uid", metavar="NUMBER", type=int, nargs="+", help="the node's number, as `component list` prints it"
     )
     parser.add_argument("-q", "--quiet", action="store_true", help="print only the numbers")
 
 
 def run_unload(arguments: argparse.Namespace) -> int:
-    """Unload them."""
+    """Unload the components."""
 
     async def job(session: Session) -> int:
         container = await find_container(session, arguments.container_node_name)
@@ -133,12 +137,12 @@ def configure_standalone(parser: argparse.ArgumentParser) -> None:
     add_session_arguments(parser)
     add_component_arguments(parser)
     parser.add_argument(
-        "-c", "--container-node-name", metavar="NAME", help="the container's name (default: one of its own)"
+        "-c", "--container-node-name", metavar="NAME", help="the container's name (default: a generated name)"
     )
 
 
 def run_standalone(arguments: argparse.Namespace) -> int:
-    """Run it until the user ends it; the container's exit status."""
+    """Run the component until the user interrupts it, and return the container's exit status."""
     name = arguments.container_node_name or f"standalone_container_{os.urandom(6).hex()}"
 
     async def job(session: Session) -> int:
@@ -152,7 +156,7 @@ def run_standalone(arguments: argparse.Namespace) -> int:
 
 @asynccontextmanager
 async def _container_process(name: str) -> AsyncIterator[Process]:
-    """A process with an empty container, which ends with the block."""
+    """Run a process with an empty container until the end of the block."""
     words = ("-m", "linkwright.node_program", "rclcpp_components", "component_container")
     process = await asyncio.create_subprocess_exec(sys.executable, *words, "--ros-args", "-r", f"__node:={name}")
     try:
@@ -171,7 +175,7 @@ async def _container_process(name: str) -> AsyncIterator[Process]:
 
 
 def containers(session: Session) -> list[str]:
-    """Full names of the containers, sorted: the nodes with all three services of containers."""
+    """Return the full names of the containers, sorted: the nodes with all three services of containers."""
     services = dict(session.node.get_service_names_and_types())
     return [
         name
@@ -184,30 +188,30 @@ def containers(session: Session) -> list[str]:
 
 
 async def find_container(session: Session, name: str, timeout: float = _APPEARS_WITHIN) -> str:
-    """The full name of a running container.
+    """Return the full name of a running container.
 
     Raises:
-        LinkwrightError: CLI432, there is none of that name.
+        LinkwrightError: CLI432, there is no container with that name.
     """
     full = absolute_or_given(name)
     if not await session.until(lambda: full in containers(session), timeout):
         known = containers(session)
-        nothing = phrase("there are: {known}", known=joined(known)) if known else phrase("no container is running")
+        nothing = phrase("running nodes: {known}", known=joined(known)) if known else phrase("no container is running")
         raise unknown("CLI432", phrase("Unable to find container node '{name}'", name=name), full, known, nothing)
     return full
 
 
 async def held_nodes(session: Session, container: str) -> list[tuple[int, str]]:
-    """The numbers and full names of the nodes in a container."""
+    """Return the numbers and full names of the nodes in a container."""
     response = await _call(session, container, "list_nodes")
     return [(int(uid), str(name)) for uid, name in zip(response.unique_ids, response.full_node_names, strict=True)]
 
 
 async def _load_component(session: Session, container: str, arguments: argparse.Namespace) -> tuple[int, str]:
-    """Have a container load a component as the command line says; the node's number and full name.
+    """Make a container load a component; return the node's number and full name.
 
     Raises:
-        LinkwrightError: CLI433, the container could not.
+        LinkwrightError: CLI433, the container could not load it.
     """
     response = await _call(
         session,
@@ -225,7 +229,7 @@ async def _load_component(session: Session, container: str, arguments: argparse.
     if not response.success:
         said = response.error_message
         reason = foreign(said) if said else phrase("the container gives no reason")
-        hint = phrase("`linkwright component types` lists what comes with Linkwright")
+        hint = phrase("`linkwright component types` lists the components that come with Linkwright")
         raise LinkwrightError(
             Diagnostic("CLI433", phrase("Failed to load component: {reason}", reason=reason), hint=hint)
         )
@@ -233,10 +237,10 @@ async def _load_component(session: Session, container: str, arguments: argparse.
 
 
 async def _unload_component(session: Session, container: str, uid: int) -> None:
-    """Have a container unload a node.
+    """Make a container unload a node.
 
     Raises:
-        LinkwrightError: CLI434, the container could not.
+        LinkwrightError: CLI434, the container could not unload it.
     """
     response = await _call(session, container, "unload_node", unique_id=uid)
     if not response.success:
@@ -251,15 +255,15 @@ async def _unload_component(session: Session, container: str, uid: int) -> None:
             Diagnostic(
                 "CLI434",
                 message,
-                hint=phrase("it holds: {there}", there=there) if there else phrase("the container is empty"),
+                hint=phrase("its nodes: {there}", there=there) if there else phrase("the container is empty"),
             )
         )
 
 
 def add_component_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the component and how its node is made."""
-    parser.add_argument("package_name", metavar="PACKAGE", help="the package the component is in")
-    parser.add_argument("plugin_name", metavar="COMPONENT", help="such as composition::Talker")
+    """Declare the component and the options of its node."""
+    parser.add_argument("package_name", metavar="PACKAGE", help="the package of the component")
+    parser.add_argument("plugin_name", metavar="COMPONENT", help="the component, such as composition::Talker")
     parser.add_argument("-n", "--node-name", metavar="NAME", help="the node's name")
     parser.add_argument("--node-namespace", metavar="NAMESPACE", help="the node's namespace")
     parser.add_argument("--log-level", metavar="LEVEL", help="the node's log level, such as debug")
@@ -275,7 +279,7 @@ def add_component_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME:=VALUE",
         action="append",
         dest="extra_arguments",
-        help="say more to the container, such as use_intra_process_comms:=true",
+        help="pass an extra argument to the container, such as use_intra_process_comms:=true",
     )
 
 
@@ -313,11 +317,11 @@ async def _call(session: Session, container: str, service: str, **fields: Any) -
 
 
 VERBS = {
-    "list": SubVerb(configure_list, run_list, help="list the containers and the nodes in them"),
+    "list": SubVerb(configure_list, run_list, help="list containers and their nodes"),
     "load": SubVerb(configure_load, run_load, help="load a component into a running container"),
     "standalone": SubVerb(configure_standalone, run_standalone, help="run a component in a container of its own"),
     "types": SubVerb(configure_types, run_types, help="list the components that come with Linkwright"),
-    "unload": SubVerb(configure_unload, run_unload, help="take nodes out of a running container"),
+    "unload": SubVerb(configure_unload, run_unload, help="unload nodes from a running container"),
 }
 
 configure = partial(configure_nested, verbs=VERBS)

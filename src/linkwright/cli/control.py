@@ -1,6 +1,6 @@
-"""``linkwright control``: the controller manager of ros2_control: its controllers and its hardware.
+"""``linkwright control``: the controllers and the hardware of ros2_control's controller manager.
 
-Source: ros2controlcli (verbs, options, what they print, without its colours).
+Source: ros2controlcli (verbs, options, output without its colours).
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 Ask = Callable[..., Coroutine[Any, Any, Any]]
-"""Calls a service of the manager: its name, such as ``list_controllers``, and the fields of the request."""
+"""Calls a service of the manager by its name, such as ``list_controllers``, with the fields of the request."""
 
 MANAGER_WITHIN = 55.0
-"""How many seconds more than other services the manager may take to appear: a simulated robot brings its own."""
+"""Seconds to wait for the manager beyond the time for other services: a simulated robot starts its own manager."""
 _LOGS = "check controller_manager logs"
 _SECTIONS = {
     "claimed_interfaces": "claimed interfaces",
@@ -44,7 +44,7 @@ def _common(parser: argparse.ArgumentParser) -> None:
         default="/controller_manager",
         help="the controller manager's node, default /controller_manager",
     )
-    parser.add_argument("--include-hidden-nodes", action="store_true", help="accepted for ros2's sake")
+    parser.add_argument("--include-hidden-nodes", action="store_true", help="accepted for compatibility with ros2")
 
 
 def _controller(parser: argparse.ArgumentParser) -> None:
@@ -78,7 +78,7 @@ def _fail(text: str) -> int:
 
 def _configure_list_controllers(parser: argparse.ArgumentParser) -> None:
     for name in _SECTIONS:
-        parser.add_argument(f"--{name.replace('_', '-')}", action="store_true", help="print these interfaces too")
+        parser.add_argument(f"--{name.replace('_', '-')}", action="store_true", help="also print these interfaces")
     parser.add_argument("-v", "--verbose", action="store_true", help="print all of them")
     _common(parser)
 
@@ -114,7 +114,7 @@ async def _list_types(_: argparse.Namespace, ask: Ask) -> int:
 
 
 def _configure_list_hardware(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("-v", "--verbose", action="store_true", help="print state interfaces, or data types, too")
+    parser.add_argument("-v", "--verbose", action="store_true", help="also print state interfaces, or data types")
     _common(parser)
 
 
@@ -156,7 +156,9 @@ def _data_type(interface: Any, arguments: argparse.Namespace) -> str:
 
 
 def _configure_chains(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--save", action="store_true", help="accepted for ros2's sake: the diagram is always saved")
+    parser.add_argument(
+        "--save", action="store_true", help="accepted for compatibility with ros2; the diagram is always saved"
+    )
     _common(parser)
 
 
@@ -176,7 +178,7 @@ def _save(text: str) -> None:
 
 
 def _diagram(controllers: Sequence[Any]) -> str:
-    """Controllers and the hardware as boxes, interfaces between them as arrows."""
+    """Return a diagram with controllers and hardware as boxes, and interfaces between them as arrows."""
     names = {controller.name for controller in controllers}
     lines = ["digraph g {", "rankdir=LR;", "node [shape=box, style=rounded];"]
     lines += [f'"{name}";' for name in sorted(names)]
@@ -196,7 +198,7 @@ def _diagram(controllers: Sequence[Any]) -> str:
 
 
 _OLD_STATES = {"start": "active", "stop": "inactive", "configure": "inactive"}
-"""What launch files from before Humble call states."""
+"""The states' names in launch files from before Humble."""
 
 
 def _state(word: str) -> str:
@@ -209,7 +211,7 @@ def _configure_load(parser: argparse.ArgumentParser) -> None:
         "--set-state",
         type=_state,
         choices=("unconfigured", "inactive", "active", "configured"),
-        help="lead it there, too",
+        help="the state to switch the controller to after loading",
     )
     _common(parser)
 
@@ -249,9 +251,7 @@ async def _unload(arguments: argparse.Namespace, ask: Ask) -> int:
 
 def _configure_set_state(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("controller_name", metavar="CONTROLLER", help="its name")
-    parser.add_argument(
-        "state", type=_state, choices=("unconfigured", "inactive", "active"), help="the state that it is to have"
-    )
+    parser.add_argument("state", type=_state, choices=("unconfigured", "inactive", "active"), help="the target state")
     _common(parser)
 
 
@@ -283,9 +283,13 @@ def _configure_switch(parser: argparse.ArgumentParser) -> None:
         "--deactivate", "--stop", metavar="NAME", nargs="*", default=[], help="controllers to deactivate"
     )
     parser.add_argument("--activate", "--start", metavar="NAME", nargs="*", default=[], help="controllers to activate")
-    parser.add_argument("--strict", action="store_true", help="switch all of them, or none")
-    parser.add_argument("--activate-asap", "--start-asap", action="store_true", help="accepted for ros2's sake")
-    parser.add_argument("--switch-timeout", metavar="SECONDS", type=float, default=5.0, help="accepted for ros2's sake")
+    parser.add_argument("--strict", action="store_true", help="switch all of the controllers or none")
+    parser.add_argument(
+        "--activate-asap", "--start-asap", action="store_true", help="accepted for compatibility with ros2"
+    )
+    parser.add_argument(
+        "--switch-timeout", metavar="SECONDS", type=float, default=5.0, help="accepted for compatibility with ros2"
+    )
     _common(parser)
 
 
@@ -311,7 +315,7 @@ async def _reload(arguments: argparse.Namespace, ask: Ask) -> int:
 
 def _configure_set_hardware(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("hardware_component_name", metavar="HARDWARE", help="its name")
-    parser.add_argument("state", choices=("unconfigured", "inactive", "active"), help="the state that it is to have")
+    parser.add_argument("state", choices=("unconfigured", "inactive", "active"), help="the target state")
     _common(parser)
 
 
@@ -333,34 +337,34 @@ VERBS = {
     "cleanup_controller": SubVerb(
         _controller,
         partial(_run, lambda arguments, ask: _set_state(_to(arguments, "unconfigured"), ask)),
-        help="lead an inactive controller back to unconfigured",
+        help="clean up an inactive controller, so that it is unconfigured",
     ),
-    "list_controller_types": SubVerb(_common, partial(_run, _list_types), help="list the types that there are"),
+    "list_controller_types": SubVerb(_common, partial(_run, _list_types), help="list the available controller types"),
     "list_controllers": SubVerb(
-        _configure_list_controllers, partial(_run, _list_controllers), help="list the controllers that are loaded"
+        _configure_list_controllers, partial(_run, _list_controllers), help="list the loaded controllers"
     ),
     "list_hardware_components": SubVerb(
-        _configure_list_hardware, partial(_run, _list_components), help="list the hardware and its states"
+        _configure_list_hardware, partial(_run, _list_components), help="list the hardware components and their states"
     ),
     "list_hardware_interfaces": SubVerb(
         _configure_list_hardware, partial(_run, _list_interfaces), help="list the interfaces of the hardware"
     ),
     "load_controller": SubVerb(_configure_load, partial(_run, _load), help="load a controller"),
     "reload_controller_libraries": SubVerb(
-        _configure_reload, partial(_run, _reload), help="forget all controllers and look for their types anew"
+        _configure_reload, partial(_run, _reload), help="unload all controllers and reload the controller types"
     ),
     "set_controller_state": SubVerb(
-        _configure_set_state, partial(_run, _set_state), help="lead a controller to a state"
+        _configure_set_state, partial(_run, _set_state), help="set the state of a controller"
     ),
     "set_hardware_component_state": SubVerb(
-        _configure_set_hardware, partial(_run, _set_hardware), help="lead hardware to a state"
+        _configure_set_hardware, partial(_run, _set_hardware), help="set the state of a hardware component"
     ),
     "switch_controllers": SubVerb(
         _configure_switch, partial(_run, _switch_controllers), help="deactivate controllers and activate others"
     ),
-    "unload_controller": SubVerb(_controller, partial(_run, _unload), help="forget a controller that is not active"),
+    "unload_controller": SubVerb(_controller, partial(_run, _unload), help="unload a controller that is not active"),
     "view_controller_chains": SubVerb(
-        _configure_chains, partial(_run, _view_chains), help="draw which controller has which interfaces"
+        _configure_chains, partial(_run, _view_chains), help="draw the controllers and the interfaces that they claim"
     ),
 }
 

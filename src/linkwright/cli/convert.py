@@ -1,4 +1,4 @@
-"""``linkwright convert``: a robot or world as one SDF, URDF or MJCF file."""
+"""``linkwright convert``: convert a robot or world to one SDF, URDF or MJCF file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from linkwright.sdf.worlds import Sdf
 
 _UNSAID = [0.5, 0.5, 0.5, 1.0]
-"""The colour in MuJoCo of what has that of its material."""
+"""The colour that means "use the material's colour" in MuJoCo."""
 _FORMATS = ("sdf", "urdf", "mjcf")
 
 
@@ -26,41 +26,42 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="FILE", help="the URDF, xacro or SDF file")
     add_values(parser, values_help="values for the file's <xacro:arg>")
-    parser.add_argument(
-        "-o", "--output", metavar="OUT", help="the file to write; without it the text goes to standard output"
-    )
+    parser.add_argument("-o", "--output", metavar="OUT", help="the file to write (default: standard output)")
     parser.add_argument(
         "--to",
         choices=_FORMATS,
         default="sdf",
-        help="sdf: SDF 1.11 as gz makes it of a URDF, or of a world with all that it includes in it (default); urdf: "
-        "the robot of an SDF model, as sdformat_urdf makes it; mjcf: what MuJoCo simulates, meshes in it",
+        help="sdf: SDF 1.11, as gz converts a URDF, or a world with its includes resolved (default); urdf: the "
+        "robot of an SDF model, as sdformat_urdf converts it; mjcf: a model for MuJoCo with embedded "
+        "meshes",
     )
     fixed = parser.add_mutually_exclusive_group()
     fixed.add_argument(
         "--lump-fixed-joints",
         action="store_true",
         default=True,
-        help="links of a URDF that fixed joints connect become one, as in gz (default)",
+        help="merge links of a URDF that fixed joints connect, as gz does (default)",
     )
     fixed.add_argument(
         "--keep-fixed-joints",
         action="store_false",
         dest="lump_fixed_joints",
-        help="every link and every fixed joint of a URDF stays",
+        help="keep all links and fixed joints of a URDF",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the file, or print it; findings go to standard error."""
+    """Write or print the converted file; findings go to standard error."""
     from linkwright.descriptions.conversion import as_sdf
     from linkwright.descriptions.worlds import is_world
     from linkwright.packages import PackageFinder
 
     path = Path(arguments.file).absolute()
     if arguments.to == "urdf" and not is_world(path.name):
-        hint = phrase("linkwright xacro expands a file with xacro in it")
-        raise LinkwrightError(Diagnostic("CLI322", phrase("'{file}' is no SDF", file=arguments.file), hint=hint))
+        hint = phrase("to expand a xacro file, run `linkwright xacro`")
+        raise LinkwrightError(
+            Diagnostic("CLI322", phrase("'{file}' is not an SDF file", file=arguments.file), hint=hint)
+        )
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     out = None if arguments.output is None else Path(arguments.output)
     converted = as_sdf(
@@ -72,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     print_diagnostics(converted.diagnostics, sys.stderr)
     if converted.sdf is None or (arguments.to != "sdf" and has_errors(converted.diagnostics)):
-        return 1  # a robot, and what MuJoCo takes, is a whole or nothing
+        return 1  # a robot or a MuJoCo model is written completely or not at all
     text, remarks = _WRITERS[arguments.to](converted.sdf, finder)
     print_diagnostics(remarks, sys.stderr)
     if text is None:
@@ -114,14 +115,14 @@ def _mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
     except ValueError as error:
         reason = " ".join(str(error).split())
         raise LinkwrightError(
-            Diagnostic("CLI321", phrase("MuJoCo refuses it: {reason}", reason=foreign(reason)))
+            Diagnostic("CLI321", phrase("MuJoCo rejects the model: {reason}", reason=foreign(reason)))
         ) from None
     _take_images_out(scene.spec, model)
     return scene.spec.to_xml(), scene.diagnostics
 
 
 def _take_images_out(spec: Any, model: Any) -> None:
-    """Give what wears an image its mean colour instead: MJCF has images in files of their own only."""
+    """Replace textures by their mean colours: MJCF refers to image files only."""
     import numpy as np
 
     from linkwright.simulation.rendering.ray_renderer import mean_colour

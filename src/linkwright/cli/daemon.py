@@ -1,4 +1,4 @@
-"""``linkwright daemon``: accepted, because scripts for ROS 2 start and stop ros2's daemon. There is none here."""
+"""``linkwright daemon``: accepted because scripts for ROS 2 start and stop ros2's daemon; Linkwright has none."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _SAYS = {
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("verb", metavar="{start,status,stop}", choices=_SAYS, help="nothing is done")
+    parser.add_argument("verb", metavar="{start,status,stop}", choices=_SAYS, help="no effect")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Say that there is none."""
+    """Report that there is no daemon."""
     print(_SAYS[arguments.verb])
     return 0

@@ -1,4 +1,4 @@
-"""``linkwright diagram``: the structure of a robot as Graphviz text and as a picture."""
+"""``linkwright diagram``: draw the structure of a robot as Graphviz text and as an image."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "words",
         metavar="OUT",
         nargs="*",
-        default=[],  # else argparse says that it misses them too
-        help="base name of the two files, default the robot's name; an ending .pdf, .svg or .png picks the picture. "
-        "Words of the form NAME:=VALUE are values for the file's <xacro:arg>",
+        default=[],  # otherwise argparse lists them as missing too
+        help="base name of the two files, default the robot's name; the extension .pdf, .svg or .png selects "
+        "the format of the drawing. Arguments NAME:=VALUE are values for the file's <xacro:arg>",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write OUT.gv and the picture, and say so as urdf_to_graphviz does."""
+    """Write OUT.gv and the drawing, and print their names as urdf_to_graphviz does."""
     from linkwright.descriptions import examine
     from linkwright.urdf import to_gv
     from linkwright.urdf.diagram import render

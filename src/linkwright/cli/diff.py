@@ -1,4 +1,4 @@
-"""``linkwright diff``: what has changed from one description to another, or since a commit."""
+"""``linkwright diff``: compare two descriptions, or a description with a commit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.cli.model_arguments import add_against, add_values, asked_pair
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
 
 SAME, DIFFERENT, TROUBLE = 0, 1, 2
-"""Exit statuses, those of ``diff``."""
+"""The exit statuses of ``diff``."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -25,12 +25,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_against(parser)
     parser.add_argument(
-        "--format", choices=("text", "json"), default="text", help="form of the result (default: %(default)s)"
+        "--format", choices=("text", "json"), default="text", help="the output format (default: %(default)s)"
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the differences; the status is 0 where there are none, 1 where there are some, 2 for trouble."""
+    """Print the differences; return 0 if there are none, 1 if there are some, 2 for an error."""
     from linkwright.descriptions.comparison import as_data, as_text
 
     with ExitStack() as stack:

@@ -1,4 +1,4 @@
-"""``linkwright doctor``: what is wrong with the running graph, why, and how to mend it."""
+"""``linkwright doctor``: explain what is wrong with the running graph, why, and how to fix it."""
 
 from __future__ import annotations
 
@@ -29,47 +29,54 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         type=positive_float,
         default=_SECONDS,
-        help="for how long to look (default: %(default)g)",
+        help="how long to observe the graph (default: %(default)g)",
     )
     parser.add_argument(
         "--rviz",
         metavar="FILE",
         action="append",
         default=[],
-        help="a viewer's .rviz file, to look at its Fixed Frame too",
+        help="an .rviz file whose Fixed Frame to check too",
     )
-    parser.add_argument("--fixed-frame", metavar="FRAME", action="append", default=[], help="a Fixed Frame to look for")
+    parser.add_argument("--fixed-frame", metavar="FRAME", action="append", default=[], help="a Fixed Frame to check")
     parser.add_argument(
         "--params-file",
         metavar="FILE",
         action="append",
         default=[],
-        help="a parameter file, to look whether the nodes run that it is for",
+        help="a parameter file; check that the nodes it names are running",
     )
-    parser.add_argument("--format", choices=FORMATS, default="text", help="how to print what is found (default: text)")
+    parser.add_argument("--format", choices=FORMATS, default="text", help="the output format (default: text)")
     parser.add_argument(
-        "-r", "--report", action="store_true", help="print what is here as well: computer, network, versions, topics"
+        "-r", "--report", action="store_true", help="also print a report on the computer, network, versions and topics"
     )
-    parser.add_argument("--report-failed", "-rf", action="store_true", help="print that only when something is wrong")
-    parser.add_argument("--include-warnings", "-iw", action="store_true", help="accepted for ros2's sake; they are")
-    parser.add_argument("--exclude-packages", "-ep", action="store_true", help="accepted for ros2's sake")
+    parser.add_argument(
+        "--report-failed", "-rf", action="store_true", help="print the report only if there are findings"
+    )
+    parser.add_argument(
+        "--include-warnings",
+        "-iw",
+        action="store_true",
+        help="accepted for compatibility with ros2; warnings are always included",
+    )
+    parser.add_argument("--exclude-packages", "-ep", action="store_true", help="accepted for compatibility with ros2")
     configure_nested(parser, VERBS)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Look, and print what is found; 1 when there is something to mend. Or run the command below this one."""
+    """Observe the graph, and print the findings; return 1 if something needs a fix. Or run the subcommand."""
     if "run_verb" in arguments:
         return run_nested(arguments)
     from linkwright.doctor import examine, examine_parameter_files, observe, report
     from linkwright.wire.unfollowed import untold_settings
 
     frames = _fixed_frames(arguments)
-    settings = untold_settings()  # reported with the other findings, not while joining
+    settings = untold_settings()  # reported with the other findings, not on joining
 
     async def job(session: Session) -> int:
         if arguments.format == "text":
             print(
-                localized(phrase("looking at the running graph for {seconds:g} s ...", seconds=arguments.seconds)),
+                localized(phrase("observing the running graph for {seconds:g} s ...", seconds=arguments.seconds)),
                 file=sys.stderr,
             )
         seen = await observe(session.graph, session.node, arguments.seconds, fixed_frames=frames)
@@ -118,5 +125,9 @@ def _summary(seen: Observation, findings: int) -> str:
 
 
 VERBS = {
-    "hello": SubVerb(hello.configure, hello.run, help="greet other computers over a topic and by multicast, and count"),
+    "hello": SubVerb(
+        hello.configure,
+        hello.run,
+        help="send greetings to other computers over a topic and by multicast, and count those received",
+    ),
 }

@@ -1,4 +1,4 @@
-"""``linkwright drive``: put a robot into a simulated world and drive it, whatever its description lacks."""
+"""``linkwright drive``: drive a robot in a simulated world, and infer what its description lacks."""
 
 from __future__ import annotations
 
@@ -42,23 +42,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--drive",
         metavar="KIND",
         choices=_KINDS,
-        help="the kind of drive, where the file does not tell: %(choices)s",
+        help="the kind of drive, if the file does not specify it: %(choices)s",
     )
     parser.add_argument(
-        "--wheels", metavar="LEFT,RIGHT", help="the joints or links of the driven wheels, where the file does not tell"
+        "--wheels",
+        metavar="LEFT,RIGHT",
+        help="the joints or links of the driven wheels, if the file does not specify them",
     )
     parser.add_argument(
-        "--show", action="store_true", help="print what is inferred, with the text that says it, and end"
+        "--show", action="store_true", help="print the inferred facts and the elements that state them, and exit"
     )
     parser.add_argument(
-        "--write", action="store_true", help="put what is inferred into the file, keep all else in it, and end"
+        "--write",
+        action="store_true",
+        help="write the inferred elements into the file, leaving the rest unchanged, and exit",
     )
     add_simulation_options(parser)
     add_viewer_options(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Infer what is missing, then drive, print or write; 1 when something is wrong with the description."""
+    """Infer the missing elements, then drive, print or write; return 1 if the description has errors."""
     from linkwright.descriptions import examine
     from linkwright.hosting.plans import HostOptions
     from linkwright.hosting.simulated import SimulatedWorld, run_simulated
@@ -93,7 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
         print_diagnostics(written.refused, sys.stderr)
         return 1 if written.refused else 0
     load_mujoco()
-    load_world(arguments.world)  # a world that cannot be had is said at once, and not in the middle of a log
+    load_world(arguments.world)  # report a missing world at once, not in the middle of a log
     print_diagnostics(
         [diagnostic for diagnostic in found.diagnostics if diagnostic.severity is not Severity.INFO], sys.stderr
     )
@@ -112,7 +116,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _summary(robot: Robot, found: Inference) -> Phrase:
-    """The inferred facts, in a line."""
+    """Return a one-line summary of the inferred facts."""
     drive = found.drive
     parts: list[Phrase] = []
     if drive is not None and drive.left:
@@ -125,16 +129,16 @@ def _summary(robot: Robot, found: Inference) -> Phrase:
     if masses:
         parts.append(counted("the mass of {count} link", "masses of {count} links", masses))
     if not parts:
-        return phrase("'{robot}' is taken as it is", robot=robot.name)
+        return phrase("'{robot}' needs no inferred elements", robot=robot.name)
     return phrase(
-        "inferred for '{robot}': {parts}; `--show` says why, `--write` puts it into the file",
+        "inferred for '{robot}': {parts}; `--show` explains it, `--write` writes it to the file",
         robot=robot.name,
         parts=joined(parts),
     )
 
 
 def _listed(found: Inference) -> str:
-    """Each inference with its place, its reason and the text that says it."""
+    """Return each inference with its place, its reason and the element that states it."""
     from linkwright.xmltree.patches import block
 
     lines: list[str] = []

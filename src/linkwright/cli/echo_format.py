@@ -1,4 +1,4 @@
-"""Messages as ``topic echo`` and ``service echo`` print them: the options for that, and the text."""
+"""The output of ``topic echo`` and ``service echo``: the options, and messages as text."""
 
 from __future__ import annotations
 
@@ -14,39 +14,39 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.info import MessageInfo
 
 SEPARATOR = "---\n"
-"""What is printed after each message."""
+"""The line between messages."""
 _TRUNCATE = 128
 
 
 def add_format_arguments(parser: argparse.ArgumentParser, *, flow_help: str) -> None:
-    """Declare how messages are printed, for `EchoFormat.of`; `flow_help` tells what ``--flow-style`` does."""
+    """Declare the format options that `EchoFormat.of` reads; `flow_help` is the help text of ``--flow-style``."""
     parser.add_argument("--csv", action="store_true", help="print the values separated by commas")
-    parser.add_argument("-f", "--full-length", action="store_true", help="do not cut long arrays and texts")
+    parser.add_argument("-f", "--full-length", action="store_true", help="do not truncate long arrays and strings")
     parser.add_argument(
         "-l",
         "--truncate-length",
         metavar="N",
         type=unsigned_int,
         default=_TRUNCATE,
-        help="cut arrays and texts after so many elements (default: %(default)s)",
+        help="truncate arrays and strings after this many elements (default: %(default)s)",
     )
     parser.add_argument("--no-arr", action="store_true", help="do not print the elements of arrays")
-    parser.add_argument("--no-str", action="store_true", help="do not print texts")
+    parser.add_argument("--no-str", action="store_true", help="do not print strings")
     parser.add_argument("--flow-style", action="store_true", help=flow_help)
 
 
 @dataclass(frozen=True, slots=True)
 class EchoFormat:
-    """How messages are printed.
+    """The format in which messages are printed.
 
     Attributes:
-        field: the names that lead to the part to print; empty for the whole message.
-        csv: values separated by commas, instead of YAML.
-        truncate_length: after how many elements or characters arrays and texts are cut; None for never.
-        no_arr: print no array's elements.
-        no_str: print no text.
-        flow_style: YAML on one line for each message.
-        message_info: print when a message was sent and received before it.
+        field: the path of the field to print; empty for the entire message.
+        csv: print comma-separated values instead of YAML.
+        truncate_length: the length at which arrays and strings are truncated; None for never.
+        no_arr: omit the elements of arrays.
+        no_str: omit strings.
+        flow_style: print each message on one line of YAML.
+        message_info: print the times of sending and reception before each message.
     """
 
     field: tuple[str, ...] = ()
@@ -61,7 +61,7 @@ class EchoFormat:
     def of(
         cls, arguments: argparse.Namespace, field: tuple[str, ...] = (), *, message_info: bool = False
     ) -> EchoFormat:
-        """As the arguments of `add_format_arguments` say."""
+        """Return the format that the arguments of `add_format_arguments` set."""
         return cls(
             field=field,
             csv=arguments.csv,
@@ -73,7 +73,7 @@ class EchoFormat:
         )
 
     def text(self, message: Any, info: MessageInfo | None = None) -> str:
-        """The text to be printed for a message or its bytes.
+        """Return the text to print for a message or its bytes.
 
         Raises:
             LinkwrightError: CLI414, the message has no such field.
@@ -103,7 +103,7 @@ class EchoFormat:
 
 
 def field_path(text: str | None) -> tuple[str, ...]:
-    """The names of ``--field``, such as ``pose.pose.position``.
+    """Return the path of ``--field``, such as ``pose.pose.position``, as names.
 
     Raises:
         LinkwrightError: CLI414, a name is missing between dots.
@@ -114,17 +114,17 @@ def field_path(text: str | None) -> tuple[str, ...]:
     if not all(names):
         raise LinkwrightError(
             Diagnostic(
-                "CLI414", phrase("Invalid field '{text}'", text=text), hint=phrase("names are separated by one dot")
+                "CLI414", phrase("Invalid field '{text}'", text=text), hint=phrase("separate names by single dots")
             )
         )
     return names
 
 
 def select(message: Any, path: Sequence[str]) -> Any:
-    """The part of a message that names lead to.
+    """Return the field of a message at a path of names.
 
     Raises:
-        LinkwrightError: CLI414, there is no such part.
+        LinkwrightError: CLI414, there is no such field.
     """
     part = message
     for name in path:

@@ -1,4 +1,4 @@
-"""How a command ends: whatever stops it becomes one message and the exit status that stands for it."""
+"""The end of a command: errors become one message and an exit status."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ _OF_THE_SYSTEM = _OF_OUTPUT | {
     errno.EPERM,
     errno.EROFS,
 }
-"""What the machine refuses through no fault of the program."""
+"""Errors of the operating system that are not bugs of the program."""
 
 
 def status_of(command: Callable[[], int]) -> int:
-    """Run a command, and give the exit status that it ends with; what it printed is written out by then.
+    """Run a command, flush its output and return its exit status.
 
     Args:
-        command: returns the status where nothing stops it.
+        command: the function to run, which returns the status unless it raises.
     """
     try:
         open_closed_streams()
@@ -42,7 +42,7 @@ def status_of(command: Callable[[], int]) -> int:
             status = command()
         except SystemExit as stop:  # argparse
             status = stop.code if isinstance(stop.code, int) else USAGE
-        print(end="", flush=True)  # here, where it is known what to do when nobody reads it
+        print(end="", flush=True)  # flush here, where a closed output can be handled
     except UnknownLanguageError as error:
         say(f"linkwright: {error}")
         return USAGE
@@ -51,13 +51,13 @@ def status_of(command: Callable[[], int]) -> int:
         return FINDINGS
     except KeyboardInterrupt:
         return INTERRUPTED
-    except BrokenPipeError:  # the reader of our output went away (`| head`)
+    except BrokenPipeError:  # the reader of the output exited (`| head`)
         _leave_output()
         return FINE
     except MemoryError:
-        _print([Diagnostic("CLI204", phrase("there is not enough memory for that"))])
+        _print([Diagnostic("CLI204", phrase("there is not enough memory"))])
         return FINDINGS
-    except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours must not print a traceback
+    except Exception as error:  # noqa: BLE001 - the last resort: a bug of ours must not print a traceback
         trouble = _trouble_of_the_system(error) if isinstance(error, OSError) else None
         if trouble is None:
             _report_bug(error)
@@ -68,10 +68,10 @@ def status_of(command: Callable[[], int]) -> int:
 
 
 def open_closed_streams() -> None:
-    """Give a process that was started with standard streams closed what stands for them.
+    """Open null devices for standard streams that were closed when the process was started.
 
-    Otherwise the next file that is opened would take their numbers. Nothing can be read from the input, writing to the
-    output fails, and messages go nowhere.
+    Otherwise the next opened files would take their file descriptors. Reading gets nothing, writing to the output
+    fails, and messages are discarded.
     """
     if sys.stdin is None:
         sys.stdin = _open_as(0, os.O_RDONLY, "r")
@@ -90,28 +90,30 @@ def _open_as(number: int, flags: int, mode: str) -> object:
 
 
 def _trouble_of_the_system(error: OSError) -> Diagnostic | None:
-    """The error of the machine: it refuses the output, the working directory, a file; None for a bug of ours."""
+    """Return the diagnostic for an error of the operating system, or None for a bug of ours."""
     reason = foreign(error.strerror or error)
-    # Whatever writes files says which file was refused, so one without a name is the output.
+    # Code that writes files names the file in its errors, so an error without a name concerns the output.
     if error.filename is None and error.errno in _OF_OUTPUT:
         _leave_output()
         return Diagnostic("CLI202", phrase("cannot write to standard output: {reason}", reason=reason))
     try:
-        os.getcwd()  # noqa: PTH109 - nothing is to be loaded now
+        os.getcwd()  # noqa: PTH109 - import nothing at this point
     except OSError:
-        message = phrase("the folder that this command was started in is not there any more")
-        return Diagnostic("CLI203", message, hint=phrase("change to a folder that is there, for instance with `cd ~`"))
+        message = phrase("the current folder no longer exists")
+        return Diagnostic("CLI203", message, hint=phrase("change to an existing folder, for instance with `cd ~`"))
     if error.errno not in _OF_THE_SYSTEM:
         return None
     if error.filename is None:
-        return Diagnostic("CLI205", phrase("the system refuses what is needed: {reason}", reason=reason))
+        return Diagnostic("CLI205", phrase("the operating system reports an error: {reason}", reason=reason))
     path = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else str(error.filename)
-    return Diagnostic("CLI205", phrase("the system refuses '{path}': {reason}", path=path, reason=reason))
+    return Diagnostic(
+        "CLI205", phrase("the operating system reports an error for '{path}': {reason}", path=path, reason=reason)
+    )
 
 
 def _leave_output() -> None:
-    """Let Python flush into nothing when it ends; it would complain once more."""
-    from contextlib import suppress  # which is slow to import, and seldom needed
+    """Redirect the output to the null device, so that Python does not report a second error when it exits."""
+    from contextlib import suppress  # slow to import, and rarely needed
 
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -125,8 +127,8 @@ def _print(diagnostics: Iterable[Diagnostic]) -> None:
 
 
 def say(text: str) -> None:
-    """Print a line to standard error; what nobody can read changes no exit status."""
-    from contextlib import suppress  # which is slow to import, and seldom needed
+    """Print a line to standard error; a failure to write does not change the exit status."""
+    from contextlib import suppress  # slow to import, and rarely needed
 
     with suppress(OSError):
         print(text, file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""Where the command line begins: nothing is loaded before Ctrl-C ends the process quietly."""
+"""The entry point of the command line, which makes Ctrl-C end the process quietly before it imports anything."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ def main(words: list[str] | None = None, *, program: str = "linkwright") -> int:
     """Run the command line; see `linkwright.cli.command.main`.
 
     Args:
-        words: the command line after the program's name; this process's when left out.
-        program: the name that usage lines begin with.
+        words: the command line after the program's name; this process's if omitted.
+        program: the program's name in usage lines.
 
     Returns:
         The exit status.

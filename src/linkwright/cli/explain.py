@@ -1,4 +1,4 @@
-"""``linkwright explain``: the page of a rule or of another diagnostic, the meaning of an element or attribute."""
+"""``linkwright explain``: explain a rule or another diagnostic, an element or an attribute."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "code",
         metavar="CODE|ELEMENT",
-        help="such as LW201, limit-inverted or URDF110, or an element or attribute, such as joint.limit.effort",
+        help="a code such as LW201, limit-inverted or URDF110, or an element or attribute such as joint.limit.effort",
     )
 
 

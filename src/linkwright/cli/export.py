@@ -1,4 +1,4 @@
-"""``linkwright export``: a robot as one HTML file that opens anywhere, or as glTF."""
+"""``linkwright export``: write a robot as one HTML file that opens anywhere, or as glTF."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "out",
         metavar="OUT",
-        help="the file to write: OUT.html has the robot with sliders for its joints and needs no server and no "
+        help="the file to write: OUT.html shows the robot with joint sliders and needs neither a server nor a "
         "network; OUT.glb is glTF 2.0 with a node for each link",
     )
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
@@ -41,7 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the file and say so."""
+    """Write the file and print its name."""
     from linkwright.viewer.features.export.feature import FORMATS, format_of
 
     if format_of(arguments.out) is None:
@@ -85,7 +85,7 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
     text = library.remember(description)
     print_diagnostics(description.diagnostics, sys.stderr)
     if description.robot is None or not description.robot.root:
-        return 1  # without a name for its first link nothing can be placed
+        return 1  # without a root link, nothing can be placed
     snapshot = snapshot_of_model(text, description.robot, library, finder, old)
     print_diagnostics(snapshot.problems, sys.stderr)
     data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())
@@ -97,14 +97,14 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
 
 
 def _from_outside(files: Sequence[Path]) -> Diagnostic:
-    """A warning that files of no package are exported: an include or ``file://`` reaches any file of the machine."""
+    """Return a warning about exported files outside packages; includes and ``file://`` reach any file."""
     message = counted(
-        "what a file outside the packages says is in it",
-        "what {count} files outside the packages say is in it",
+        "the export contains a file from outside the packages",
+        "the export contains {count} files from outside the packages",
         len(files),
     )
     names = tuple(Note(foreign(display_path(path))) for path in files)
-    hint = phrase("look whether everybody may see them before you give it away")
+    hint = phrase("check that the contents may be published before you share the file")
     return Diagnostic("VIEW206", message, severity=Severity.WARNING, notes=names, hint=hint)
 
 

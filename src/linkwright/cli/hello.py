@@ -1,4 +1,4 @@
-"""``linkwright doctor hello``: whether computers hear each other, over a topic and by multicast."""
+"""``linkwright doctor hello``: test whether computers reach each other over a topic and by multicast."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         type=positive_float,
         default=0.1,
-        help="time from one greeting to the next (default: %(default)s)",
+        help="time between greetings (default: %(default)s)",
     )
     parser.add_argument(
         "-pp",
@@ -38,14 +38,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         type=positive_float,
         default=1.0,
-        help="time from one table to the next (default: %(default)s)",
+        help="time between tables (default: %(default)s)",
     )
     add_ttl_argument(parser)
-    parser.add_argument("-1", "--once", action="store_true", help="greet once, print one table and end")
+    parser.add_argument("-1", "--once", action="store_true", help="send one greeting, print one table and exit")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Greet, and print whose greetings arrive, until interrupted."""
+    """Send greetings, and print the senders of received ones, until interrupted."""
     return run_in_graph(arguments, lambda session: _greet(session, arguments))
 
 
@@ -87,7 +87,7 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
 
 
 class _Listener(asyncio.DatagramProtocol):
-    """Counts the greetings that come by multicast."""
+    """Counts the greetings received by multicast."""
 
     def __init__(self, counts: Greetings) -> None:
         self._counts = counts
@@ -97,13 +97,14 @@ class _Listener(asyncio.DatagramProtocol):
 
 
 def _tell_of_range() -> None:
-    """Say so where the topic does not leave this computer, which it does not left to itself."""
+    """Warn if the topic does not leave this computer, which is the default."""
     from linkwright.wire.dds.settings import Range, read_settings
     from linkwright.wire.joining import middleware
     from linkwright.wire.unfollowed import CYCLONE
 
     if middleware() == CYCLONE and read_settings().range in (Range.MACHINE, Range.LOCALHOST, Range.OFF):
         text = phrase(
-            "the topic stays on this computer: set ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET on each to reach others"
+            "the topic stays on this computer: set ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET on each computer to "
+            "reach others"
         )
         print(localized(text), file=sys.stderr)

@@ -1,4 +1,4 @@
-"""``linkwright inertia``: mass properties of links from their shapes."""
+"""``linkwright inertia``: compute the mass properties of links from their shapes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 _LARGEST = 1e15
-"""Masses and densities beyond this are taken for mistakes."""
+"""Masses and densities above this count as mistakes."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--density",
         metavar="KG_PER_M3",
         type=_positive,
-        help="density of all links; by default each keeps the mass it has, and one without a mass gets 1000 kg/m3",
+        help="density of all links; by default a link keeps its mass, and a link without a mass gets 1000 kg/m3",
     )
     parser.add_argument(
         "--mass", metavar="LINK=KG", action="append", default=[], help="mass of one link; may be repeated"
@@ -39,27 +39,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         action="append",
         default=[],
-        help="only this link, with the block computed; may be repeated",
+        help="show only this link, with its computed <inertial> block; may be repeated",
     )
     parser.add_argument(
         "--from",
         dest="prefer",
         choices=("collision", "visual"),
         default="collision",
-        help="the shapes to take; the others where a link has none of these (default: %(default)s)",
+        help="the shapes to use; a link without them uses the other shapes (default: %(default)s)",
     )
     parser.add_argument(
         "--write",
         action="store_true",
-        help="put the blocks into the file the links are written in, and keep all else in it as it is",
+        help="write the blocks into the files that define the links, leaving the rest unchanged",
     )
     parser.add_argument(
-        "--format", choices=("text", "json"), default="text", help="form of the result (default: %(default)s)"
+        "--format", choices=("text", "json"), default="text", help="the output format (default: %(default)s)"
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the blocks or write them; 1 when the description has errors or a block could not be written."""
+    """Print or write the blocks; return 1 if the description has errors or a block could not be written."""
     from linkwright.descriptions import examine
     from linkwright.inertia import MeshLibrary, estimate
     from linkwright.inertia.reports import as_json, as_text
@@ -99,7 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
         if not (arguments.link or arguments.write):
             say(
                 localized(
-                    phrase("`--link NAME` prints the <inertial> of a link's shapes, `--write` puts them into the file")
+                    phrase("`--link NAME` prints the <inertial> of a link's shapes, `--write` writes them to the file")
                 )
             )
     if written is not None:
@@ -118,7 +118,7 @@ def _positive(text: str) -> float:
 
 
 def _wanted(names: Sequence[str], robot: Robot) -> list[str]:
-    """The links to look at, in file order.
+    """Return the selected links, in file order.
 
     Raises:
         LinkwrightError: CLI311 for a link the robot does not have.
@@ -130,10 +130,10 @@ def _wanted(names: Sequence[str], robot: Robot) -> list[str]:
 
 
 def _masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
-    """Masses by link from words such as ``arm=1.5``.
+    """Return the masses by link from arguments such as ``arm=1.5``.
 
     Raises:
-        LinkwrightError: CLI311 for a link the robot does not have, CLI312 for a word that gives no mass.
+        LinkwrightError: CLI311 for a link the robot does not have, CLI312 for an argument without a mass.
     """
     masses: dict[str, float] = {}
     wrong = []
@@ -145,7 +145,7 @@ def _masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
         except argparse.ArgumentTypeError:
             name = ""
         if not name:
-            message = phrase("'{word}' gives no link a mass", word=word)
+            message = phrase("'{word}' does not set the mass of a link", word=word)
             wrong.append(
                 Diagnostic("CLI312", message, hint=phrase("write --mass LINK=KG, such as --mass arm_link=1.5"))
             )
@@ -163,7 +163,7 @@ def _unknown(name: str, robot: Robot) -> Diagnostic:
 
 
 def _refusals(refused: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
-    """One finding for each block that was not written."""
+    """Return a finding for each block that was not written."""
     found = []
     for name, why in refused.items():
         element = robot.links[name].element
@@ -172,9 +172,7 @@ def _refusals(refused: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
                 "INR211",
                 phrase("<inertial> of link '{name}' is not written: {why}", name=name, why=why),
                 element.span() if element else None,
-                hint=phrase(
-                    "put the block printed above where the link is written, or expressions that give its numbers"
-                ),
+                hint=phrase("put the block printed above into the link, or expressions with the same values"),
                 source=element.source if element else None,
             )
         )

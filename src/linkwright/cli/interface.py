@@ -20,13 +20,13 @@ _DEEPEST = 50
 
 def _add_kind_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare ``--only-msgs``, ``--only-srvs`` and ``--only-actions``."""
-    parser.add_argument("-m", "--only-msgs", dest="msg", action="store_true", help="only message types")
-    parser.add_argument("-s", "--only-srvs", dest="srv", action="store_true", help="only service types")
-    parser.add_argument("-a", "--only-actions", dest="action", action="store_true", help="only action types")
+    parser.add_argument("-m", "--only-msgs", dest="msg", action="store_true", help="list only message types")
+    parser.add_argument("-s", "--only-srvs", dest="srv", action="store_true", help="list only service types")
+    parser.add_argument("-a", "--only-actions", dest="action", action="store_true", help="list only action types")
 
 
 def _kinds(arguments: argparse.Namespace) -> list[str]:
-    """The kinds asked for: ``msg``, ``srv``, ``action``; all when none is."""
+    """Return the requested kinds (``msg``, ``srv``, ``action``), or all by default."""
     return [kind for kind in _TITLES if getattr(arguments, kind)] or list(_TITLES)
 
 
@@ -36,7 +36,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print their names, by kind, as ros2 does."""
+    """Print the types' names by kind, as ros2 does."""
     from linkwright.messages import interface_names
 
     for kind in _kinds(arguments):
@@ -62,7 +62,7 @@ def run_packages(arguments: argparse.Namespace) -> int:
 
 def configure_package(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("package_name", metavar="PACKAGE", help="such as example_interfaces")
+    parser.add_argument("package_name", metavar="PACKAGE", help="the package, such as example_interfaces")
     _add_kind_arguments(parser)
 
 
@@ -74,7 +74,9 @@ def run_package(arguments: argparse.Namespace) -> int:
     known = {kind: interface_names(kind) for kind in ("msg", "srv", "action")}
     packages = sorted({name.split("/")[0] for names in known.values() for name in names})
     if package not in packages:
-        hint = did_you_mean(package, packages) or phrase("`linkwright interface packages` lists those with types")
+        hint = did_you_mean(package, packages) or phrase(
+            "`linkwright interface packages` lists the packages with types"
+        )
         raise LinkwrightError(Diagnostic("CLI441", phrase("Unknown package '{package}'", package=package), hint=hint))
     names = [name for kind in _kinds(arguments) for name in known[kind]]
     for name in sorted(name for name in names if name.startswith(f"{package}/")):
@@ -85,9 +87,11 @@ def run_package(arguments: argparse.Namespace) -> int:
 def configure_show(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     group = parser.add_mutually_exclusive_group()
-    group.add_argument("--all-comments", action="store_true", help="print the comments of nested types too")
-    group.add_argument("--no-comments", action="store_true", help="print no comments and no blank lines")
-    parser.add_argument("type", metavar="TYPE", help="such as std_msgs/msg/String; '-' reads it from standard input")
+    group.add_argument("--all-comments", action="store_true", help="also print the comments of nested types")
+    group.add_argument("--no-comments", action="store_true", help="omit comments and blank lines")
+    parser.add_argument(
+        "type", metavar="TYPE", help="the type, such as std_msgs/msg/String; '-' reads it from standard input"
+    )
 
 
 def run_show(arguments: argparse.Namespace) -> int:
@@ -98,7 +102,7 @@ def run_show(arguments: argparse.Namespace) -> int:
     if name == "-":
         name = sys.stdin.readline().strip()
         if not name:
-            raise LinkwrightError(Diagnostic("CLI442", phrase("there is no type on standard input")))
+            raise LinkwrightError(Diagnostic("CLI442", phrase("standard input does not contain a type")))
     name = get_interface(name).TYPE_NAME
     lines = definition_lines(
         name,
@@ -113,12 +117,12 @@ def run_show(arguments: argparse.Namespace) -> int:
 
 def configure_proto(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("type", metavar="TYPE", help="such as std_msgs/msg/String")
-    parser.add_argument("--no-quotes", action="store_true", help="leave the quotes around it out")
+    parser.add_argument("type", metavar="TYPE", help="the type, such as std_msgs/msg/String")
+    parser.add_argument("--no-quotes", action="store_true", help="omit the quotes around the message")
 
 
 def run_proto(arguments: argparse.Namespace) -> int:
-    """Print it: of a service the request, of an action the goal, as ros2 does."""
+    """Print the message with its defaults: for a service the request, for an action the goal, as ros2 does."""
     from linkwright.messages import prototype
 
     text = prototype(arguments.type)
@@ -129,11 +133,11 @@ def run_proto(arguments: argparse.Namespace) -> int:
 def definition_lines(
     name: str, source: Callable[[str], str], *, comments: bool = True, nested_comments: bool = False
 ) -> Iterator[str]:
-    """The lines of a definition.
+    """Return the lines of a definition.
 
     Args:
         name: ``package/kind/Name``.
-        source: gives the text of the interface file of a name.
+        source: returns the text of the interface file for a name.
         comments: whether comments and blank lines are kept.
         nested_comments: whether they are kept in nested definitions.
     """
@@ -155,7 +159,7 @@ def _lines(name: str, source: Callable[[str], str], comments: bool, nested_comme
 
 
 def nested_type(line: str, package: str) -> str | None:
-    """The message type that a line of a definition has a field of, in full; None for anything else."""
+    """Return the full name of the message type of the field in a line of a definition, or None."""
     found = _FIELD.match(line)
     if found is None or found["equals"] or found["type"] in _PRIMITIVES:
         return None
@@ -168,7 +172,7 @@ def nested_type(line: str, package: str) -> str | None:
 
 
 def _without_comment(line: str) -> str:
-    """The line before a ``#`` that does not stand in a text."""
+    """Return a line without its comment; a ``#`` in a string does not start one."""
     quote = ""
     for at, character in enumerate(line):
         if quote:
@@ -181,13 +185,13 @@ def _without_comment(line: str) -> str:
 
 
 VERBS = {
-    "list": SubVerb(configure_list, run_list, help="list the types there are"),
+    "list": SubVerb(configure_list, run_list, help="list all types"),
     "package": SubVerb(configure_package, run_package, help="list the types of a package"),
-    "packages": SubVerb(configure_packages, run_packages, help="list the packages that have types"),
+    "packages": SubVerb(configure_packages, run_packages, help="list the packages that define types"),
     "proto": SubVerb(
-        configure_proto, run_proto, help="print a message with its defaults, to be filled in and published"
+        configure_proto, run_proto, help="print a message with its default values, ready to edit and publish"
     ),
-    "show": SubVerb(configure_show, run_show, help="print the definition of a type, with those of the types in it"),
+    "show": SubVerb(configure_show, run_show, help="print the definition of a type and of its nested types"),
 }
 
 configure = partial(configure_nested, verbs=VERBS)

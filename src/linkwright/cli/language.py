@@ -1,4 +1,4 @@
-"""``--lang``, which every command takes, and the help of commands in the reader's language."""
+"""The option ``--lang`` of every command, and help texts in the user's language."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _OPTION = "--lang"
 
 
 class UnknownLanguageError(Exception):
-    """``--lang`` with no language, or with one that messages are not known in."""
+    """``--lang`` lacks a language, or names one without a translation."""
 
 
 def take_language(words: Sequence[str]) -> list[str]:
-    """The words without ``--lang LANGUAGE``, which may stand anywhere before ``--``; the language is set.
+    """Set the language, and return the words without ``--lang LANGUAGE``, which is accepted anywhere before ``--``.
 
     Raises:
-        UnknownLanguageError: with what is wrong with it.
+        UnknownLanguageError: there is no such language.
     """
     left: list[str] = []
     asked: str | None = None
@@ -47,7 +47,7 @@ def _language(written: str) -> str:
 
 
 def said_in_help(text: str) -> str:
-    """A help text in the reader's language; one that the catalogue does not know stays as it is."""
+    """Return a help text in the user's language; texts that are not in the catalogue stay unchanged."""
     lang = language()
     if lang == "en" or not text:
         return text

@@ -1,4 +1,4 @@
-"""``linkwright launch``: run a ROS 2 launch file; its rviz2 is a page in the browser."""
+"""``linkwright launch``: run a ROS 2 launch file; rviz2 is a page in the browser."""
 
 from __future__ import annotations
 
@@ -19,34 +19,39 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="a package and a launch file in it, or the path of a launch file; then values for its arguments",
     )
     parser.add_argument(
-        "-s", "--show-args", "--show-arguments", action="store_true", help="list the launch file's arguments and end"
+        "-s", "--show-args", "--show-arguments", action="store_true", help="list the launch file's arguments and exit"
     )
     parser.add_argument(
-        "-p", "--print", "--print-description", action="store_true", help="print the launch description and end"
+        "-p", "--print", "--print-description", action="store_true", help="print the launch description and exit"
     )
     parser.add_argument(
-        "--isolate", action="store_true", help="run the nodes that come with Linkwright as processes, each by itself"
+        "--isolate", action="store_true", help="run each node that comes with Linkwright in its own process"
     )
     parser.add_argument(
         "--skip-missing",
         action="store_true",
-        help="leave out what cannot run because a package, program or file is not there, and run the rest",
+        help="skip entities whose package, program or file is missing, and run the rest",
     )
     parser.add_argument(
-        "-n", "--noninteractive", action="store_true", help="run without a terminal that sends signals to processes too"
+        "-n",
+        "--noninteractive",
+        action="store_true",
+        help="run without a terminal, which would also send signals to the processes",
     )
-    parser.add_argument("-d", "--debug", action="store_true", help="tell in detail what the launcher does")
+    parser.add_argument("-d", "--debug", action="store_true", help="log in detail what the launcher does")
     parser.add_argument(
         "-a",
         "--show-all-subprocesses-output",
         action="store_true",
-        help="show what processes write on the screen, whatever the launch file says",
+        help="show the output of all processes on the screen, whatever the launch file sets",
     )
-    parser.add_argument("--launch-prefix", metavar="COMMAND", help="put a command before those of processes")
+    parser.add_argument(
+        "--launch-prefix", metavar="COMMAND", help="prefix the command lines of processes with this command"
+    )
     parser.add_argument(
         "--launch-prefix-filter",
         metavar="PATTERN",
-        help="only before those of programs whose name matches this regular expression",
+        help="apply the prefix only to programs whose names match this regular expression",
     )
     add_viewer_options(parser)
 

@@ -29,10 +29,10 @@ def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = Fal
     add_session_arguments(parser)
     if optional:
         parser.add_argument(
-            "node_name", metavar="NODE", nargs="?", help="such as /lc_talker; all managed nodes when left out"
+            "node_name", metavar="NODE", nargs="?", help="the node, such as /lc_talker (default: all managed nodes)"
         )
     else:
-        parser.add_argument("node_name", metavar="NODE", help="such as /lc_talker")
+        parser.add_argument("node_name", metavar="NODE", help="the node, such as /lc_talker")
     parser.add_argument("--include-hidden-nodes", action="store_true", help="consider hidden nodes as well")
 
 
@@ -56,7 +56,7 @@ def run_nodes(arguments: argparse.Namespace) -> int:
 def configure_get(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     _add_node_arguments(parser, optional=True)
-    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="wait so long for each answer")
+    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="how long to wait for each response")
 
 
 def run_get(arguments: argparse.Namespace) -> int:
@@ -88,7 +88,9 @@ def run_get(arguments: argparse.Namespace) -> int:
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     _add_node_arguments(parser)
-    parser.add_argument("-a", "--all", action="store_true", help="list those of all its states, not of this one")
+    parser.add_argument(
+        "-a", "--all", action="store_true", help="list the transitions of all states, not only of the current state"
+    )
 
 
 def run_list(arguments: argparse.Namespace) -> int:
@@ -106,11 +108,13 @@ def run_list(arguments: argparse.Namespace) -> int:
 def configure_set(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     _add_node_arguments(parser)
-    parser.add_argument("transition", metavar="TRANSITION", help="its name, such as configure, or its number")
+    parser.add_argument(
+        "transition", metavar="TRANSITION", help="the transition's name, such as configure, or its number"
+    )
 
 
 def run_set(arguments: argparse.Namespace) -> int:
-    """Make it, and say whether it came about."""
+    """Trigger the transition, and print whether it succeeded."""
 
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
@@ -126,7 +130,7 @@ def run_set(arguments: argparse.Namespace) -> int:
                         node=node,
                         transition=arguments.transition,
                     ),
-                    notes=(Note(phrase("available ones are:\n{listed}", listed=listed)),),
+                    notes=(Note(phrase("available transitions:\n{listed}", listed=listed)),),
                     hint=did_you_mean(arguments.transition, [each.label for each in available]),
                 )
             )
@@ -140,14 +144,14 @@ def run_set(arguments: argparse.Namespace) -> int:
 
 
 def managed_nodes(session: Session, *, hidden: bool = False) -> list[str]:
-    """Full names of the managed nodes, sorted: those that tell their state."""
+    """Return the full names of the managed nodes, sorted: those with a service for their state."""
     services = dict(session.node.get_service_names_and_types())
     names = dict.fromkeys(node_names(session, hidden=hidden))
     return [name for name in names if _GET_STATE in services.get(f"{name}/get_state", ())]
 
 
 async def state(session: Session, node: str, timeout: float | None = None) -> Any:
-    """The state (lifecycle_msgs/msg/State) of a node."""
+    """Return the state (lifecycle_msgs/msg/State) of a node."""
     from linkwright.messages import get_service
 
     request = get_service(_GET_STATE).Request()
@@ -155,7 +159,7 @@ async def state(session: Session, node: str, timeout: float | None = None) -> An
 
 
 async def transitions(session: Session, node: str, *, every: bool = False) -> Sequence[Any]:
-    """Transitions of a node (lifecycle_msgs/msg/TransitionDescription): those of its state, or all of its graph."""
+    """Return the transitions (lifecycle_msgs/msg/TransitionDescription) of a node's state, or of all states."""
     from linkwright.messages import get_service
 
     kind = "lifecycle_msgs/srv/GetAvailableTransitions"
@@ -166,7 +170,7 @@ async def transitions(session: Session, node: str, *, every: bool = False) -> Se
 
 
 async def change(session: Session, node: str, transition: Any) -> bool:
-    """Have a node make a transition (lifecycle_msgs/msg/Transition); whether it came about."""
+    """Trigger a transition of a node (lifecycle_msgs/msg/Transition), and return whether it succeeded."""
     from linkwright.messages import get_service
 
     kind = "lifecycle_msgs/srv/ChangeState"
@@ -177,7 +181,7 @@ async def change(session: Session, node: str, transition: Any) -> bool:
 
 
 def transition_lines(descriptions: Sequence[Any]) -> list[str]:
-    """The lines of ``lifecycle list``."""
+    """Return the output lines of ``lifecycle list``."""
     lines = []
     for description in descriptions:
         lines += [
@@ -190,9 +194,9 @@ def transition_lines(descriptions: Sequence[Any]) -> list[str]:
 
 VERBS = {
     "get": SubVerb(configure_get, run_get, help="print the state of one managed node or of all"),
-    "list": SubVerb(configure_list, run_list, help="list the transitions that a managed node can make"),
+    "list": SubVerb(configure_list, run_list, help="list the transitions available to a managed node"),
     "nodes": SubVerb(configure_nodes, run_nodes, help="list the managed nodes"),
-    "set": SubVerb(configure_set, run_set, help="have a managed node make a transition"),
+    "set": SubVerb(configure_set, run_set, help="trigger a transition of a managed node"),
 }
 
 configure = partial(configure_nested, verbs=VERBS)

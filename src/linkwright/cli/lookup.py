@@ -1,4 +1,4 @@
-"""Finding what a user names in the running graph, and saying what is near when it is not there."""
+"""Find names of the running graph that a user gives, and suggest similar ones for unknown names."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _POLL = 0.1
 
 
 def visible(found: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
-    """Names with their types, sorted; those hidden only when they are asked for."""
+    """Return names with their types, sorted; hidden names only on request."""
     from linkwright.graph.names.rules import is_hidden
 
     return [(name, list(types)) for name, types in sorted(found) if hidden or not is_hidden(name)]
 
 
 def absolute(name: str) -> str:
-    """A name as the graph has it: with its leading slash.
+    """Return a name with its leading slash, as the graph has it.
 
     Raises:
-        InvalidNameError: it is no name.
+        InvalidNameError: it is not a valid name.
     """
     from linkwright.graph.names.rules import expand_topic_name
 
@@ -36,14 +36,14 @@ def absolute(name: str) -> str:
 
 
 def unknown(code: str, message: Phrase, name: str, known: Iterable[str], nothing: Phrase) -> LinkwrightError:
-    """The error for a name that the graph does not have.
+    """Return the error for a name that is not in the graph.
 
     Args:
-        code: of the diagnostic.
-        message: what is said of it; ros2's words where it has some.
-        name: as it was given.
-        known: the names that there are.
-        nothing: the hint when none is near.
+        code: the code of the diagnostic.
+        message: the message; that of ros2 if it has one.
+        name: the name that the user gave.
+        known: the existing names.
+        nothing: the hint if no name is similar.
     """
     candidates = list(known)
     by_end = [candidate for candidate in candidates if candidate.endswith("/" + name.strip("/").rpartition("/")[2])]
@@ -54,17 +54,17 @@ def unknown(code: str, message: Phrase, name: str, known: Iterable[str], nothing
 
 
 def absolute_or_given(name: str) -> str:
-    """A name with a leading slash, whether it is valid or not."""
+    """Return a name with a leading slash, whether it is valid or not."""
     return name if name.startswith("/") else f"/{name}"
 
 
 async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
-    """The types that a topic carries.
+    """Return the types of a topic.
 
     Args:
-        session: of the verb.
-        name: absolute.
-        wait: whether to wait for a topic that is not there yet, as ``ros2 topic hz`` does.
+        session: the session of the command.
+        name: the absolute name.
+        wait: whether to wait for a topic that does not exist yet, as ``ros2 topic hz`` does.
 
     Raises:
         LinkwrightError: CLI411, there is no such topic, and `wait` is not set.
@@ -75,7 +75,7 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
     print(f"WARNING: topic [{name}] does not appear to be published yet", file=sys.stderr)
     if not wait:
         known = [each for each, _ in session.node.get_topic_names_and_types()]
-        nothing = phrase("give the type of its messages to wait for it, or look at `linkwright topic list`")
+        nothing = phrase("give the message type to wait for the topic, or see `linkwright topic list`")
         message = phrase("Could not determine the type for the passed topic '{name}'", name=name)
         raise unknown("CLI411", message, name, known, nothing)
     while not types:
@@ -87,14 +87,14 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
 async def topic_type(
     session: Session, name: str, given: str | None = None, *, wait: bool = False, raw: bool = False
 ) -> Any:
-    """The class of a topic's messages.
+    """Return the class of a topic's messages.
 
     Args:
-        session: of the verb.
-        name: absolute.
-        given: the type's name, where the user gave it.
+        session: the session of the command.
+        name: the absolute name.
+        given: the type's name, if the user gave it.
         wait: see `topic_types`.
-        raw: whether the messages' bytes are all that is wanted; of a type that no package here has its name is given.
+        raw: whether only the bytes of messages are needed; for an unknown type, its name is returned then.
 
     Raises:
         LinkwrightError: MSG101, there is no such type; CLI411 as `topic_types`; CLI412, the topic has several types.
@@ -108,7 +108,7 @@ async def topic_type(
             name=name,
             types=", ".join(types),
         )
-        hint = phrase("name the one that is meant behind the topic; `linkwright doctor` tells who uses which")
+        hint = phrase("give the type after the topic; `linkwright doctor` shows which node uses which type")
         raise LinkwrightError(Diagnostic("CLI412", message, hint=hint))
     return _message_class(types[0], raw=raw)
 

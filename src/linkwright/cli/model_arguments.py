@@ -1,4 +1,4 @@
-"""The arguments of commands that take a description: its file, values for it, and what it is compared with."""
+"""The arguments of commands for descriptions: the file, xacro values, and the description to compare with."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
-    """The file of a robot's description, `file`, and `values` for its arguments."""
+    """Declare `file`, a robot's description, and `values` for its arguments."""
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
     add_values(parser, values_help="values for the file's <xacro:arg>")
 
@@ -21,16 +21,16 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 def add_values(
     parser: argparse.ArgumentParser, *, values_help: str, name: str = "values", metavar: str = "NAME:=VALUE"
 ) -> None:
-    """Words of the form ``name:=value``, as many as there are; others may be among them where the help says so."""
-    nothing: list[str] = []  # without a default argparse says that it misses them too
+    """Declare any number of arguments ``name:=value``; the help says whether others may be among them."""
+    nothing: list[str] = []  # without a default, argparse lists them as missing too
     parser.add_argument(name, metavar=metavar, nargs="*", default=nothing, help=values_help)
 
 
 def add_second_model(parser: argparse.ArgumentParser) -> None:
-    """`words`, a second file that the first is compared with and values for both, and the option `against`."""
+    """Declare `words`, a second file to compare with and values for both, and the option `against`."""
     add_values(
         parser,
-        values_help="a second file, the new one of two that are compared, and NAME:=VALUE for <xacro:arg>",
+        values_help="a second file to compare FILE with, the new one, and NAME:=VALUE for <xacro:arg>",
         name="words",
         metavar="NEW",
     )
@@ -38,28 +38,27 @@ def add_second_model(parser: argparse.ArgumentParser) -> None:
 
 
 def add_against(parser: argparse.ArgumentParser) -> None:
-    """The commit that a description is compared with."""
+    """Declare the option for the commit to compare a description with."""
     parser.add_argument(
         "--against",
         metavar="COMMIT",
-        help="compare the file with what it was in a commit of its git repository, such as HEAD, with all that it "
-        "includes and its meshes",
+        help="compare the file, its includes and its meshes with a commit of its git repository, such as HEAD",
     )
 
 
 def names_file(word: str) -> bool:
-    """Whether a word is a file and not ``name:=value``, nor what looks like that and is no file, ``name=value``."""
-    from pathlib import Path  # `xacro`, which is called often, declares its values here and needs no more
+    """Return whether a word names a file, and is neither ``name:=value`` nor a mistyped ``name=value``."""
+    from pathlib import Path  # imported late: `xacro`, which runs often, needs only the declarations above
 
     return ":=" not in word and ("=" not in word or Path(word).exists())
 
 
 def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
-    """The two descriptions that a command line asks for; None where it does not name two, or more.
+    """Return the two descriptions to compare, or None if the command line does not name two.
 
     Args:
         arguments: `file`, `words` and `against`.
-        stack: is told what is to be closed.
+        stack: receives the resources to close.
 
     Raises:
         LinkwrightError: see `linkwright.descriptions.revisions.Revision`.

@@ -1,4 +1,4 @@
-"""``linkwright models``: models for speech and vision that others trained: fetching, checking, removing them."""
+"""``linkwright models``: download, verify and remove trained models for speech and vision."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _MEGA = 1_000_000
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("--json", action="store_true", help="print a JSON list with all that is known of each")
+    parser.add_argument("--json", action="store_true", help="print all properties of each model as a JSON list")
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the models that there are, and which have been fetched."""
+    """Print the available models, and which are downloaded."""
     from linkwright.model_files import is_installed, model_table, models_folder
 
     if arguments.json:
@@ -63,15 +63,15 @@ def configure_get(parser: argparse.ArgumentParser) -> None:
         "--from",
         dest="source",
         metavar="SOURCE",
-        help="a file or folder that has it, or the address of a mirror (default: the address of its makers)",
+        help="a file or folder that contains it, or the address of a mirror (default: its publisher's address)",
     )
     parser.add_argument(
-        "--to", metavar="FOLDER", type=Path, help="put it below this folder, where only you look for it"
+        "--to", metavar="FOLDER", type=Path, help="store it in this folder, which Linkwright does not search"
     )
 
 
 def run_get(arguments: argparse.Namespace) -> int:
-    """Fetch a model, and print where it is."""
+    """Download a model, and print its path."""
     from linkwright.model_files import install, is_installed, model_entry, models_folder
 
     entry = model_entry(arguments.name)
@@ -81,7 +81,7 @@ def run_get(arguments: argparse.Namespace) -> int:
         if not _wrong_with(entry, place):
             print(place)
             return FINE
-        say(localized(phrase("'{path}' is not whole, and is fetched again", path=place)))
+        say(localized(phrase("'{path}' is incomplete or modified, and is downloaded again", path=place)))
     say(
         localized(
             phrase(
@@ -121,7 +121,7 @@ def configure_path(parser: argparse.ArgumentParser) -> None:
 
 
 def run_path(arguments: argparse.Namespace) -> int:
-    """Print where a model is."""
+    """Print the path of a model."""
     from linkwright.model_files import find_model, model_entry
 
     print(find_model(model_entry(arguments.name)))
@@ -130,11 +130,11 @@ def run_path(arguments: argparse.Namespace) -> int:
 
 def configure_check(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("names", metavar="MODEL", nargs="*", help="their names (default: all that have been fetched)")
+    parser.add_argument("names", metavar="MODEL", nargs="*", help="their names (default: all downloaded models)")
 
 
 def run_check(arguments: argparse.Namespace) -> int:
-    """Say of models whether they are what their makers gave out."""
+    """Verify the checksums of models."""
     from linkwright.model_files import find_model, is_installed, model_entry, model_table
 
     entries = [model_entry(name) for name in arguments.names]
@@ -143,7 +143,7 @@ def run_check(arguments: argparse.Namespace) -> int:
         found = _wrong_with(entry, find_model(entry))
         wrong += found
         if not found:
-            print(localized(phrase("{name}: as its makers gave it out", name=entry.name)))
+            print(localized(phrase("{name}: verified", name=entry.name)))
     if wrong:
         raise LinkwrightError(*wrong)
     return FINE
@@ -165,7 +165,7 @@ def configure_remove(parser: argparse.ArgumentParser) -> None:
 
 
 def run_remove(arguments: argparse.Namespace) -> int:
-    """Take a model away."""
+    """Remove a model."""
     from linkwright.model_files import model_entry, remove
 
     print(localized(phrase("Removed {path}", path=remove(model_entry(arguments.name)))))
@@ -177,11 +177,11 @@ def _add_name(parser: argparse.ArgumentParser) -> None:
 
 
 VERBS = {
-    "list": SubVerb(configure_list, run_list, help="list the models that there are, with size, licence and purpose"),
-    "get": SubVerb(configure_get, run_get, help="fetch a model, or take it from a file, a folder or a mirror"),
-    "path": SubVerb(configure_path, run_path, help="print where a model is that has been fetched"),
-    "check": SubVerb(configure_check, run_check, help="see whether models are what their makers gave out"),
-    "remove": SubVerb(configure_remove, run_remove, help="take a model away"),
+    "list": SubVerb(configure_list, run_list, help="list the available models with size, licence and purpose"),
+    "get": SubVerb(configure_get, run_get, help="download a model, or copy it from a file, a folder or a mirror"),
+    "path": SubVerb(configure_path, run_path, help="print the path of a downloaded model"),
+    "check": SubVerb(configure_check, run_check, help="verify the checksums of downloaded models"),
+    "remove": SubVerb(configure_remove, run_remove, help="remove a model"),
 }
 
 
@@ -191,5 +191,5 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command that was named."""
+    """Run the subcommand."""
     return run_nested(arguments)

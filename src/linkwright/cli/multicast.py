@@ -1,4 +1,4 @@
-"""``linkwright multicast``: send and receive one datagram, to see whether the network carries multicast."""
+"""``linkwright multicast``: send and receive one datagram, to test multicast on the network."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the verb."""
+    """Run the subcommand."""
     return run_nested(arguments)
 
 
 def multicast_group(text: str) -> str:
-    """An IPv4 address of a multicast group.
+    """Parse the IPv4 address of a multicast group.
 
     Raises:
-        argparse.ArgumentTypeError: when it is none.
+        argparse.ArgumentTypeError: the text is not valid.
     """
     try:
         is_group = IPv4Address(text).is_multicast
@@ -40,19 +40,19 @@ def multicast_group(text: str) -> str:
 
 
 def port(text: str) -> int:
-    """A port of UDP.
+    """Parse a UDP port.
 
     Raises:
-        argparse.ArgumentTypeError: when it is none.
+        argparse.ArgumentTypeError: the text is not valid.
     """
     return _up_to(_LAST_PORT, text)
 
 
 def time_to_live(text: str) -> int:
-    """A TTL of IP.
+    """Parse an IP TTL.
 
     Raises:
-        argparse.ArgumentTypeError: when it is none.
+        argparse.ArgumentTypeError: the text is not valid.
     """
     return _up_to(_LONGEST_TTL, text)
 
@@ -66,7 +66,9 @@ def _up_to(most: int, text: str) -> int:
 
 def add_ttl_argument(parser: argparse.ArgumentParser) -> None:
     """Declare ``--ttl``."""
-    parser.add_argument("--ttl", type=time_to_live, help="TTL of the datagrams (default: 1, which no router passes on)")
+    parser.add_argument(
+        "--ttl", type=time_to_live, help="TTL of the datagrams (default: 1, which routers do not forward)"
+    )
 
 
 def _configure_receive(parser: argparse.ArgumentParser) -> None:
@@ -97,6 +99,6 @@ def _send(arguments: argparse.Namespace) -> int:
 
 
 VERBS = {
-    "receive": SubVerb(_configure_receive, _receive, help="wait for one datagram, and print it"),
+    "receive": SubVerb(_configure_receive, _receive, help="wait for one datagram and print it"),
     "send": SubVerb(_configure_send, _send, help="send one datagram"),
 }

@@ -1,4 +1,4 @@
-"""Verbs that list names of the graph with their types: options, answers, and what is printed for none."""
+"""The parts of commands that list names of the graph with their types: options, output and errors."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """The kinds of names with types: topics, services, actions.
+    """A kind of names with types: topics, services or actions.
 
     Attributes:
-        found: those that there are.
-        code: of the error that one is not there.
-        missing: what that error says of a name, as it was given.
-        hint: what it says where no name is near.
+        found: returns the existing names.
+        code: the code of the error for an unknown name.
+        missing: the message of that error for a name that the user gave.
+        hint: its hint if no name is similar.
     """
 
     found: Callable[[Session], NamesAndTypes]
@@ -33,11 +33,11 @@ class Kind:
     hint: Phrase
 
     def types_of(self, session: Session, given: str, *, hidden: bool = True) -> list[str]:
-        """The types of what the command line names.
+        """Return the types of the name on the command line.
 
         Raises:
-            LinkwrightError: with `code`, there is none of that name.
-            InvalidNameError: it is no name.
+            LinkwrightError: with `code`, the name does not exist.
+            InvalidNameError: it is not a valid name.
         """
         name = absolute(given)
         found = dict(visible(self.found(session), hidden=hidden))
@@ -46,8 +46,8 @@ class Kind:
         return found[name]
 
     def print_types(self, arguments: argparse.Namespace, given: str, *, hidden: bool = True) -> int:
-        """Print the types of what the command line names, a line each; returns the exit status."""
-        absolute(given)  # what is no name is refused before the graph is joined
+        """Print the types of the name on the command line, one per line, and return the exit status."""
+        absolute(given)  # reject an invalid name before joining the graph
 
         async def job(session: Session) -> int:
             print("\n".join(self.types_of(session, given, hidden=hidden)))
@@ -56,7 +56,7 @@ class Kind:
         return run_in_graph(arguments, job, only_looks=True)
 
     def print_of_type(self, arguments: argparse.Namespace, wanted: str, *, hidden: bool) -> int:
-        """Print the names of what has a type; returns the exit status."""
+        """Print the names that have a type, and return the exit status."""
 
         async def job(session: Session) -> int:
             found = visible(self.found(session), hidden=hidden)
@@ -67,7 +67,7 @@ class Kind:
 
 
 def add_types_argument(parser: argparse.ArgumentParser, *, types_help: str) -> None:
-    """Declare ``--show-types``, with what its help says."""
+    """Declare ``--show-types`` with a help text."""
     parser.add_argument("-t", "--show-types", action="store_true", help=types_help)
 
 
@@ -79,12 +79,12 @@ def add_count_argument(parser: argparse.ArgumentParser, kind: str) -> None:
         "--count",
         dest="count",
         action="store_true",
-        help="print only how many there are",
+        help="print only the number of results",
     )
 
 
 def add_hidden_argument(parser: argparse.ArgumentParser, option: str, *, hidden_help: str) -> None:
-    """Declare ``--include-hidden-topics`` or the like, which may stand before the verb too."""
+    """Declare ``--include-hidden-topics`` or a similar option, which is also accepted before the subcommand."""
     parser.add_argument(
         option,
         "-a",
@@ -96,12 +96,12 @@ def add_hidden_argument(parser: argparse.ArgumentParser, option: str, *, hidden_
 
 
 def print_names(names: Sequence[str], arguments: argparse.Namespace) -> None:
-    """Print names, a line each, or how many there are."""
+    """Print names, one per line, or their number."""
     for line in [len(names)] if arguments.count else names:
         print(line)
 
 
 def print_names_and_types(found: NamesAndTypes, arguments: argparse.Namespace) -> None:
-    """Print names with their types, if they are asked for, or how many there are; as ros2 does."""
+    """Print names, with their types if requested, or their number, as ros2 does."""
     lines = [f"{name} [{', '.join(types)}]" if arguments.show_types else name for name, types in found]
     print_names(lines, arguments)

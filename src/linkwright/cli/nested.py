@@ -1,4 +1,4 @@
-"""Verbs with verbs of their own, such as ``topic echo``, all configured below one parser."""
+"""Commands with subcommands, such as ``topic echo``, all configured below one parser."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import NamedTuple, cast
 
 
 class SubVerb(NamedTuple):
-    """A verb below a verb.
+    """A subcommand.
 
     Attributes:
         configure: declares its arguments.
-        run: does it; returns the exit status.
-        help: what it does, in a line.
+        run: runs it and returns the exit status.
+        help: its help text, in one line.
     """
 
     configure: Callable[[argparse.ArgumentParser], None]
@@ -22,11 +22,11 @@ class SubVerb(NamedTuple):
 
 
 def configure_nested(parser: argparse.ArgumentParser, verbs: Mapping[str, SubVerb]) -> None:
-    """Declare the verbs below a verb.
+    """Declare the subcommands of a command.
 
     Args:
-        parser: the verb's.
-        verbs: those below it, by their names.
+        parser: the command's parser.
+        verbs: name -> subcommand.
     """
     below = parser.add_subparsers(dest="verb", metavar="COMMAND", title="commands")
     for name, verb in verbs.items():
@@ -37,7 +37,7 @@ def configure_nested(parser: argparse.ArgumentParser, verbs: Mapping[str, SubVer
 
 
 def run_nested(arguments: argparse.Namespace) -> int:
-    """Run the verb that was named; without one, print the help as ros2 does."""
+    """Run the subcommand; if there is none, print the help as ros2 does."""
     run = getattr(arguments, "run_verb", None)
     if run is None:
         arguments.print_help()

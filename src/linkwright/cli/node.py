@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 _APPEARS_WITHIN = 1.0
-"""Seconds for which to wait for a node that is not known yet."""
+"""Seconds to wait for a node that has not been discovered."""
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
@@ -49,12 +49,12 @@ def run_list(arguments: argparse.Namespace) -> int:
 def configure_info(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("node_name", metavar="NODE", help="such as /robot_state_publisher")
-    parser.add_argument("--include-hidden", action="store_true", help="show hidden topics, services and actions too")
+    parser.add_argument("node_name", metavar="NODE", help="the node, such as /robot_state_publisher")
+    parser.add_argument("--include-hidden", action="store_true", help="also show hidden topics, services and actions")
 
 
 def run_info(arguments: argparse.Namespace) -> int:
-    """Print what the node has, as ros2 does."""
+    """Print the node's topics, services and actions, as ros2 does."""
     full = absolute_or_given(arguments.node_name)
     hidden = arguments.include_hidden
 
@@ -93,7 +93,9 @@ def _section(title: str, found: NamesAndTypes, *, hidden: bool) -> None:
 
 
 VERBS = {
-    "info": SubVerb(configure_info, run_info, help="say what a node publishes, subscribes to, serves and calls"),
+    "info": SubVerb(
+        configure_info, run_info, help="describe a node: its publishers, subscriptions, services, clients and actions"
+    ),
     "list": SubVerb(configure_list, run_list, help="list the nodes"),
 }
 

@@ -1,4 +1,4 @@
-"""Kinds of numbers that options take."""
+"""Number types of options."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import argparse
 
 
 def positive_int(text: str) -> int:
-    """A whole number above nothing.
+    """Parse a positive integer.
 
     Raises:
-        argparse.ArgumentTypeError: when it is none.
+        argparse.ArgumentTypeError: the text is not such a number.
     """
     value = unsigned_int(text)
     if value == 0:
@@ -18,10 +18,10 @@ def positive_int(text: str) -> int:
 
 
 def unsigned_int(text: str) -> int:
-    """A whole number that is not negative.
+    """Parse a non-negative integer.
 
     Raises:
-        argparse.ArgumentTypeError: when it is none.
+        argparse.ArgumentTypeError: the text is not such a number.
     """
     if text.isascii() and text.isdigit():
         return int(text)
@@ -29,10 +29,10 @@ def unsigned_int(text: str) -> int:
 
 
 def positive_float(text: str) -> float:
-    """A number above nothing.
+    """Parse a positive number.
 
     Raises:
-        argparse.ArgumentTypeError: when it is none.
+        argparse.ArgumentTypeError: the text is not such a number.
     """
     try:
         value = float(text)
@@ -44,10 +44,10 @@ def positive_float(text: str) -> float:
 
 
 def share(text: str) -> float:
-    """A number from 0 to 1.
+    """Parse a number from 0 to 1.
 
     Raises:
-        argparse.ArgumentTypeError: when it is none.
+        argparse.ArgumentTypeError: the text is not such a number.
     """
     try:
         value = float(text)

@@ -1,4 +1,4 @@
-"""Writing the files that commands produce."""
+"""Write the result files of commands."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 def write_output(path: Path, content: str | bytes) -> None:
-    """Write a result file whole or not at all, making its folder.
+    """Write a result file completely or not at all, creating its folder.
 
     Raises:
-        LinkwrightError: CLI201 when it cannot be written.
+        LinkwrightError: CLI201, it cannot be written.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -24,7 +24,7 @@ def write_output(path: Path, content: str | bytes) -> None:
 
 
 def cannot_write(path: Path, error: OSError) -> LinkwrightError:
-    """The error for a result file that cannot be written (CLI201)."""
+    """Return the error for a result file that cannot be written (CLI201)."""
     message = phrase("cannot write '{path}': {strerror}", path=path, strerror=foreign(error.strerror or error))
-    hint = phrase("name a file in a folder that you may write to")
+    hint = phrase("choose a file in a writable folder")
     return LinkwrightError(Diagnostic("CLI201", message, hint=hint))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 _LONGEST_ANSWER = 5.0
-"""Seconds for each of all nodes; one that hangs must not keep the others from being listed."""
+"""Seconds to wait for each node if all are listed; a hanging node must not block the others."""
 _LABELS = {
     1: ("Boolean value is:", "bool_value"),
     2: ("Integer value is:", "integer_value"),
@@ -42,18 +42,18 @@ def _add_node_arguments(parser: argparse.ArgumentParser, *, optional: bool = Fal
     add_session_arguments(parser)
     if optional:
         parser.add_argument(
-            "node_name", metavar="NODE", nargs="?", help="such as /robot_state_publisher; all nodes when left out"
+            "node_name", metavar="NODE", nargs="?", help="the node, such as /robot_state_publisher (default: all nodes)"
         )
     else:
-        parser.add_argument("node_name", metavar="NODE", help="such as /robot_state_publisher")
+        parser.add_argument("node_name", metavar="NODE", help="the node, such as /robot_state_publisher")
     parser.add_argument(
         "--include-hidden-nodes", "-a", "--all", action="store_true", help="consider hidden nodes as well"
     )
     parser.add_argument(
-        "--timeout", metavar="SECONDS", type=float, default=1.0, help="wait so long for the node (default: 1)"
+        "--timeout", metavar="SECONDS", type=float, default=1.0, help="how long to wait for the node (default: 1)"
     )
     parser.add_argument(
-        "--service-timeout", metavar="SECONDS", type=float, help="wait so long for an answer (default: as it takes)"
+        "--service-timeout", metavar="SECONDS", type=float, help="how long to wait for a response (default: no limit)"
     )
 
 
@@ -61,18 +61,18 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     _add_node_arguments(parser, optional=True)
     parser.add_argument(
-        "--param-prefixes", metavar="PREFIX", nargs="+", default=[], help="list only parameters below these"
+        "--param-prefixes", metavar="PREFIX", nargs="+", default=[], help="list only parameters with these prefixes"
     )
-    parser.add_argument("--param-type", action="store_true", help="print the type of each")
-    parser.add_argument("--filter", metavar="REGEX", help="list only names in which this is found")
+    parser.add_argument("--param-type", action="store_true", help="print the type of each parameter")
+    parser.add_argument("--filter", metavar="REGEX", help="list only names that match this regular expression")
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the names, below each node's."""
+    """Print the parameters' names below the name of their node."""
     try:
         wanted = re.compile(arguments.filter or "")
     except re.error as error:
-        hint = phrase("names are looked for as regular expressions; write '\\.' for a dot")
+        hint = phrase("names are matched as regular expressions; write '\\.' for a dot")
         raise LinkwrightError(
             Diagnostic(
                 "CLI425",
@@ -123,7 +123,7 @@ def configure_get(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     _add_node_arguments(parser)
     parser.add_argument("parameter_name", metavar="NAME", help="the parameter's name")
-    parser.add_argument("--hide-type", action="store_true", help="print the value alone")
+    parser.add_argument("--hide-type", action="store_true", help="print only the value")
 
 
 def run_get(arguments: argparse.Namespace) -> int:
@@ -151,7 +151,7 @@ def configure_describe(parser: argparse.ArgumentParser) -> None:
 
 
 def run_describe(arguments: argparse.Namespace) -> int:
-    """Print what the node says of them, as ros2 does."""
+    """Print the descriptions of the parameters, as ros2 does."""
 
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)
@@ -164,7 +164,7 @@ def run_describe(arguments: argparse.Namespace) -> int:
 
 
 def _description(descriptor: Any) -> list[str]:
-    """The text of a rcl_interfaces/msg/ParameterDescriptor."""
+    """Return the text of a rcl_interfaces/msg/ParameterDescriptor."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES.get(descriptor.type, 'unknown')}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")
@@ -184,13 +184,13 @@ def configure_set(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     _add_node_arguments(parser)
     parser.add_argument(
-        "words", metavar="NAME VALUE", nargs="+", help="a parameter's name and its value in YAML; and so on for more"
+        "words", metavar="NAME VALUE", nargs="+", help="a parameter's name and its value in YAML; may be repeated"
     )
-    parser.add_argument("--atomic", action="store_true", help="set all or none")
+    parser.add_argument("--atomic", action="store_true", help="set all parameters or none")
 
 
 def run_set(arguments: argparse.Namespace) -> int:
-    """Set them, and say of each whether it was."""
+    """Set the parameters, and print whether each was set."""
     words = arguments.words
     if len(words) % 2:
         said = f"Parameters must be provided as name/value pairs: name value [name value ...]. Got {len(words)} word(s)"
@@ -220,7 +220,7 @@ def configure_delete(parser: argparse.ArgumentParser) -> None:
 
 
 def run_delete(arguments: argparse.Namespace) -> int:
-    """Delete it, and say whether it was."""
+    """Delete the parameter, and print whether it was deleted."""
     from linkwright.graph.parameters.parameter import Parameter, ParameterType
 
     async def job(session: Session) -> int:
@@ -237,12 +237,16 @@ def run_delete(arguments: argparse.Namespace) -> int:
 def configure_dump(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     _add_node_arguments(parser)
-    parser.add_argument("--output-dir", metavar="FOLDER", help="write the file NODE.yaml there instead")
-    parser.add_argument("--print", action="store_true", help="accepted for ros2's sake; that is what is done")
+    parser.add_argument(
+        "--output-dir", metavar="FOLDER", help="write the file NODE.yaml to this folder instead of printing it"
+    )
+    parser.add_argument(
+        "--print", action="store_true", help="accepted for compatibility with ros2; this is the default"
+    )
 
 
 def run_dump(arguments: argparse.Namespace) -> int:
-    """Print the file or write it."""
+    """Print or write the parameter file."""
 
     async def job(session: Session) -> int:
         from linkwright.graph.parameters.files import parameter_file_text, plain_value
@@ -268,13 +272,15 @@ def configure_load(parser: argparse.ArgumentParser) -> None:
     _add_node_arguments(parser)
     parser.add_argument("parameter_file", metavar="FILE", help="a YAML file of parameters")
     parser.add_argument(
-        "--no-use-wildcard", action="store_true", help="leave out what the file gives to all nodes ('/**')"
+        "--no-use-wildcard", action="store_true", help="ignore parameters that the file sets for all nodes ('/**')"
     )
-    parser.add_argument("--use-wildcard", action="store_true", help="accepted for ros2's sake; that is what is done")
+    parser.add_argument(
+        "--use-wildcard", action="store_true", help="accepted for compatibility with ros2; this is the default"
+    )
 
 
 def run_load(arguments: argparse.Namespace) -> int:
-    """Set them, and say of each whether it was."""
+    """Set the parameters, and print whether each was set."""
     from linkwright.graph.parameters.files import read_parameter_file
     from linkwright.graph.parameters.parameter import Parameter
 
@@ -305,14 +311,12 @@ def run_load(arguments: argparse.Namespace) -> int:
 
 
 VERBS = {
-    "delete": SubVerb(configure_delete, run_delete, help="delete a parameter that the node lets go"),
-    "describe": SubVerb(
-        configure_describe, run_describe, help="say what parameters are for and which values they take"
-    ),
+    "delete": SubVerb(configure_delete, run_delete, help="delete a parameter, if the node allows it"),
+    "describe": SubVerb(configure_describe, run_describe, help="describe parameters and the values that they accept"),
     "dump": SubVerb(configure_dump, run_dump, help="print all parameters of a node as a parameter file"),
     "get": SubVerb(configure_get, run_get, help="print the value of a parameter"),
-    "list": SubVerb(configure_list, run_list, help="list the parameters of one node or of all"),
-    "load": SubVerb(configure_load, run_load, help="set the parameters of a node that a parameter file gives it"),
+    "list": SubVerb(configure_list, run_list, help="list the parameters of one node or of all nodes"),
+    "load": SubVerb(configure_load, run_load, help="set the parameters of a node from a parameter file"),
     "set": SubVerb(configure_set, run_set, help="set parameters of a node"),
 }
 

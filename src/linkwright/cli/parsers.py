@@ -1,4 +1,4 @@
-"""The argument parsers of commands: argparse with hints, and in the reader's language."""
+"""The argument parsers of commands: argparse with hints and translation."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from linkwright.lean_typing import Any, NoReturn
 def make_parser(
     program: str, description: str, configure: Callable[[argparse.ArgumentParser], None]
 ) -> argparse.ArgumentParser:
-    """A parser whose texts are in the reader's language.
+    """Return a parser whose texts are in the user's language.
 
     Args:
-        program: the name that usage lines begin with.
-        description: what the help says of the program.
+        program: the program's name in usage lines.
+        description: the description of the program in the help.
         configure: declares the arguments.
     """
     parser = _Parser(prog=program, description=description, formatter_class=_formatter)
@@ -30,9 +30,9 @@ def make_parser(
 
 
 class _Parser(argparse.ArgumentParser):
-    """Tells what a misspelt option may mean, and of a help text that cannot be written.
+    """Suggests options for misspelt ones, and reports help texts that cannot be written.
 
-    argparse passes over the latter, and Python from 3.15 on with it.
+    argparse ignores errors of writing the help, and from version 3.15 on, Python does too.
     """
 
     def error(self, message: str) -> NoReturn:
@@ -52,7 +52,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _options_below(parser: argparse.ArgumentParser) -> Iterator[str]:
-    """The long options of a parser and of those below it."""
+    """Yield the long options of a parser and of its subparsers."""
     for action in parser._actions:
         yield from (name for name in action.option_strings if name.startswith("--"))
         if isinstance(action, argparse._SubParsersAction):
@@ -61,7 +61,7 @@ def _options_below(parser: argparse.ArgumentParser) -> Iterator[str]:
 
 
 def _formatter(prog: str) -> argparse.HelpFormatter:
-    """A help formatter as wide as the terminal; left to itself, argparse would import much only to learn that width."""
+    """Return a help formatter as wide as the terminal; argparse itself would import much only to get the width."""
     try:
         columns = int(os.environ.get("COLUMNS", "0")) or os.get_terminal_size().columns
     except (ValueError, OSError):
@@ -69,13 +69,13 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     return argparse.HelpFormatter(prog, width=columns - 2)
 
 
-# The name by which argparse asks for words of its own, such as "the following arguments are required". It is gettext's,
-# which looks for catalogues that there are none of, and loads `locale` for that.
+# The function with which argparse translates its own texts, such as "the following arguments are required". By default
+# it is gettext's, which searches for catalogues that do not exist and imports `locale` for that.
 argparse._ = said_in_help  # type: ignore[attr-defined]  # argparse imports it so
 
 
 def _translate_help(parser: argparse.ArgumentParser) -> None:
-    """Put the texts of a parser, and of the parsers below it, into the reader's language."""
+    """Translate the texts of a parser and of its subparsers into the user's language."""
     if language() != "en":
         _translate(parser)
 

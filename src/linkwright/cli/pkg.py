@@ -1,4 +1,4 @@
-"""``linkwright pkg``: ``pkg create`` makes a new ROS package, the other commands tell of those there are."""
+"""``linkwright pkg``: create ROS packages, and find and describe existing ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class _ListLicenses(argparse.Action):
-    """Takes a licence; for ``?`` it lists the known ones and ends, as ``--help`` does."""
+    """Stores a licence; for ``?``, lists the known licences and exits, as ``--help`` does."""
 
     def __call__(
         self,
@@ -61,7 +61,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="LICENSE",
         action=_ListLicenses,
         default=DEFAULT_LICENSE,
-        help="SPDX identifier or any words; LICENSE is written for a known identifier; '?' lists those",
+        help="SPDX identifier or any text; for a known identifier, the file LICENSE is written; '?' lists the "
+        "known identifiers",
     )
     create.add_argument(
         "--destination-directory",
@@ -70,7 +71,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="the folder to create the package in, default the current one",
     )
     create.add_argument(
-        "--build-type", choices=BUILD_TYPES, default="ament_cmake", help="what builds the package, default ament_cmake"
+        "--build-type",
+        choices=BUILD_TYPES,
+        default="ament_cmake",
+        help="the build type of the package, default ament_cmake",
     )
     create.add_argument(
         "--dependencies", metavar="PACKAGE", nargs="+", default=[], help="packages that this one depends on"
@@ -83,20 +87,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
     create.add_argument(
         "--maintainer-name", metavar="TEXT", help="the maintainer's name, default git's user.name or the login name"
     )
-    create.add_argument("--node-name", metavar="NODE", help="begin with an executable of this name")
-    create.add_argument("--library-name", metavar="LIBRARY", help="begin with a library of this name")
+    create.add_argument("--node-name", metavar="NODE", help="create an executable with this name")
+    create.add_argument("--library-name", metavar="LIBRARY", help="create a library with this name")
     create.set_defaults(answer=_create)
     _configure_questions(verbs)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Do what the command says."""
+    """Run the subcommand."""
     answer: Callable[[argparse.Namespace], int] = arguments.answer
     return answer(arguments)
 
 
 def _create(arguments: argparse.Namespace) -> int:
-    """Create the package, printing each step as ``ros2 pkg create`` does."""
+    """Create the package, and print each step as ``ros2 pkg create`` does."""
     from linkwright.packages.creation.create import create_package
     from linkwright.packages.creation.request import PackageRequest
 
@@ -119,7 +123,7 @@ def _create(arguments: argparse.Namespace) -> int:
 
 
 def _maintainer(name: str | None, email: str | None) -> Maintainer:
-    """The maintainer as given; what is missing comes from git's configuration, then from the login name."""
+    """Return the maintainer; missing parts come from git's configuration, then from the login name."""
     from linkwright.packages.creation.request import Maintainer
     from linkwright.packages.naming import is_email
 
@@ -127,14 +131,14 @@ def _maintainer(name: str | None, email: str | None) -> Maintainer:
     if not name:
         name = _git("user.name") or login
     if not email:
-        # An address without a domain, which git itself may make up, would be refused by colcon.
+        # colcon would reject an address without a domain, which git itself may generate.
         configured = _git("user.email")
         email = configured if is_email(configured) else f"{_address_part(login)}@todo.todo"
     return Maintainer(name, email)
 
 
 def _git(key: str) -> str:
-    """A value of git's configuration, or nothing when there is no git or no such value."""
+    """Return a value of git's configuration, or an empty string if there is no git or no such value."""
     try:
         result = subprocess.run(  # noqa: S603 - fixed words, no shell
             ["git", "config", key],  # noqa: S607 - the user's own git, found as the shell finds it
@@ -165,12 +169,12 @@ def _address_part(login: str) -> str:
 
 
 def _configure_questions(verbs: _Subparsers) -> None:
-    """Declare the commands that tell of packages."""
-    listing = verbs.add_parser("list", help="list the packages there are", description="list the packages there are")
+    """Declare the subcommands that describe packages."""
+    listing = verbs.add_parser("list", help="list all packages", description="list all packages")
     listing.set_defaults(answer=_list)
 
     prefix = verbs.add_parser(
-        "prefix", help="print where a package is installed", description="print where a package is installed"
+        "prefix", help="print the install prefix of a package", description="print the install prefix of a package"
     )
     prefix.add_argument("package", metavar="PACKAGE", help="the package")
     prefix.add_argument("--share", action="store_true", help="print its share folder instead of the prefix")
@@ -179,13 +183,15 @@ def _configure_questions(verbs: _Subparsers) -> None:
     executables = verbs.add_parser(
         "executables", help="list the executables of packages", description="list the executables of packages"
     )
-    executables.add_argument("package", metavar="PACKAGE", nargs="?", help="the package, default all")
+    executables.add_argument("package", metavar="PACKAGE", nargs="?", help="the package (default: all packages)")
     executables.add_argument("--full-path", action="store_true", help="print paths instead of names")
     executables.set_defaults(answer=_executables)
 
-    xml = verbs.add_parser("xml", help="print the package.xml of a package", description="print a package.xml")
+    xml = verbs.add_parser(
+        "xml", help="print the package.xml of a package", description="print the package.xml of a package"
+    )
     xml.add_argument("package", metavar="PACKAGE", help="the package")
-    xml.add_argument("-t", "--tag", metavar="TAG", help="only the texts of these elements below <package>")
+    xml.add_argument("-t", "--tag", metavar="TAG", help="print only the contents of these elements of <package>")
     xml.set_defaults(answer=_xml)
 
 
@@ -235,7 +241,7 @@ def _xml(arguments: argparse.Namespace) -> int:
                 phrase(
                     "package.xml of '{package}' has no element <{tag}>", package=arguments.package, tag=arguments.tag
                 ),
-                hint=did_you_mean(arguments.tag, names) or phrase("there are {names}", names=joined(names)),
+                hint=did_you_mean(arguments.tag, names) or phrase("available: {names}", names=joined(names)),
             )
         )
     for element in found:

@@ -1,4 +1,4 @@
-"""One line of a terminal that says how far a command has come."""
+"""A progress line in the terminal."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from linkwright.diagnostics.translation import localized
 
 
 class ProgressLine:
-    """Written over again and again; where standard error is no terminal, nothing is written."""
+    """A line that is overwritten on each update; nothing is written if standard error is not a terminal."""
 
     def __init__(self) -> None:
         self.shown = sys.stderr.isatty()
         self._written = False
 
     def show(self, text: Phrase) -> None:
-        """Write the line anew."""
+        """Rewrite the line."""
         if self.shown:
             sys.stderr.write(f"\r{localized(text)}\x1b[K")
             sys.stderr.flush()
             self._written = True
 
     def end(self) -> None:
-        """Take the line away."""
+        """Erase the line."""
         if self._written:
             sys.stderr.write("\r\x1b[K")
             self._written = False

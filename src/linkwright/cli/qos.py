@@ -1,4 +1,4 @@
-"""The options ``--qos-...`` of ``topic echo``, ``pub`` and others, and the profile that they ask for."""
+"""The options ``--qos-...`` of ``topic echo``, ``pub`` and others, and the profile that they set."""
 
 from __future__ import annotations
 
@@ -30,56 +30,57 @@ _DURABILITY = ("system_default", "transient_local", "volatile", "unknown", "best
 _LIVELINESS = ("system_default", "automatic", "manual_by_topic", "unknown", "best_available")
 
 _BURST = 100
-"""How many messages may wait for a verb, where the user does not say."""
+"""The default queue depth of a command."""
 _SINGLE = ("qos_reliability", "qos_durability", "qos_depth", "qos_history", "qos_liveliness")
 _LEASE = "qos_liveliness_lease_duration_seconds"
 
 
 def add_publisher_qos_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options for what a verb publishes with; see `profile`."""
+    """Declare the QoS options of a publishing command; see `profile`."""
     _add_arguments(
         parser,
         "default",
         profile_help="the profile to publish with (default: %(default)s): %(choices)s",
-        reliability_help="whether each message must arrive: %(choices)s",
-        durability_help="whether late joiners get what was sent: %(choices)s",
+        reliability_help="whether delivery is guaranteed: %(choices)s",
+        durability_help="whether late joiners receive earlier messages: %(choices)s",
     )
 
 
 def add_subscription_qos_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options for what a verb subscribes with; see `fitting_profile`."""
+    """Declare the QoS options of a subscribing command; see `fitting_profile`."""
     _add_arguments(
         parser,
         "sensor_data",
         profile_help="the profile to subscribe with (default: %(default)s): %(choices)s",
-        reliability_help="whether each message must arrive; as the publishers have it, if they agree: %(choices)s",
-        durability_help="whether late joiners get what was sent; as the publishers have it, if they agree: %(choices)s",
+        reliability_help="whether delivery is guaranteed (default: the publishers' policy, if they agree): %(choices)s",
+        durability_help="whether late joiners receive earlier messages (default: the publishers' policy, if "
+        "they agree): %(choices)s",
     )
 
 
 def _add_arguments(
     parser: argparse.ArgumentParser, default: str, *, profile_help: str, reliability_help: str, durability_help: str
 ) -> None:
-    def add_policy(name: str, values: Sequence[str], *, help: str) -> None:  # noqa: A002 - as argparse calls it
+    def add_policy(name: str, values: Sequence[str], *, help: str) -> None:  # noqa: A002 - argparse's name
         group.add_argument(f"--qos-{name}", metavar="POLICY", choices=values, help=help)
 
     group = parser.add_argument_group(title="quality of service")
     group.add_argument("--qos-profile", metavar="PROFILE", choices=_PROFILES, default=default, help=profile_help)
-    group.add_argument("--qos-depth", metavar="N", type=unsigned_int, help="the length of the queue")
-    add_policy("history", _HISTORY, help="which samples are kept: %(choices)s")
+    group.add_argument("--qos-depth", metavar="N", type=unsigned_int, help="the queue depth")
+    add_policy("history", _HISTORY, help="which samples to keep: %(choices)s")
     add_policy("reliability", _RELIABILITY, help=reliability_help)
     add_policy("durability", _DURABILITY, help=durability_help)
-    add_policy("liveliness", _LIVELINESS, help="how a publisher is known to be alive: %(choices)s")
+    add_policy("liveliness", _LIVELINESS, help="how publishers assert that they are alive: %(choices)s")
     group.add_argument(
         "--qos-liveliness-lease-duration-seconds",
         metavar="SECONDS",
         type=float,
-        help="how long a publisher may be silent before it counts as gone",
+        help="how long a publisher may stay silent before it counts as not alive",
     )
 
 
 def profile(arguments: argparse.Namespace) -> QoSProfile:
-    """The profile that the options ask for."""
+    """Return the profile that the options set."""
     from linkwright.graph.qos import profile as qos
     from linkwright.graph.time.values import Duration
 
@@ -103,10 +104,10 @@ def profile(arguments: argparse.Namespace) -> QoSProfile:
 
 
 def fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> QoSProfile:
-    """The profile to subscribe with: as asked for, else the strongest that all publishers of the topic offer.
+    """Return the profile to subscribe with: as the options set it, else the strictest that all publishers offer.
 
-    That is what ros2cli does: reliable and transient local where all are, so that what was published once is shown.
-    Where no depth is asked for, the queue is longer than ros2's, so that a burst is counted and shown in full.
+    As in ros2cli, it is reliable and transient local if all publishers are, so that a message published once is shown.
+    The default queue is longer than ros2's, so that a burst is counted and shown completely.
     """
     from linkwright.graph.qos.compatibility import fit
 

@@ -1,4 +1,4 @@
-"""The parameters of a running node, asked of its services, and their values as text."""
+"""The parameters of a running node, read through its services, and their values as text."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ TYPE_NAMES = {
     8: "double array",
     9: "string array",
 }
-"""What ros2 calls the types, by their numbers in rcl_interfaces/msg/ParameterType."""
+"""The names of the types in ros2, by their numbers in rcl_interfaces/msg/ParameterType."""
 
 
 class RemoteParameters:
     """The parameters of one node.
 
     Args:
-        session: of the verb.
+        session: the session of the command.
         node: the node's full name.
-        timeout: how long to wait for each answer, in seconds; as long as it takes when None.
+        timeout: how long to wait for each response, in seconds; None for no limit.
     """
 
     def __init__(self, session: Session, node: str, timeout: float | None = None) -> None:
@@ -44,10 +44,10 @@ class RemoteParameters:
 
     @classmethod
     async def of(cls, session: Session, arguments: argparse.Namespace) -> RemoteParameters:
-        """The parameters of the node that the command line names.
+        """Return the parameters of the node that the command line names.
 
         Raises:
-            LinkwrightError: CLI423, it is not running.
+            LinkwrightError: CLI423, the node is not running.
         """
         node = await find_node(
             session, arguments.node_name, hidden=arguments.include_hidden_nodes, timeout=arguments.timeout
@@ -55,35 +55,35 @@ class RemoteParameters:
         return cls(session, node, arguments.service_timeout)
 
     async def names(self, prefixes: Sequence[str] = ()) -> list[str]:
-        """Names of the declared parameters, sorted; only those below prefixes where some are given."""
+        """Return the names of the declared parameters, sorted, optionally only those with one of the prefixes."""
         response = await self._call("list_parameters", prefixes=list(prefixes))
         return sorted(response.result.names)
 
     async def values(self, names: Sequence[str]) -> list[Any]:
-        """Values (rcl_interfaces/msg/ParameterValue) in the order of the names."""
+        """Return the values (rcl_interfaces/msg/ParameterValue) in the order of the names."""
         response = await self._call("get_parameters", names=list(names))
         return list(response.values)
 
     async def descriptors(self, names: Sequence[str]) -> list[Any]:
-        """Descriptors (rcl_interfaces/msg/ParameterDescriptor) in the order of the names."""
+        """Return the descriptors (rcl_interfaces/msg/ParameterDescriptor) in the order of the names."""
         response = await self._call("describe_parameters", names=list(names))
         return list(response.descriptors)
 
     async def set(self, parameters: Sequence[Any]) -> list[Any]:
-        """Set parameters (rcl_interfaces/msg/Parameter) one by one; a result for each."""
+        """Set parameters (rcl_interfaces/msg/Parameter) one by one, and return a result for each."""
         response = await self._call("set_parameters", parameters=list(parameters))
         return list(response.results)
 
     async def set_together(self, parameters: Sequence[Any]) -> Any:
-        """Set all parameters or none; the result."""
+        """Set all parameters or none, and return the result."""
         response = await self._call("set_parameters_atomically", parameters=list(parameters))
         return response.result
 
     async def must_have(self, names: Sequence[str]) -> None:
-        """Make sure that parameters are declared.
+        """Check that parameters are declared.
 
         Raises:
-            LinkwrightError: CLI424 for each that is not.
+            LinkwrightError: CLI424 for each that is not declared.
         """
         there = await self.names()
         missing = [
@@ -108,7 +108,7 @@ class RemoteParameters:
 
 
 def parameter_of(name: str, text: str) -> Any:
-    """A parameter (rcl_interfaces/msg/Parameter) with the value that a word stands for, read as YAML as ros2 does."""
+    """Return a parameter (rcl_interfaces/msg/Parameter) with a value that is read as YAML, as ros2 does."""
     import yaml
 
     from linkwright.graph.parameters.parameter import Parameter, ParameterType
@@ -132,6 +132,6 @@ def parameter_of(name: str, text: str) -> Any:
 
 
 def print_result(result: Any, good: str, bad: str) -> None:
-    """Say whether something was set: one of two texts, and the reason where there is one."""
+    """Print one of two texts for success and failure, with the reason if there is one."""
     text = good if result.successful else bad
     print(f"{text}: {result.reason}" if result.reason else text, file=sys.stdout if result.successful else sys.stderr)

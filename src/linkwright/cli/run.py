@@ -13,21 +13,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.usage = f"{parser.prog} [options] PACKAGE EXECUTABLE [ARGUMENT ...] [--ros-args ...]"
     parser.add_argument(
-        "--prefix", metavar="COMMAND", help="put a command before the executable, such as 'gdb -ex run --args'"
+        "--prefix", metavar="COMMAND", help="prefix the command line with this command, such as 'gdb -ex run --args'"
     )
     add_viewer_options(parser)
     parser.add_argument("package", metavar="PACKAGE", help="the package")
-    parser.add_argument("executable", metavar="EXECUTABLE", help="its executable")
+    parser.add_argument("executable", metavar="EXECUTABLE", help="an executable of the package")
     parser.add_argument(
         "words",
         metavar="ARGUMENT",
         nargs=argparse.REMAINDER,
-        help="what the executable is given, ROS arguments included",
+        help="arguments of the executable, including ROS arguments",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run it; returns its exit status. Signals are the executable's, because it takes the place of this process."""
+    """Run the executable and return its exit status; it replaces this process and thus gets the signals."""
     from linkwright import standins
     from linkwright.launch import LaunchOptions, find_program, is_viewer, run_viewer
     from linkwright.packages import PackageFinder

@@ -1,4 +1,4 @@
-"""``linkwright service``: the services of the running graph, and calls of them."""
+"""``linkwright service``: list and call the services of the running graph."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 
 
 _AT_ONCE = 0.2
-"""Seconds within which a service may appear before it is said that it is waited for."""
+"""Seconds to wait for a service before the user is informed."""
 
 
 def add_service_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the service and how it is looked for."""
+    """Declare the service, and whether hidden services count."""
     add_session_arguments(parser)
-    parser.add_argument("service_name", metavar="SERVICE", help="such as /add_two_ints")
+    parser.add_argument("service_name", metavar="SERVICE", help="the service, such as /add_two_ints")
     add_hidden_argument(parser, "--include-hidden-services", hidden_help="consider hidden services as well")
 
 
@@ -68,7 +68,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 def configure_find(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("service_type", metavar="TYPE", help="such as std_srvs/srv/SetBool")
+    parser.add_argument("service_type", metavar="TYPE", help="the type, such as std_srvs/srv/SetBool")
     add_count_argument(parser, "service")
     add_hidden_argument(parser, "--include-hidden-services", hidden_help="consider hidden services as well")
 
@@ -84,7 +84,7 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 
 def run_info(arguments: argparse.Namespace) -> int:
-    """Print what is known of the service, as ros2 does."""
+    """Print information on the service, as ros2 does."""
     name = absolute(arguments.service_name)
 
     async def job(session: Session) -> int:
@@ -103,20 +103,24 @@ def configure_type(parser: argparse.ArgumentParser) -> None:
 
 
 def run_type(arguments: argparse.Namespace) -> int:
-    """Print the types of the service, a line each."""
+    """Print the types of the service, one per line."""
     return _SERVICES.print_types(arguments, arguments.service_name)
 
 
 def configure_call(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("service_name", metavar="SERVICE", help="such as /add_two_ints")
-    parser.add_argument("service_type", metavar="TYPE", help="such as example_interfaces/srv/AddTwoInts")
-    add_values_arguments(
-        parser, values_help="the request in YAML, such as '{a: 1, b: 2}'; fields left out have their defaults"
+    parser.add_argument("service_name", metavar="SERVICE", help="the service, such as /add_two_ints")
+    parser.add_argument(
+        "service_type", metavar="TYPE", help="the service's type, such as example_interfaces/srv/AddTwoInts"
     )
-    parser.add_argument("-r", "--rate", metavar="N", type=positive_float, help="call again and again, at N hertz")
-    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="give up waiting after so long")
+    add_values_arguments(
+        parser, values_help="the request in YAML, such as '{a: 1, b: 2}'; omitted fields keep their defaults"
+    )
+    parser.add_argument(
+        "-r", "--rate", metavar="N", type=positive_float, help="call the service repeatedly, at N hertz"
+    )
+    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="stop waiting after this time")
 
 
 def run_call(arguments: argparse.Namespace) -> int:
@@ -135,7 +139,9 @@ def run_call(arguments: argparse.Namespace) -> int:
             _check_type(session, name, kind.TYPE_NAME)
             print("waiting for service to become available...")
             if not await session.until(client.service_is_ready, arguments.timeout):
-                message = phrase("service '{name}' did not appear in {timeout} s", name=name, timeout=arguments.timeout)
+                message = phrase(
+                    "service '{name}' did not appear within {timeout} s", name=name, timeout=arguments.timeout
+                )
                 raise LinkwrightError(Diagnostic("CLI421", message))
         loop = asyncio.get_running_loop()
         while True:
@@ -146,7 +152,9 @@ def run_call(arguments: argparse.Namespace) -> int:
                 raise LinkwrightError(
                     Diagnostic(
                         "CLI422",
-                        phrase("service '{name}' did not answer in {timeout} s", name=name, timeout=arguments.timeout),
+                        phrase(
+                            "service '{name}' did not respond within {timeout} s", name=name, timeout=arguments.timeout
+                        ),
                     )
                 )
             print(f"response:\n{response!r}\n")
@@ -158,7 +166,7 @@ def run_call(arguments: argparse.Namespace) -> int:
 
 
 def _check_type(session: Session, name: str, asked: str) -> None:
-    """A service that is there with another type will never be ready; say so instead of waiting."""
+    """Report a service with another type, instead of waiting for it in vain."""
     from linkwright.graph.endpoints.info import EndpointKind
 
     servers = [
@@ -177,13 +185,18 @@ def _check_type(session: Session, name: str, asked: str) -> None:
 def configure_echo(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_service_arguments(parser)
-    parser.add_argument("service_type", metavar="TYPE", nargs="?", help="such as std_srvs/srv/SetBool; its own")
+    parser.add_argument(
+        "service_type",
+        metavar="TYPE",
+        nargs="?",
+        help="the type, such as std_srvs/srv/SetBool (default: the service's type)",
+    )
     add_format_arguments(parser, flow_help="print lists in brackets, on one line")
     add_subscription_qos_arguments(parser)
 
 
 def run_echo(arguments: argparse.Namespace) -> int:
-    """Print events until the user ends it, as ros2 does."""
+    """Print events until the user interrupts it, as ros2 does."""
     name = absolute(arguments.service_name)
     form = EchoFormat.of(arguments)
 
@@ -195,7 +208,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
         topic = name + EVENT_TOPIC_SUFFIX
         if not session.node.get_publishers_info_by_topic(topic):
             print(
-                f"nothing is told of '{name}' yet: its server and clients do so after configure_introspection()",
+                f"service '{name}' has no events yet: servers and clients publish them after configure_introspection()",
                 file=sys.stderr,
             )
 
@@ -210,7 +223,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
 
 def _event_text(event: Any, form: EchoFormat) -> str:
-    """An event as ros2 prints it: in YAML the kind by its name."""
+    """Return an event as ros2 prints it: in YAML, with the name of its kind."""
     from linkwright.graph.endpoints.service_introspection import EventType
 
     kind = event.info.event_type
@@ -223,10 +236,12 @@ VERBS = {
     "echo": SubVerb(
         configure_echo,
         run_echo,
-        help="print what clients ask of a service and what it answers, where they tell (service introspection)",
+        help="print the requests and responses of a service, if service introspection is enabled",
     ),
     "find": SubVerb(configure_find, run_find, help="list the services of a type"),
-    "info": SubVerb(configure_info, run_info, help="say what type a service has and how many serve and call it"),
+    "info": SubVerb(
+        configure_info, run_info, help="print the type of a service and the numbers of its clients and servers"
+    ),
     "list": SubVerb(configure_list, run_list, help="list the services"),
     "type": SubVerb(configure_type, run_type, help="print the type of a service"),
 }

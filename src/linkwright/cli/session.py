@@ -1,7 +1,7 @@
-"""The graph of a verb that looks at or acts on running nodes: joined over DDS, with a hidden node of its own.
+"""The session of a command on running nodes: a graph that is joined over DDS or Zenoh, and a hidden node.
 
-A verb gives `run_in_graph` a coroutine. Interrupted with Ctrl-C it is cancelled, the graph is left properly, and the
-command ends with status 130; one whose reader went away ends quietly.
+A command passes a coroutine to `run_in_graph`. Ctrl-C cancels it, the graph is left cleanly, and the command exits with
+status 130. If the reader of its output exits, the command ends quietly.
 """
 
 from __future__ import annotations
@@ -37,27 +37,30 @@ _POLL = 0.01
 
 
 def add_session_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options that ros2 gives every verb that looks at the graph."""
-    parser.add_argument(
+    """Declare the options of every ros2 command on the graph."""
+    group = parser.add_argument_group(title="ROS graph")
+    group.add_argument(
         "--spin-time",
         metavar="SECONDS",
         type=float,
-        help="how long to wait for other nodes to be discovered, instead of until they have been",
+        help="how long to wait for discovery (default: until the graph is discovered)",
     )
-    parser.add_argument("-s", "--use-sim-time", action="store_true", help="go by the time that /clock tells")
-    parser.add_argument("--no-daemon", action="store_true", help="accepted for ros2's sake; there is no daemon")
+    group.add_argument("-s", "--use-sim-time", action="store_true", help="use simulated time (/clock)")
+    group.add_argument(
+        "--no-daemon", action="store_true", help="accepted for compatibility with ros2; there is no daemon"
+    )
 
 
 class Session:
-    """The graph and the node of a running verb.
+    """The graph and the node of a running command.
 
-    A `SignalWatch` can end it: the verb is done then.
+    A `SignalWatch` can end it.
 
     Attributes:
-        graph: joined with what runs outside.
-        node: the verb's own hidden node.
-        loop: the loop it runs on.
-        visiting: whether a signal has to break something off; never.
+        graph: the graph, joined with other processes.
+        node: the command's hidden node.
+        loop: the event loop.
+        visiting: whether a signal has to interrupt a visit; always False.
     """
 
     visiting = False
@@ -69,39 +72,39 @@ class Session:
         self._outcome: asyncio.Future[int] = self.loop.create_future()
 
     def finish(self, status: int = 0) -> None:
-        """Let `finished` return a status."""
+        """Make `finished` return a status."""
         if not self._outcome.done():
             self._outcome.set_result(status)
 
     def interrupt(self, _reason: str) -> None:
-        """Let `finished` return 0, as the user said so."""
+        """Make `finished` return 0, on the user's request."""
         self.finish()
 
     def seconds_to_end(self) -> float:
-        """No time: there are no processes."""
+        """Return 0: there are no processes."""
         return 0.0
 
     def kill_all(self) -> None:
-        """There are no processes to be ended."""
+        """Do nothing: there are no processes to kill."""
 
     def guarded(self, callback: Callable[..., object]) -> Callable[..., None]:
-        """A callback for the graph whose errors end the verb, where the graph itself would log them and go on."""
+        """Return a callback whose errors end the command; the graph itself would log them and continue."""
 
         def call(*arguments: Any) -> None:
             if self._outcome.done():
                 return
             try:
                 callback(*arguments)
-            except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - handed on to the verb
+            except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - passed on to the command
                 if not self._outcome.done():
                     self._outcome.set_exception(error)
 
         return call
 
     def receiver(self, callback: Callable[..., object]) -> Callable[..., None]:
-        """A guarded callback for a subscription, of as many arguments as the one given.
+        """Return a guarded callback for a subscription, with the same number of arguments.
 
-        The graph tells by the number whether the callback takes the message alone, or also what is known of it beside.
+        From their number, the graph knows whether the callback takes only the message, or its metadata too.
         """
         guarded = self.guarded(callback)
 
@@ -114,7 +117,7 @@ class Session:
         return take if len(signature(callback).parameters) == 1 else take_both
 
     def every(self, period: float, callback: Callable[[], object]) -> None:
-        """Call a function periodically until the verb is done."""
+        """Call a function periodically until the command ends."""
         loop = asyncio.get_running_loop()
         guarded = self.guarded(callback)
         due = loop.time()
@@ -130,12 +133,12 @@ class Session:
         loop.call_at(due, call)
 
     async def finished(self, timeout: float | None = None) -> int | None:
-        """Wait until the verb is done, and return its status; None when `timeout` seconds have passed first."""
+        """Wait for the end of the command, and return its status, or None after `timeout` seconds."""
         done, _ = await asyncio.wait([self._outcome], timeout=timeout)
         return self._outcome.result() if done else None
 
     async def until(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
-        """Wait until something holds, looking again and again; False when `timeout` seconds have passed first."""
+        """Poll a condition until it holds; return False after `timeout` seconds."""
         loop = asyncio.get_running_loop()
         end = None if timeout is None else loop.time() + timeout
         while not condition():
@@ -145,7 +148,7 @@ class Session:
         return True
 
     async def answer(self, future: Future[T], timeout: float | None = None) -> T | None:
-        """The result of a future of the graph; None when `timeout` seconds have passed first."""
+        """Wait for a future of the graph and return its result, or None after `timeout` seconds."""
         loop = asyncio.get_running_loop()
         ended = asyncio.Event()
         future.add_waiter(lambda: loop.call_soon_threadsafe(ended.set))
@@ -170,11 +173,11 @@ async def graph_session(
     """Join the graph, with a hidden node, until the block ends.
 
     Args:
-        node_name: the node's name; one of its own for each process when left out.
-        spin_time: seconds to wait for discovery; when left out, until others have told what they have.
-        use_sim_time: whether the node goes by ``/clock``.
+        node_name: the node's name; unique to the process if omitted.
+        spin_time: seconds to wait for discovery; if omitted, until the other participants have been discovered.
+        use_sim_time: whether the node uses ``/clock``.
         remappings: rules ``(from, to)`` for the names that the node uses.
-        only_looks: whether the verb asks what there is and speaks to nobody; its node is not seen outside then.
+        only_looks: whether the command only reads the graph; its node is invisible to others then.
 
     Raises:
         LinkwrightError: see `join_others`.
@@ -202,15 +205,15 @@ def run_in_graph(
     only_looks: bool = False,
     signals: SignalWatch | None = None,
 ) -> int:
-    """Run a verb's coroutine in the graph; its result is the exit status.
+    """Run a command's coroutine in the graph, and return its result as the exit status.
 
     Args:
-        arguments: with those of `add_session_arguments`, each of which may be missing.
-        job: what the verb does.
+        arguments: the parsed arguments; those of `add_session_arguments` may be missing.
+        job: the coroutine function of the command.
         node_name: see `graph_session`.
         remappings: see `graph_session`.
         only_looks: see `graph_session`.
-        signals: handles signals, the first of which finishes the session; when left out, they break the verb off.
+        signals: a signal handler whose first signal finishes the session; if omitted, signals interrupt the command.
     """
 
     async def main() -> int:
@@ -235,24 +238,23 @@ def run_in_graph(
 
 
 def open_graph() -> Graph:
-    """A graph on the running event loop."""
+    """Open a graph on the running event loop."""
     from linkwright.graph import Graph
 
     return Graph()
 
 
 async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool = False) -> None:
-    """Connect the graph with what runs in other processes and wait until that is discovered.
+    """Join the graph with other processes, and wait until they are discovered.
 
     Raises:
-        LinkwrightError: CLI401, there is neither DDS nor Zenoh; DDS101, ROS_DOMAIN_ID is no domain; DDS111, a
-            setting of Zenoh is not well formed; DDS121, security is enforced; DDS102, DDS112, the domain cannot be
-            joined.
+        LinkwrightError: CLI401, neither DDS nor Zenoh is available; DDS101, ROS_DOMAIN_ID is not a domain; DDS111, a
+            setting of Zenoh is malformed; DDS121, security is enforced; DDS102, DDS112, the domain cannot be joined.
     """
     from linkwright.wire.joining import available, check_settings, join, why_not
 
     if available():
-        check_settings()  # raises what joining would only log
+        check_settings()  # raises errors that joining would only log
     transport = join(graph, only_looks=only_looks, must_join=True) if available() else None
     if transport is None:
         raise LinkwrightError(
@@ -264,7 +266,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
             )
         )
     while not await asyncio.to_thread(transport.wait_until_ready, _LONGEST_JOINING) and transport.waits:
-        pass  # it says what it waits for
+        pass  # it logs what it waits for
     if transport.problem is not None:
         raise transport.problem
     if spin_time is not None:
@@ -274,7 +276,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
 
 
 class TerminationEnds:
-    """While this is entered, SIGTERM ends the process as Ctrl-C does, so that the graph is left properly."""
+    """Makes SIGTERM end the process as Ctrl-C does while it is entered, so that the graph is left cleanly."""
 
     def __enter__(self) -> None:
         self._before: Any = None

@@ -1,4 +1,4 @@
-"""``linkwright shell``: a shell with the commands of ROS 2 in it."""
+"""``linkwright shell``: a shell with the commands of ROS 2."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "command",
         metavar="COMMAND",
         nargs=argparse.REMAINDER,
-        help="one command to run there instead, with its words; Linkwright ends with its exit status",
+        help="a command to run in the shell instead, with its arguments; its exit status is returned",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the shell or the command; the exit status is its own."""
+    """Run the shell or the command, and return its exit status."""
     from linkwright.cli.completion.scripts import shell_script
     from linkwright.shell import run_shell
     from linkwright.shell.instead import INSTEAD

@@ -1,4 +1,4 @@
-"""``linkwright sim``: simulate a world, with a robot in it."""
+"""``linkwright sim``: simulate a world, optionally with a robot."""
 
 from __future__ import annotations
 
@@ -20,20 +20,24 @@ from linkwright.cli.view import add_viewer_options
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("world", metavar="WORLD", help="a file in SDF, or the name of a world; empty is a plane")
-    parser.add_argument("robot", metavar="ROBOT", nargs="?", help="a URDF, xacro or SDF file of what is put into it")
+    parser.add_argument(
+        "world", metavar="WORLD", help="an SDF file, or the name of a world; the world 'empty' is a ground plane"
+    )
+    parser.add_argument(
+        "robot", metavar="ROBOT", nargs="?", help="the URDF, xacro or SDF file of a robot or model to add"
+    )
     add_values(parser, values_help="values for the robot's <xacro:arg>")
     add_place_options(parser)
     add_simulation_options(parser)
     parser.add_argument("--step", metavar="S", type=positive, default=0.0, help="the time step (default: the world's)")
-    parser.add_argument("--seed", metavar="N", type=int, default=0, help="what noise follows from (default: 0)")
-    parser.add_argument("--pause", action="store_true", help="begin paused")
-    parser.add_argument("--gazebo-mistakes", action="store_true", help="let plugins make the known mistakes of Gazebo")
+    parser.add_argument("--seed", metavar="N", type=int, default=0, help="the seed of noise (default: 0)")
+    parser.add_argument("--pause", action="store_true", help="start paused")
+    parser.add_argument("--gazebo-mistakes", action="store_true", help="let plugins reproduce the known bugs of Gazebo")
     add_viewer_options(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Simulate until the user ends it; 1 when something is wrong with the world or the robot."""
+    """Simulate until the user interrupts it; return 1 if the world or the robot has errors."""
     from linkwright.hosting.plans import HostOptions
     from linkwright.hosting.simulated import SimulatedWorld, run_simulated
     from linkwright.packages import PackageFinder
@@ -41,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.simulation.server.worlds import load_world
 
     load_mujoco()
-    load_world(arguments.world)  # a world that cannot be had is said at once, and not in the middle of a log
+    load_world(arguments.world)  # report a missing world at once, not in the middle of a log
     path = Path(arguments.robot or arguments.world).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     world = SimulatedWorld(

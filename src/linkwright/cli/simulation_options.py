@@ -1,4 +1,4 @@
-"""Options that ``linkwright sim``, ``drive`` and ``spawn`` share, and reading the models for a simulation."""
+"""Options that ``linkwright sim``, ``drive`` and ``spawn`` share, and the models of a simulation."""
 
 from __future__ import annotations
 
@@ -21,30 +21,31 @@ if TYPE_CHECKING:
 
 
 def add_simulation_options(parser: argparse.ArgumentParser) -> None:
-    """Declare whether there is a page, how long simulated time goes on, and how fast."""
-    parser.add_argument("--headless", action="store_true", help="without a page")
-    parser.add_argument(
-        "--seconds", metavar="S", type=positive, default=0.0, help="end after so many simulated seconds"
+    """Declare the options for the page, the duration and the rate of a simulation."""
+    group = parser.add_argument_group(title="simulation")
+    group.add_argument("--headless", action="store_true", help="run without a page in the browser")
+    group.add_argument(
+        "--seconds", metavar="S", type=positive, default=0.0, help="stop after this many simulated seconds"
     )
-    parser.add_argument(
+    group.add_argument(
         "--rate",
         metavar="FACTOR",
         type=_rate,
         default=0.0,
-        help="simulated seconds in a real one, or max (default: as the world says)",
+        help="simulated seconds per real second, or max (default: the world's)",
     )
-    parser.add_argument(
+    group.add_argument(
         "--record",
         metavar="PATH",
-        help="record all topics with their simulated times, as bag record -a does: into a folder, or a file NAME.mcap",
+        help="record all topics with simulated time, as bag record -a does, into a folder or a file NAME.mcap",
     )
 
 
 def positive(text: str) -> float:
-    """A positive number of seconds.
+    """Parse a positive number of seconds.
 
     Raises:
-        argparse.ArgumentTypeError: it is none.
+        argparse.ArgumentTypeError: the text is not such a number.
     """
     try:
         value = float(text)
@@ -68,18 +69,19 @@ def _rate(text: str) -> float:
 
 
 def add_place_options(parser: argparse.ArgumentParser) -> None:
-    """Declare where a robot begins."""
-    parser.add_argument("-x", metavar="M", type=float, default=0.0, help="where the robot begins, along x (m)")
-    parser.add_argument("-y", metavar="M", type=float, default=0.0, help="the same along y")
-    parser.add_argument("-z", metavar="M", type=float, default=0.0, help="the same upwards")
-    parser.add_argument("-Y", metavar="RAD", type=float, default=0.0, help="how far the robot is turned (rad)")
+    """Declare the initial pose of a robot."""
+    group = parser.add_argument_group(title="initial pose")
+    group.add_argument("-x", metavar="M", type=float, default=0.0, help="the initial x of the robot (m)")
+    group.add_argument("-y", metavar="M", type=float, default=0.0, help="the initial y (m)")
+    group.add_argument("-z", metavar="M", type=float, default=0.0, help="the initial z (m)")
+    group.add_argument("-Y", metavar="RAD", type=float, default=0.0, help="the initial yaw of the robot (rad)")
 
 
 def recording(arguments: argparse.Namespace) -> AbstractContextManager[BagWriter | None]:
-    """The recording that `add_simulation_options` asks for, which is closed at the end of the block; None for none.
+    """Open the recording that `add_simulation_options` declares until the end of the block, or return None.
 
     Raises:
-        LinkwrightError: BAG105, the folder or file exists or cannot be made; BAG107, `rosbags` is not installed.
+        LinkwrightError: BAG105, the folder or file exists or cannot be created; BAG107, `rosbags` is not installed.
     """
     if arguments.record is None:
         return nullcontext()
@@ -89,12 +91,12 @@ def recording(arguments: argparse.Namespace) -> AbstractContextManager[BagWriter
 
 
 class LoadedModel(NamedTuple):
-    """A model that is put into a world.
+    """A model to add to a world.
 
     Attributes:
-        text: URDF or SDF.
-        name: the one that it says.
-        description: of a robot in URDF; None for a model in SDF.
+        text: the URDF or SDF text.
+        name: the name in the text.
+        description: the description of a robot in URDF; None for a model in SDF.
     """
 
     text: str
@@ -103,12 +105,12 @@ class LoadedModel(NamedTuple):
 
 
 def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> LoadedModel | None:
-    """Read a robot or model; None where it is wrong, which has been told then.
+    """Read a robot or model; return None for one with errors, which are printed.
 
     Args:
-        path: URDF, xacro or SDF.
+        path: a URDF, xacro or SDF file.
         values: name -> value of the xacro arguments.
-        finder: where packages are.
+        finder: the package finder.
     """
     from linkwright.descriptions import examine, is_world
     from linkwright.descriptions.conversion import as_sdf
@@ -132,7 +134,7 @@ def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> 
 
 
 def _found_beside(model: Model, folder: Path, finder: PackageFinder) -> Model:
-    """A model whose addresses lead to what only its own folder has: a text has none."""
+    """Return a model whose URIs that only its own folder resolves are absolute, because a text has no folder."""
     from linkwright.descriptions.conversion import with_addresses
     from linkwright.packages import PackageFinder
     from linkwright.sdf.resources import Missing, ResourceFinder
@@ -151,4 +153,4 @@ def _found_beside(model: Model, folder: Path, finder: PackageFinder) -> Model:
 
 def _no_model(path: Path) -> Diagnostic:
     message = phrase("there is no model in '{path}'", path=str(path))
-    return Diagnostic("CLI331", message, hint=phrase("the robot is to be URDF, xacro, or SDF with a <model>"))
+    return Diagnostic("CLI331", message, hint=phrase("a robot must be URDF, xacro, or SDF with a <model>"))

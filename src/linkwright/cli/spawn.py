@@ -1,4 +1,4 @@
-"""``linkwright spawn``: put a robot or model into a world that is being simulated."""
+"""``linkwright spawn``: add a robot or model to a running simulation."""
 
 from __future__ import annotations
 
@@ -19,23 +19,29 @@ if TYPE_CHECKING:
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("file", metavar="FILE", help="a URDF, xacro or SDF file of what is put into the world")
+    parser.add_argument(
+        "file", metavar="FILE", help="the URDF, xacro or SDF file of a robot or model to add to the world"
+    )
     add_values(parser, values_help="values for the file's <xacro:arg>")
     parser.add_argument(
-        "-name", "--name", metavar="NAME", default="", help="what it is called in the world (default: as the file says)"
+        "-name",
+        "--name",
+        metavar="NAME",
+        default="",
+        help="the model's name in the world (default: the name in the file)",
     )
     parser.add_argument(
-        "--namespace", metavar="NAMESPACE", default="", help="begins the names of what its plugins bring to ROS"
+        "--namespace", metavar="NAMESPACE", default="", help="the namespace of the ROS names that its plugins use"
     )
     add_place_options(parser)
     add_session_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Ask the simulation to take the model; 1 when the file is wrong.
+    """Ask the simulation to add the model; return 1 if the file has errors.
 
     Raises:
-        LinkwrightError: CLI332, there is no simulation; CLI333, it does not take the model.
+        LinkwrightError: CLI332, there is no simulation; CLI333, it rejects the model.
     """
     from linkwright.nodes.gazebo.spawner import SPAWN_SERVICE, Entity, spawn_request
     from linkwright.packages import PackageFinder
@@ -55,12 +61,12 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             response = await call(session, SPAWN_SERVICE, "/spawn_entity", spawn_request(entity, model.text))
         except NoAnswerError as error:
-            message = phrase("there is no simulation to put '{name}' into", name=entity.name)
+            message = phrase("there is no running simulation to add '{name}' to", name=entity.name)
             hint = phrase("start one, such as `linkwright sim empty`, on the same ROS_DOMAIN_ID")
             raise LinkwrightError(Diagnostic("CLI332", message, hint=hint)) from error
         if not response.success:
             reason = foreign(response.status_message)
-            message = phrase("the simulation does not take '{name}': {reason}", name=entity.name, reason=reason)
+            message = phrase("the simulation rejects '{name}': {reason}", name=entity.name, reason=reason)
             raise LinkwrightError(Diagnostic("CLI333", message))
         print(response.status_message)
         return 0

@@ -27,34 +27,38 @@ if TYPE_CHECKING:
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("file", metavar="FILE", help="a Python file with a function below @scenario(...)")
+    parser.add_argument("file", metavar="FILE", help="a Python file with a function decorated with @scenario(...)")
     add_values(
         parser,
-        values_help="other values of a parameter than the file says, with commas between them",
+        values_help="values of a parameter, separated by commas, which replace those in the file",
         metavar="NAME:=VALUES",
     )
     parser.add_argument(
-        "--seeds", metavar="N", type=positive_int, help="so many seeds, from 0 on, whatever the file says"
+        "--seeds",
+        metavar="N",
+        type=positive_int,
+        help="the number of seeds, starting at 0, which replace those in the file",
     )
     parser.add_argument(
-        "--workers", metavar="N", type=positive_int, help="so many processes at once (default: one for each processor)"
+        "--workers",
+        metavar="N",
+        type=positive_int,
+        help="the number of parallel processes (default: one for each processor)",
     )
     parser.add_argument(
         "--out",
         metavar="TABLE",
         help="the table, .csv or .parquet; the summary goes beside it (default: the name of FILE, .csv)",
     )
-    parser.add_argument("--resume", action="store_true", help="go on with a sweep that was interrupted")
+    parser.add_argument("--resume", action="store_true", help="resume an interrupted sweep")
+    parser.add_argument("--rerun", metavar="ROW", type=positive_int, help="run one row again, and print its results")
     parser.add_argument(
-        "--rerun", metavar="ROW", type=positive_int, help="run one row again, and print what it comes to"
-    )
-    parser.add_argument(
-        "--ray", metavar="ADDRESS", help="run it on a Ray cluster: auto, local, HOST:PORT or ray://HOST:PORT"
+        "--ray", metavar="ADDRESS", help="run on a Ray cluster: auto, local, HOST:PORT or ray://HOST:PORT"
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run what is to be run; 1 when a run failed, 130 when it was interrupted."""
+    """Run the sweep; return 1 if a run failed, 130 if it was interrupted."""
     from linkwright.sweep.plan import planned, with_values
     from linkwright.sweep.running import prepare
     from linkwright.sweep.sweep import Sweep
@@ -67,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
     scenario = with_values(prepare(path), parse_assignments(arguments.values), arguments.seeds)
     if arguments.rerun is not None:
         return _rerun(scenario, arguments.rerun)
-    os.chdir(began_in)  # the folder of the scenario is that of its processes
+    os.chdir(began_in)  # the processes run in the folder of the scenario
     words = ["linkwright", "sweep", arguments.file, *arguments.values]
     if arguments.seeds is not None:
         words += ["--seeds", str(arguments.seeds)]
@@ -82,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(localized(phrase("Created file {file}", file=display_path(written))))
     if missing:
         left = counted("{count} run is left", "{count} runs are left", missing)
-        say(localized(phrase("{left}; `--resume` goes on", left=left)))
+        say(localized(phrase("{left}; `--resume` continues the sweep", left=left)))
         return INTERRUPTED
     return FINDINGS if table.failed else FINE
 
@@ -99,7 +103,7 @@ def _runner(arguments: argparse.Namespace, path: Path) -> Runner:
 
 
 def _rerun(scenario: Scenario, row: int) -> int:
-    """Run one row in this process, and print its values and results, or where it fails."""
+    """Run one row in this process, and print its values and results, or its error."""
     from linkwright.sweep.plan import planned
     from linkwright.sweep.running import results_of
 
@@ -122,26 +126,26 @@ def _rerun(scenario: Scenario, row: int) -> int:
 
 
 class _Progress:
-    """Says how far a sweep has come, and counts what it made."""
+    """Shows the progress of a sweep, and counts its runs."""
 
     def __init__(self) -> None:
         self.made = 0
         self._line = ProgressLine()
 
     def tell(self, done: int, count: int, failed: int) -> None:
-        """Show how many are done."""
+        """Show the number of finished runs."""
         self.made += 1
         self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done, count=count, failed=failed))
 
     def end(self) -> None:
-        """Leave the line."""
+        """End the line."""
         self._line.end()
 
 
 def _tell(table: Table, seconds: float, made: int) -> None:
-    """How it went, to standard error."""
+    """Print a summary to standard error."""
     told = phrase(
-        "{runs} in {seconds} s, {rate} a second, {failed} failed",
+        "{runs} in {seconds} s, {rate} per second, {failed} failed",
         runs=counted("{count} run", "{count} runs", made),
         seconds=f"{seconds:.1f}",
         rate=f"{made / max(seconds, 1e-9):.1f}",

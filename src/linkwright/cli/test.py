@@ -1,4 +1,4 @@
-"""``linkwright test``: run the tests of a file for launch_testing, as ``launch_test`` does."""
+"""``linkwright test``: run the launch_testing tests of a file, as ``launch_test`` does."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--show-args",
         "--show-arguments",
         action="store_true",
-        help="list the arguments of the description and end",
+        help="list the arguments of the launch description and exit",
     )
-    parser.add_argument("--junit-xml", metavar="REPORT", help="write a report for CI servers to a file")
-    parser.add_argument("--package-name", metavar="NAME", help="the package that the report names")
-    parser.add_argument("-v", "--verbose", action="store_true", help="tell in detail what the launcher does")
+    parser.add_argument("--junit-xml", metavar="REPORT", help="write a JUnit report for CI servers to this file")
+    parser.add_argument("--package-name", metavar="NAME", help="the package name in the report")
+    parser.add_argument("-v", "--verbose", action="store_true", help="log in detail what the launcher does")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the tests; returns 0 if all passed. They run in a process of their own, with the stand-ins."""
+    """Run the tests in a separate process with the stand-ins, and return 0 if all passed."""
     from linkwright.packages import PackageFinder
     from linkwright.packages.programs.workspace_environment import workspace_environment
     from linkwright.shell.programs import offer_programs, offer_ros_variables

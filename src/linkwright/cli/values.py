@@ -1,4 +1,4 @@
-"""Values that a user types for a message, a request or a goal: YAML, checked against the type, with places."""
+"""Values that a user types for a message, a request or a goal: YAML that is checked against the type."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ if TYPE_CHECKING:
 
 _NAME = "<values>"
 _FAULTS = (AssertionError, TypeError, ValueError, AttributeError, OverflowError)
-"""What assignment to a field raises for a value that the field cannot have, as rosidl's generated classes do."""
+"""The exceptions of an assignment of an invalid value to a field, as in rosidl's generated classes."""
 
 _AUTOMATIC = ("auto", "now")
 
 
 def add_values_arguments(parser: argparse.ArgumentParser, *, values_help: str, metavar: str = "VALUES") -> Any:
-    """Declare the values, which may come from standard input instead.
+    """Declare the values, and the option to read them from standard input.
 
     Args:
-        parser: of the verb.
-        values_help: what they are, with an example.
-        metavar: what the help calls them.
+        parser: the parser of the command.
+        values_help: the help text, with an example.
+        metavar: the name in the help.
 
     Returns:
-        The group in which another place that they come from may be declared.
+        The group in which another source of the values may be declared.
     """
     group = parser.add_mutually_exclusive_group()
     group.add_argument("values", metavar=metavar, nargs="?", default="{}", help=values_help)
@@ -49,7 +49,7 @@ def add_values_arguments(parser: argparse.ArgumentParser, *, values_help: str, m
 
 
 def read_values(arguments: argparse.Namespace) -> str:
-    """The text of the values: from the command line, from a file, or from standard input."""
+    """Return the text of the values from the command line, a file or standard input."""
     if getattr(arguments, "stdin", False):
         return sys.stdin.read()
     file = getattr(arguments, "yaml_file", None)
@@ -67,10 +67,10 @@ def read_values(arguments: argparse.Namespace) -> str:
 
 
 def parse_values(text: str) -> list[dict[str, Any]]:
-    """The mappings that a text holds: one, or one for each document of a YAML stream.
+    """Return the mappings in a text: one, or one for each document of a YAML stream.
 
     Raises:
-        LinkwrightError: CLI402, it is no YAML; CLI403, it is no mapping.
+        LinkwrightError: CLI402, it is not YAML; CLI403, it is not a mapping.
     """
     import yaml
 
@@ -83,7 +83,7 @@ def parse_values(text: str) -> list[dict[str, Any]]:
         what = error.problem or error.context
         notes = (Note(foreign(error.context)),) if error.context and error.problem else ()
         hint = phrase(
-            "quote the values for the shell, and write a blank after each colon and comma: \"{a: 1, b: 'x'}\""
+            "quote the values for the shell, and write a space after each colon and comma: \"{a: 1, b: 'x'}\""
         )
         raise LinkwrightError(
             Diagnostic(
@@ -111,21 +111,21 @@ def _no_mapping(document: object, source: SourceText) -> Diagnostic:
     if isinstance(document, str) and ":" in document:
         name, _, value = document.partition(":")
         if name.isidentifier():
-            hint = phrase("YAML wants a blank after the colon: '{name}: {value}'", name=name, value=value)
+            hint = phrase("YAML requires a space after the colon: '{name}: {value}'", name=name, value=value)
     message = phrase("The passed value needs to be a dictionary in YAML format")
     return Diagnostic("CLI403", message, source.span(0, len(source.text)), hint=hint, source=source)
 
 
 def check_values(message: Message, values: Mapping[str, Any], text: str = "") -> None:
-    """Make sure that a message takes values; all that it does not take is reported together.
+    """Check that values fit a message, and report all that do not fit together.
 
     Args:
-        message: of the type to fill; left as it is.
-        values: as `parse_values` gives them.
-        text: what they were read from, to show places in it.
+        message: a message of the type; it is not changed.
+        values: the result of `parse_values`.
+        text: their source, to show locations in it.
 
     Raises:
-        LinkwrightError: CLI405, there is no such field; CLI406, a field cannot have the value.
+        LinkwrightError: CLI405, there is no such field; CLI406, a value is invalid for its field.
     """
     places = _Places(text)
     faults = list(_faults(message, values, (), places))
@@ -136,11 +136,11 @@ def check_values(message: Message, values: Mapping[str, Any], text: str = "") ->
 def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Callable[[Any], None]]:
     """Set the fields of a message.
 
-    ``header: auto`` and ``stamp: now`` (of a std_msgs/Header and a builtin_interfaces/Time) stand for the time of
-    publishing, as ``ros2 topic pub`` has it.
+    ``header: auto`` and ``stamp: now`` (of a std_msgs/Header and a builtin_interfaces/Time) insert the time of
+        publishing, as in ``ros2 topic pub``.
 
     Returns:
-        What sets those, each called with a Time message.
+        Functions that set those stamps, to call with a Time message.
     """
     from linkwright.messages import set_fields
 
@@ -151,7 +151,7 @@ def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Ca
 
 
 def _split(message: Any, values: dict[str, Any]) -> tuple[dict[str, Any], list[Callable[[Any], None]]]:
-    """The values without those that stand for the time of publishing, and what sets the latter."""
+    """Return the values without those for the time of publishing, and the functions that set the latter."""
     setters: list[Callable[[Any], None]] = []
     plain: dict[str, Any] = {}
     for name, value in values.items():
@@ -174,7 +174,7 @@ def _setter(owner: Any, name: str) -> Callable[[Any], None]:
 
 
 class _Places:
-    """Finds where in the text a value stands, by the names and indices that lead to it."""
+    """Finds the location of a value in the text by its path of names and indices."""
 
     def __init__(self, text: str) -> None:
         self.source = SourceText(_NAME, text)
@@ -184,11 +184,11 @@ class _Places:
 
             try:
                 self._root = yaml.compose(text, yaml.SafeLoader)
-            except yaml.YAMLError:  # several documents: their places are not told
+            except yaml.YAMLError:  # several documents have no locations
                 self._root = None
 
     def span(self, path: tuple[str | int, ...], *, key: bool = False) -> Span | None:
-        """The place of a value, or of the name before it."""
+        """Return the location of a value, or of its key."""
         import yaml
 
         node, at = self._root, None
@@ -258,11 +258,11 @@ def _shown(value: object) -> str:
 
 def _type_hint(kind: str, value: object) -> Phrase | None:
     if kind == "string" and isinstance(value, (bool, int, float)):
-        return phrase("quote it, so that YAML takes it as text: '\"{value}\"'", value=str(value).lower())
+        return phrase("quote it, so that YAML reads it as a string: '\"{value}\"'", value=str(value).lower())
     if kind.startswith(("float", "double")) and isinstance(value, str):
         return phrase("write a number, such as 1.0")
     if kind.startswith(("int", "uint")) and isinstance(value, float):
-        return phrase("write a whole number")
+        return phrase("write an integer")
     if ("sequence" in kind or "[" in kind) and not isinstance(value, (list, str)):
         return phrase("write a list: [1, 2, 3]")
     return None

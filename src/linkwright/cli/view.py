@@ -1,4 +1,4 @@
-"""``linkwright view``: show one model in the browser, with sliders for its joints, or two and how they differ."""
+"""``linkwright view``: show a model with joint sliders in the browser, or compare two models."""
 
 from __future__ import annotations
 
@@ -22,33 +22,36 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file",
         metavar="FILE",
-        help="the URDF or xacro file, or a recording: its .mcap or .db3 file, all of them, or its folder",
+        help="the URDF or xacro file, or a recording: its .mcap or .db3 files, or its folder",
     )
     add_second_model(parser)
     parser.add_argument(
-        "-d", "--display-config", metavar="RVIZ", help="the .rviz file to open in place of the usual displays"
+        "-d", "--display-config", metavar="RVIZ", help="the .rviz file to open instead of the default displays"
     )
     parser.add_argument(
-        "--join", action="store_true", help="join the ROS 2 network (ROS_DOMAIN_ID), where other programs see the nodes"
+        "--join",
+        action="store_true",
+        help="join the ROS 2 network (ROS_DOMAIN_ID), so that other programs see the nodes",
     )
     add_viewer_options(parser)
 
 
 def add_viewer_options(parser: argparse.ArgumentParser) -> None:
-    """The options about the page, which `launch` and `run` have too."""
-    parser.add_argument("--no-open", action="store_true", help="do not open the page in the browser")
-    parser.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default: %(default)s)")
-    parser.add_argument("--port", type=port, help="port to serve the page at (default: 7448, or the next free one)")
-    parser.add_argument(
+    """Declare the options of the page, which `launch` and `run` share."""
+    group = parser.add_argument_group(title="page in the browser")
+    group.add_argument("--no-open", action="store_true", help="do not open the page in the browser")
+    group.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default: %(default)s)")
+    group.add_argument("--port", type=port, help="port to serve the page at (default: 7448, or the next free one)")
+    group.add_argument(
         "--foxglove", metavar="PORT", type=port, help="let Foxglove and Lichtblick connect to this port of this machine"
     )
-    parser.add_argument(
+    group.add_argument(
         "--history",
         metavar="SIZE",
         type=size,
         default=DEFAULT_HISTORY,
-        help="memory for what came in the last minutes, which the page can go back to, such as 1GB; 0 for none "
-        "(default: 256MB)",
+        help="memory for the messages of the last minutes, which the page can go back to, such as 1GB; 0 "
+        "disables it (default: 256MB)",
     )
 
 
@@ -56,10 +59,10 @@ _UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "GB": 10**9}
 
 
 def size(text: str) -> int:
-    """A number of bytes, such as ``256MB``.
+    """Parse a number of bytes, such as ``256MB``.
 
     Raises:
-        argparse.ArgumentTypeError: when it is none.
+        argparse.ArgumentTypeError: the text is not valid.
     """
     found = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,3})?) ?([KMG]?B)?", text, re.ASCII | re.IGNORECASE)
     if found is None:
@@ -68,10 +71,10 @@ def size(text: str) -> int:
 
 
 def port(text: str) -> int:
-    """A TCP port as a number.
+    """Parse a TCP port.
 
     Raises:
-        argparse.ArgumentTypeError: when it is none.
+        argparse.ArgumentTypeError: the text is not valid.
     """
     if text.isascii() and text.isdigit() and 0 < int(text) < 65536:
         return int(text)
@@ -79,7 +82,7 @@ def port(text: str) -> int:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Show the model, or what two differ in, until the user ends it."""
+    """Show the model, or the differences of two, until the user interrupts it."""
     from linkwright.bag import is_recording
     from linkwright.hosting.plans import HostOptions
 
@@ -124,7 +127,7 @@ def _run_bag(arguments: argparse.Namespace, options: HostOptions) -> int:
 
 
 def _readable(rviz: Path) -> Path:
-    """The .rviz file.
+    """Return the path of the .rviz file.
 
     Raises:
         LinkwrightError: it cannot be read; see `linkwright.viewer.RvizConfig.load`.

@@ -1,4 +1,4 @@
-"""``linkwright voice``: engines of speech tried on recordings, and the words that a user has enrolled."""
+"""``linkwright voice``: try speech engines on recordings, and manage enrolled words."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 _ENGINE = "enrolled"
 _LANGUAGES = {"en": "stop", "zh": "停止"}
-"""Those that engines are asked for, with something that can be said."""
+"""The languages to test engines in, with a phrase for each."""
 
 
 def configure_try(parser: argparse.ArgumentParser) -> None:
@@ -41,16 +41,16 @@ def configure_try(parser: argparse.ArgumentParser) -> None:
         "--engine",
         metavar="ENGINE",
         default=_ENGINE,
-        help="the engine: enrolled (default), vosk, pocketsphinx, onnx, or another that is installed",
+        help="the engine: enrolled (default), vosk, pocketsphinx, onnx, or another installed engine",
     )
-    parser.add_argument("--language", metavar="LANGUAGE", default="en", help="what is spoken: en (default), zh")
-    parser.add_argument("--model", metavar="PATH", type=Path, help="another model than the engine's usual one")
+    parser.add_argument("--language", metavar="LANGUAGE", default="en", help="the spoken language: en (default), zh")
+    parser.add_argument("--model", metavar="PATH", type=Path, help="a model to use instead of the engine's default")
     parser.add_argument("--commands", metavar="FILE", help="the file of commands (default: the built-in one)")
-    parser.add_argument("--partials", action="store_true", help="print what is heard before it is final, too")
+    parser.add_argument("--partials", action="store_true", help="also print partial results")
 
 
 def run_try(arguments: argparse.Namespace) -> int:
-    """Print what an engine hears in recordings."""
+    """Print the words that an engine recognizes in recordings."""
     from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
     from linkwright.speech.engine import EngineOptions, make_engine
     from linkwright.speech.sound.wav import read_wav
@@ -69,12 +69,12 @@ def run_try(arguments: argparse.Namespace) -> int:
 
 
 class _Trial:
-    """Hands recordings to an engine as a microphone would, one after another, and prints what it hears.
+    """Feeds recordings to an engine as a microphone would, one after another, and prints the results.
 
     Args:
         engine: the engine.
-        commands: what may be meant.
-        partials: whether to print what is not final.
+        commands: the commands to match.
+        partials: whether to print partial results.
     """
 
     def __init__(self, engine: SpeechEngine, commands: CommandSet, *, partials: bool) -> None:
@@ -82,13 +82,13 @@ class _Trial:
         self._given = 0  # samples
 
     def hear(self, file: str, samples: Samples) -> None:
-        """Print what is heard in a recording, a line each."""
+        """Print the results for a recording, one per line."""
         import numpy as np
 
         from linkwright.speech.sound.samples import BLOCK, RATE
 
         began = self._given / RATE
-        sound = np.concatenate((samples, np.zeros(RATE, np.int16)))  # engines wait for silence
+        sound = np.concatenate((samples, np.zeros(RATE, np.int16)))  # engines end an utterance at silence
         finals = 0
         for first in range(0, len(sound), BLOCK):
             block = sound[first : first + BLOCK]
@@ -100,15 +100,15 @@ class _Trial:
         heard = self._engine.finish()
         finals += self._print(file, heard, began, self._given / RATE + time.perf_counter() - start)
         if not finals:
-            print(localized(phrase("{file}: nothing is heard", file=file)))
+            print(localized(phrase("{file}: nothing recognized", file=file)))
 
     def _print(self, file: str, heard: Sequence[Heard], began: float, now: float) -> int:
-        """Print what came at some time of the sound; how much of it was final."""
+        """Print the results at a time of the recording, and return the number of final ones."""
         for each in heard:
             if each.final or self._partials:
                 times = {"start": f"{max(0.0, each.start - began):.2f}", "end": f"{each.end - began:.2f}"}
                 print(localized(phrase(
-                    "{file}: {what}, {start} s to {end} s, known {latency} s later",
+                    "{file}: {what}, {start} s to {end} s, recognized {latency} s later",
                     file=file, what=self._what(each), latency=f"{max(0.0, now - each.end):.2f}", **times,
                 )))  # fmt: skip
         return sum(each.final for each in heard)
@@ -118,7 +118,7 @@ class _Trial:
             return phrase("none of the phrases")
         said = {"text": heard.text, "confidence": f"{heard.confidence:.2f}"}
         if not heard.final:
-            return phrase("so far '{text}' ({confidence})", **said)
+            return phrase("partial: '{text}' ({confidence})", **said)
         understood = self._commands.understand(heard.text)
         if understood is None:
             return phrase("'{text}' ({confidence}), no command", **said)
@@ -127,13 +127,13 @@ class _Trial:
 
 def configure_enrol(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("word", metavar="WORD", help="the word or phrase, as the commands have it")
-    parser.add_argument("files", metavar="WAV", nargs="+", help="recordings in which it is said once each, best three")
+    parser.add_argument("word", metavar="WORD", help="the word or phrase, as in the commands")
+    parser.add_argument("files", metavar="WAV", nargs="+", help="recordings that contain it once each; three are best")
     _add_file(parser)
 
 
 def run_enrol(arguments: argparse.Namespace) -> int:
-    """Learn a word from recordings: of all, or, where one is not fit, of none."""
+    """Enrol a word from recordings; one unusable recording rejects all of them."""
     from linkwright.speech.enrolled.enrolment import enrol
     from linkwright.speech.enrolled.words import TAKES
     from linkwright.speech.sound.wav import read_wav
@@ -152,7 +152,7 @@ def run_enrol(arguments: argparse.Namespace) -> int:
     takes = counted("{count} recording", "{count} recordings", count)
     print(localized(phrase("'{word}': {takes}", word=arguments.word, takes=takes)))
     if count < TAKES:
-        say(localized(phrase("it is told apart more surely with {takes} recordings", takes=TAKES)))
+        say(localized(phrase("{takes} recordings make the recognition more reliable", takes=TAKES)))
     return FINE
 
 
@@ -180,7 +180,7 @@ def configure_forget(parser: argparse.ArgumentParser) -> None:
 
 
 def run_forget(arguments: argparse.Namespace) -> int:
-    """Take a word out of the enrolled ones."""
+    """Remove an enrolled word."""
     path = _path(arguments)
     words = _read(path)
     if arguments.word not in words.names:
@@ -193,11 +193,11 @@ def run_forget(arguments: argparse.Namespace) -> int:
 
 
 def configure_engines(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments: there are none."""
+    """Declare no arguments."""
 
 
 def run_engines(_: argparse.Namespace) -> int:
-    """Try to make each engine in each language, and say what it lacks."""
+    """Try to create each engine in each language, and print what it lacks."""
     from linkwright.speech.engine import engine_names
 
     for name in engine_names():
@@ -218,7 +218,7 @@ def _state(name: str, language: str, text: str) -> Phrase:
 
 
 def _add_file(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--file", metavar="FILE", type=Path, help="another file of words than the user's own")
+    parser.add_argument("--file", metavar="FILE", type=Path, help="a file of words to use instead of the user's own")
 
 
 def _path(arguments: argparse.Namespace) -> Path:
@@ -242,13 +242,11 @@ def _write(words: Words, path: Path) -> None:
 
 
 VERBS = {
-    "try": SubVerb(
-        configure_try, run_try, help="print what an engine hears in recordings, and which commands that are"
-    ),
+    "try": SubVerb(configure_try, run_try, help="print the words and commands that an engine recognizes in recordings"),
     "enrol": SubVerb(configure_enrol, run_enrol, help="learn a word from recordings of it"),
-    "words": SubVerb(configure_words, run_words, help="list the words that have been enrolled"),
-    "forget": SubVerb(configure_forget, run_forget, help="take a word out of the enrolled ones"),
-    "engines": SubVerb(configure_engines, run_engines, help="list the engines that there are, and what they lack"),
+    "words": SubVerb(configure_words, run_words, help="list the enrolled words"),
+    "forget": SubVerb(configure_forget, run_forget, help="remove an enrolled word"),
+    "engines": SubVerb(configure_engines, run_engines, help="list the engines, and what they still need"),
 }
 
 
@@ -258,5 +256,5 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command that was named."""
+    """Run the subcommand."""
     return run_nested(arguments)

@@ -1,4 +1,4 @@
-"""``linkwright world``: which worlds and models there are, a new world, and what is wrong with one."""
+"""``linkwright world``: list worlds and models, create a world, or check one."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from linkwright.diagnostics.translation import localized
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("--json", action="store_true", help="print a JSON list with kind, name and path of each")
+    parser.add_argument("--json", action="store_true", help="print the kind, name and path of each as a JSON list")
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print what worlds can be opened and include by name."""
+    """Print the worlds to open, and the models to include by name."""
     from linkwright.packages import PackageFinder
     from linkwright.sdf.resources import ResourceFinder
 
@@ -52,11 +52,11 @@ def configure_new(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "name", metavar="NAME", help="the world's name, or the file to write, such as worlds/kitchen.world"
     )
-    parser.add_argument("--force", action="store_true", help="write over a file that is there")
+    parser.add_argument("--force", action="store_true", help="overwrite an existing file")
 
 
 def run_new(arguments: argparse.Namespace) -> int:
-    """Write a small world to begin with."""
+    """Write a small world to start from."""
     from linkwright.descriptions import is_world
     from linkwright.sdf.starting_world import starting_world
 
@@ -64,8 +64,8 @@ def run_new(arguments: argparse.Namespace) -> int:
     if not is_world(path.name) or path.suffix == ".xacro":
         path = path.with_name(f"{path.name}.world")
     if path.exists() and not arguments.force:
-        hint = phrase("choose another name, or add --force to write over it")
-        raise LinkwrightError(Diagnostic("CLI206", phrase("'{path}' is there already", path=path), hint=hint))
+        hint = phrase("choose another name, or add --force to overwrite it")
+        raise LinkwrightError(Diagnostic("CLI206", phrase("'{path}' already exists", path=path), hint=hint))
     write_output(path, starting_world(path.stem))
     print(f"Created file {path}")
     return 0
@@ -73,8 +73,10 @@ def run_new(arguments: argparse.Namespace) -> int:
 
 VERBS = {
     "list": SubVerb(configure_list, run_list, help="list the worlds and models on the search path, with their folders"),
-    "new": SubVerb(configure_new, run_new, help="write a small world to begin with: ground, sun, a box, explained"),
-    "check": SubVerb(check.configure, check.run, help="check worlds and models: what `linkwright check` says of them"),
+    "new": SubVerb(
+        configure_new, run_new, help="write a small world to start from: ground, sun and a box, with comments"
+    ),
+    "check": SubVerb(check.configure, check.run, help="check worlds and models, as `linkwright check` does"),
 }
 
 
@@ -84,5 +86,5 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run the command that was named."""
+    """Run the subcommand."""
     return run_nested(arguments)

@@ -1,4 +1,4 @@
-"""``linkwright xacro``: expand a xacro file to URDF, list its arguments, or explain what it expands to."""
+"""``linkwright xacro``: expand a xacro file to URDF, list its arguments, or explain its elements."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _DEFAULTS: dict[str, Any] = {
     "root_dir": None,
     "verbosity": 1,
 }
-"""What holds without an option."""
+"""The defaults of the options."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -37,42 +37,40 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="the xacro file, or - for standard input")
     add_values(
         parser,
-        values_help="values for the file's <xacro:arg>; an empty value, as in prefix:=, leaves the default in force",
+        values_help="values for the file's <xacro:arg>; an empty value, as in prefix:=, keeps the default",
     )
     parser.add_argument("-o", metavar="OUT", dest="output", help="write to this file instead of standard output")
     parser.add_argument(
         "--deps",
         action="store_true",
-        help="print the files that are included and the YAML files that are loaded, on one line, instead of the URDF",
+        help="print the included files and the loaded YAML files, on one line, instead of the URDF",
     )
-    parser.add_argument(
-        "--args", action="store_true", help="list the arguments that the file takes, instead of the URDF"
-    )
+    parser.add_argument("--args", action="store_true", help="list the file's arguments instead of the URDF")
     parser.add_argument(
         "--explain",
         metavar="LINK_OR_JOINT",
-        help="tell where an element of the URDF comes from: places, macro calls, includes and values",
+        help="show where an element of the URDF comes from: files and lines, macro calls, includes and values",
     )
     parser.add_argument(
         "--format",
         choices=("text", "json"),
-        help="form of what --args and --explain print (default: text)",
+        help="the output format of --args and --explain (default: text)",
     )
     parser.add_argument(
-        "--root-dir", metavar="DIR", help="folder that relative paths and $(cwd) refer to (default: the current one)"
+        "--root-dir", metavar="DIR", help="the folder for relative paths and $(cwd) (default: the current folder)"
     )
     parser.add_argument(
         "-i",
         "--inorder",
         action="store_true",
-        help="process in reading order; this is always so, and the option can be left out",
+        help="process the file in reading order; this is always the case",
     )
     parser.add_argument(
         "-q",
         dest="verbosity",
         action="store_const",
         const=_QUIET,
-        help="print errors only; the same as --verbosity 0",
+        help="print only errors; the same as --verbosity 0",
     )
     parser.add_argument(
         "-v", dest="verbosity", action="count", help="print more; the same as one --verbosity level higher"
@@ -82,19 +80,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="LEVEL",
         type=int,
         dest="verbosity",
-        help="0: errors only, 1: warnings too (default), 2: the same, 3: log where the properties of the document are "
-        "set and used, 4: those of macros and namespaces too",
+        help="0: only errors, 1: also warnings (default), 2: the same, 3: also log where the properties of the "
+        "document are set and used, 4: also those of macros and namespaces",
     )
     parser.set_defaults(**_DEFAULTS)
 
 
 def without_options(words: list[str]) -> SimpleNamespace | None:
-    """The arguments that a file and values give; None where there is no file."""
+    """Return the arguments for a file and values, or None if there is no file."""
     return SimpleNamespace(file=words[0], values=words[1:], **_DEFAULTS) if words else None
 
 
 def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
-    """Do what is asked for; findings go to standard error, results to standard output or the file."""
+    """Run the command; findings go to standard error, results to standard output or the file."""
     from linkwright.xacro.inputs import Inputs
     from linkwright.xacro.limits import Limits
 
@@ -134,7 +132,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
 
 
 def _values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
-    """The arguments given, and remarks on those that xacro ignores: empty ones, and ROS parameters (``_name:=``)."""
+    """Return the arguments, and remarks on those that xacro ignores: empty values and ROS parameters (``_name:=``)."""
     values = parse_assignments(words)
     ignored = []
     for name, value in list(values.items()):
@@ -143,7 +141,7 @@ def _values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
             continue
         del values[name]
         why = phrase("its name begins with an underscore") if value else phrase("it is empty")
-        message = phrase("the argument '{name}' is ignored, as xacro does: {why}", name=name, why=why)
+        message = phrase("the argument '{name}' is ignored, as in xacro: {why}", name=name, why=why)
         ignored.append(Diagnostic("CLI103", message, severity=Severity.WARNING))
     return values, ignored
 
@@ -183,7 +181,7 @@ def _provenance(inputs: Inputs, name: str, form: str) -> str:
 
     found = provenance_of_named(inputs, name)
     if form == "json":
-        with room_for(inputs.limits):  # elements may be nested deeper than Python's calls
+        with room_for(inputs.limits):  # elements may be nested deeper than Python's recursion limit
             return _json({"elements": [provenance_data(provenance) for provenance in found]})
     return "\n".join(map(provenance_text, found))
 

@@ -117,7 +117,7 @@ def refusing(path: Path) -> Iterator[None]:
     except OSError as error:
         reason = foreign(error.strerror or error)
         message = phrase("cannot write '{path}': {reason}", path=display_path(path), reason=reason)
-        hint = phrase("name a file in a folder that you may write to")
+        hint = phrase("choose a file in a writable folder")
         raise LinkwrightError(Diagnostic("SWEEP110", message, hint=hint)) from None
 
 

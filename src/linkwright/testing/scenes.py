@@ -52,7 +52,7 @@ def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
         converted = as_sdf(path, finder, arguments=dict(arguments), folder=Path.cwd())
         if converted.sdf is None or not converted.sdf.models:
             message = phrase("there is no model in '{path}'", path=str(path))
-            hint = phrase("the robot is to be URDF, xacro, or SDF with a <model>")
+            hint = phrase("a robot must be URDF, xacro, or SDF with a <model>")
             raise LinkwrightError(*converted.diagnostics or [Diagnostic("SIM142", message, hint=hint)])
         return converted.sdf.models[0], converted.files
 

@@ -1,4 +1,4 @@
-"""``linkwright bag``: record topics, play recordings, tell what is in them."""
+"""``linkwright bag``: record topics, play recordings and describe them."""
 
 from linkwright.cli.bag.verb import VERBS, configure, run
 

@@ -1,4 +1,4 @@
-"""Single keys from the terminal while an event loop runs."""
+"""Read single keys from the terminal while an event loop runs."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 SPACE, UP, DOWN, RIGHT = " ", "\x1b[A", "\x1b[B", "\x1b[C"
-"""What a terminal sends for the keys (ECMA-48)."""
+"""The sequences that a terminal sends for the keys (ECMA-48)."""
 
 
 @contextmanager
 def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
-    """While this is entered, keys call what stands for them.
+    """Call the action of each key that is pressed while the context is entered.
 
     Args:
-        actions: key -> what it does.
+        actions: key -> the action to call.
 
     Yields:
-        Whether keys are listened to: standard input has to be a terminal that we are in the foreground of.
+        Whether keys are read: standard input must be a terminal, with this process in its foreground.
     """
     if not _can_listen():
         yield False
@@ -33,7 +33,7 @@ def listening(actions: Mapping[str, Callable[[], object]]) -> Iterator[bool]:
 
     def read() -> None:
         text = os.read(descriptor, 64).decode(errors="replace")
-        while text:  # those that are typed quickly come together
+        while text:  # keys that are typed quickly arrive together
             key = next((action for action in actions if text.startswith(action)), "")
             if key:
                 actions[key]()

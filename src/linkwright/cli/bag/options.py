@@ -1,4 +1,4 @@
-"""Options that the verbs for recordings share: ``--storage`` and ``--qos-profile-overrides-path``."""
+"""Options that the commands for recordings share: ``--storage`` and ``--qos-profile-overrides-path``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 def add_storage_argument(parser: argparse.ArgumentParser) -> None:
     """Declare the option."""
     parser.add_argument(
-        "-s", "--storage", choices=("mcap", "sqlite3"), help="accepted for ros2's sake; the files tell their format"
+        "-s",
+        "--storage",
+        choices=("mcap", "sqlite3"),
+        help="accepted for compatibility with ros2; the format is read from the files",
     )
 
 
@@ -23,15 +26,16 @@ def add_overrides_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--qos-profile-overrides-path",
         metavar="FILE",
-        help="a YAML file that maps topics to QoS policies, instead of those that suit what is there",
+        help="a YAML file that maps topics to QoS policies, which replace those chosen from the publishers and "
+        "subscriptions found",
     )
 
 
 def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
-    """The overrides in a file; none without one.
+    """Return the QoS overrides of the file that the command line names, if any.
 
     Raises:
-        LinkwrightError: BAG106, it cannot be read or has another form.
+        LinkwrightError: BAG106, the file cannot be read or has another structure.
     """
     path = arguments.qos_profile_overrides_path
     if path is None:

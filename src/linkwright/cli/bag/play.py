@@ -1,4 +1,4 @@
-"""``linkwright bag play``: publish what a recording holds."""
+"""``linkwright bag play``: publish the messages of a recording."""
 
 from __future__ import annotations
 
@@ -21,16 +21,27 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("bag", metavar="BAG", help="the folder of a recording, or one .mcap or .db3 file")
     add_storage_argument(parser)
-    parser.add_argument("-r", "--rate", metavar="FACTOR", type=_positive, default=1.0, help="how fast, default 1.0")
-    parser.add_argument("--topics", metavar="TOPIC", nargs="+", default=[], help="only these topics")
-    parser.add_argument("--exclude-topics", metavar="TOPIC", nargs="+", default=[], help="none of these topics")
     parser.add_argument(
-        "-e", "--regex", metavar="PATTERN", default="", help="only topics in whose name the expression is found"
+        "-r", "--rate", metavar="FACTOR", type=_positive, default=1.0, help="the playback rate, default 1.0"
+    )
+    parser.add_argument("--topics", metavar="TOPIC", nargs="+", default=[], help="play only these topics")
+    parser.add_argument("--exclude-topics", metavar="TOPIC", nargs="+", default=[], help="do not play these topics")
+    parser.add_argument(
+        "-e",
+        "--regex",
+        metavar="PATTERN",
+        default="",
+        help="play only topics whose names match this regular expression",
     )
     parser.add_argument(
-        "-x", "--exclude", "--exclude-regex", metavar="PATTERN", default="", help="none in whose name this is found"
+        "-x",
+        "--exclude",
+        "--exclude-regex",
+        metavar="PATTERN",
+        default="",
+        help="do not play topics whose names match this regular expression",
     )
-    parser.add_argument("-l", "--loop", action="store_true", help="begin anew at the end, until Ctrl-C")
+    parser.add_argument("-l", "--loop", action="store_true", help="start over at the end, until Ctrl-C")
     parser.add_argument(
         "-m", "--remap", metavar="FROM:=TO", nargs="+", default=[], help="publish topics under other names"
     )
@@ -41,47 +52,53 @@ def configure_play(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=_DEFAULT_CLOCK_HZ,
         default=0.0,
-        help="publish the recording's time on /clock, 40 times a second or as often as said",
+        help="publish the recording's time on /clock, at HZ (default: 40)",
     )
     parser.add_argument(
-        "--clock-topics", metavar="TOPIC", nargs="+", default=[], help="publish it before each message of these topics"
+        "--clock-topics",
+        metavar="TOPIC",
+        nargs="+",
+        default=[],
+        help="publish the time before each message of these topics",
     )
-    parser.add_argument("--clock-topics-all", action="store_true", help="publish it before each message")
+    parser.add_argument("--clock-topics-all", action="store_true", help="publish the time before each message")
     parser.add_argument(
-        "-d", "--delay", metavar="SECONDS", type=_not_negative, default=0.0, help="wait before each round"
+        "-d", "--delay", metavar="SECONDS", type=_not_negative, default=0.0, help="wait before each pass"
     )
     parser.add_argument(
-        "--start-offset", metavar="SECONDS", type=_not_negative, default=0.0, help="leave out the beginning"
+        "--start-offset",
+        metavar="SECONDS",
+        type=_not_negative,
+        default=0.0,
+        help="start at this offset into the recording",
     )
     parser.add_argument(
-        "--playback-duration", metavar="SECONDS", type=_not_negative, help="stop after so much of the recording"
+        "--playback-duration", metavar="SECONDS", type=_not_negative, help="stop after this much of the recording"
     )
     until = parser.add_mutually_exclusive_group()
-    until.add_argument(
-        "--playback-until-sec", metavar="SECONDS", type=float, help="stop at this time, counted since the epoch"
-    )
+    until.add_argument("--playback-until-sec", metavar="SECONDS", type=float, help="stop at this time since the epoch")
     until.add_argument("--playback-until-nsec", metavar="NANOSECONDS", type=int, help="the same in nanoseconds")
-    parser.add_argument("-p", "--start-paused", action="store_true", help="begin paused; the space key goes on")
+    parser.add_argument("-p", "--start-paused", action="store_true", help="start paused; the space key resumes")
     parser.add_argument(
         "--wait-for-all-acked",
         metavar="MILLISECONDS",
         type=_not_negative,
         default=1000.0,
-        help="how long to wait at the end until reliable subscriptions have everything, default 1000",
+        help="how long to wait at the end for reliable subscriptions to acknowledge all messages, default 1000",
     )
-    parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to keys")
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help="ignore the keyboard")
     add_overrides_argument(parser)
     for name, metavar in (
         ("--read-ahead-queue-size", "N"),
         ("--storage-preset-profile", "NAME"),
         ("--storage-config-file", "FILE"),
     ):
-        parser.add_argument(name, metavar=metavar, help="accepted for ros2's sake; there is nothing to be tuned")
-    parser.add_argument("--disable-loan-message", action="store_true", help="accepted for ros2's sake")
+        parser.add_argument(name, metavar=metavar, help="accepted for compatibility with ros2; has no effect")
+    parser.add_argument("--disable-loan-message", action="store_true", help="accepted for compatibility with ros2")
 
 
 def run_play(arguments: argparse.Namespace) -> int:
-    """Play until the end, or until the user ends it."""
+    """Play until the end, or until the user interrupts it."""
     from linkwright.bag import BagReader, PlayOptions
     from linkwright.cli.session import run_in_graph
 
@@ -138,7 +155,7 @@ def run_play(arguments: argparse.Namespace) -> int:
 
 
 def _until_ns(arguments: argparse.Namespace) -> int | None:
-    """The last moment that is played; as in ros2, a negative one stands for none."""
+    """Return the time at which playback stops; as in ros2, a negative option means no limit."""
     until_ns: int | None = arguments.playback_until_nsec
     if arguments.playback_until_sec is not None:
         until_ns = round(arguments.playback_until_sec * 1e9)

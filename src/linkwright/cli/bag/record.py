@@ -1,4 +1,4 @@
-"""``linkwright bag record``: write down what topics carry."""
+"""``linkwright bag record``: record the messages of topics."""
 
 from __future__ import annotations
 
@@ -16,41 +16,60 @@ if TYPE_CHECKING:
 
 _USAGE = 2
 _CACHE_SIZE = 100 * 1024 * 1024
-"""Bytes; the default of ros2."""
+"""The default cache size of ros2, in bytes."""
 
 
 def configure_record(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("names", metavar="TOPIC", nargs="*", help="the topics to record")
-    parser.add_argument("--topics", metavar="TOPIC", nargs="+", default=[], help="the same, as newer ROS 2 spells it")
+    parser.add_argument(
+        "--topics",
+        metavar="TOPIC",
+        nargs="+",
+        default=[],
+        help="the topics to record, as newer ROS 2 spells the option",
+    )
     parser.add_argument(
         "--topic-types", metavar="TYPE", nargs="+", default=[], help="record every topic of these types"
     )
     parser.add_argument(
-        "--services", metavar="SERVICE", nargs="+", default=[], help="record what these services tell of their requests"
+        "--services",
+        metavar="SERVICE",
+        nargs="+",
+        default=[],
+        help="record the events of these services (service introspection)",
     )
     parser.add_argument(
-        "-a", "--all", action="store_true", help="record every topic but hidden ones, and every service"
+        "-a", "--all", action="store_true", help="record all topics except hidden ones, and the events of all services"
     )
-    parser.add_argument("--all-topics", action="store_true", help="record every topic but hidden ones")
-    parser.add_argument("--all-services", action="store_true", help="record what services tell of their requests")
+    parser.add_argument("--all-topics", action="store_true", help="record all topics except hidden ones")
     parser.add_argument(
-        "-e", "--regex", metavar="PATTERN", default="", help="record topics in whose name the expression is found"
+        "--all-services", action="store_true", help="record the events of all services (service introspection)"
     )
     parser.add_argument(
-        "-x", "--exclude", "--exclude-regex", metavar="PATTERN", default="", help="but none in whose name this is found"
+        "-e", "--regex", metavar="PATTERN", default="", help="record topics whose names match this regular expression"
     )
-    parser.add_argument("--exclude-topics", metavar="TOPIC", nargs="+", default=[], help="and none of these")
     parser.add_argument(
-        "--exclude-services", metavar="SERVICE", nargs="+", default=[], help="and none of these services"
+        "-x",
+        "--exclude",
+        "--exclude-regex",
+        metavar="PATTERN",
+        default="",
+        help="do not record topics whose names match this regular expression",
     )
-    parser.add_argument("--exclude-topic-types", metavar="TYPE", nargs="+", default=[], help="and none of these types")
-    parser.add_argument("--include-hidden-topics", action="store_true", help="hidden topics count as others")
+    parser.add_argument("--exclude-topics", metavar="TOPIC", nargs="+", default=[], help="do not record these topics")
     parser.add_argument(
-        "--include-unpublished-topics", action="store_true", help="record topics that have subscriptions only, too"
+        "--exclude-services", metavar="SERVICE", nargs="+", default=[], help="do not record these services"
     )
-    parser.add_argument("--ignore-leaf-topics", action="store_true", help="record no topic that nobody subscribes to")
-    parser.add_argument("--no-discovery", action="store_true", help="record only what is there at the start")
+    parser.add_argument(
+        "--exclude-topic-types", metavar="TYPE", nargs="+", default=[], help="do not record topics of these types"
+    )
+    parser.add_argument("--include-hidden-topics", action="store_true", help="record hidden topics too")
+    parser.add_argument(
+        "--include-unpublished-topics", action="store_true", help="record topics that have only subscriptions too"
+    )
+    parser.add_argument("--ignore-leaf-topics", action="store_true", help="do not record topics without subscriptions")
+    parser.add_argument("--no-discovery", action="store_true", help="record only topics that exist at the start")
     parser.add_argument(
         "-p",
         "--polling-interval",
@@ -60,7 +79,7 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
         help="how often to look for new topics, default 100",
     )
     parser.add_argument(
-        "-o", "--output", metavar="FOLDER", help="the folder to make, default rosbag2_ and the date and time"
+        "-o", "--output", metavar="FOLDER", help="the folder to create, default rosbag2_ and the date and time"
     )
     parser.add_argument(
         "-s", "--storage", choices=("mcap", "sqlite3"), default="mcap", help="the file format, default mcap"
@@ -69,13 +88,13 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
         "--compression-mode",
         choices=("none", "file", "message", "storage"),
         default="none",
-        help="what is compressed with zstd: nothing, whole files, each message, or the chunks of an MCAP file",
+        help="compression with zstd: none, of entire files, of each message, or of the chunks of an MCAP file",
     )
     parser.add_argument(
-        "--compression-format", choices=("zstd",), help="accepted for ros2's sake; zstd is the only one there is"
+        "--compression-format", choices=("zstd",), help="accepted for compatibility with ros2; zstd is the only format"
     )
     parser.add_argument(
-        "-b", "--max-bag-size", metavar="BYTES", type=_count, default=0, help="begin another file after so many bytes"
+        "-b", "--max-bag-size", metavar="BYTES", type=_count, default=0, help="start a new file after this many bytes"
     )
     parser.add_argument(
         "-d",
@@ -83,29 +102,29 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         type=_count,
         default=0,
-        help="begin another file after so many seconds",
+        help="start a new file after this many seconds",
     )
     parser.add_argument(
         "--max-cache-size",
         metavar="BYTES",
         type=_count,
         default=_CACHE_SIZE,
-        help="how much --snapshot-mode keeps, default 100 MiB; without that there is nothing to be tuned",
+        help="the memory of --snapshot-mode, default 100 MiB; otherwise without effect",
     )
     parser.add_argument(
         "--snapshot-mode",
         action="store_true",
-        help="keep the last messages, and write them when the service ~/snapshot is called",
+        help="keep the latest messages in memory, and write them when the service ~/snapshot is called",
     )
     parser.add_argument(
-        "--custom-data", metavar="KEY=VALUE", type=_pair, nargs="*", default=[], help="what the metadata say besides"
+        "--custom-data", metavar="KEY=VALUE", type=_pair, nargs="*", default=[], help="custom entries for the metadata"
     )
-    parser.add_argument("--start-paused", action="store_true", help="begin paused; the space key goes on")
-    parser.add_argument("--use-sim-time", action="store_true", help="write down the times that /clock tells")
+    parser.add_argument("--start-paused", action="store_true", help="start paused; the space key resumes")
+    parser.add_argument("--use-sim-time", action="store_true", help="record messages with the time of /clock")
     parser.add_argument(
         "--node-name", metavar="NAME", default="rosbag2_recorder", help="the node's name, default rosbag2_recorder"
     )
-    parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to keys")
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help="ignore the keyboard")
     add_overrides_argument(parser)
     for names, metavar in (
         (("-f", "--serialization-format"), "FORMAT"),
@@ -116,11 +135,11 @@ def configure_record(parser: argparse.ArgumentParser) -> None:
         (("--compression-threads-priority",), "N"),
         (("--log-level",), "LEVEL"),
     ):
-        parser.add_argument(*names, metavar=metavar, help="accepted for ros2's sake; there is nothing to be tuned")
+        parser.add_argument(*names, metavar=metavar, help="accepted for compatibility with ros2; has no effect")
 
 
 def run_record(arguments: argparse.Namespace) -> int:
-    """Record until the user ends it."""
+    """Record until the user interrupts it."""
     from linkwright.cli.session import run_in_graph
     from linkwright.hosting.signals import SignalWatch
 
@@ -171,7 +190,7 @@ def run_record(arguments: argparse.Namespace) -> int:
         status = run_in_graph(arguments, job, node_name=arguments.node_name, signals=signals)
     except KeyboardInterrupt:
         status = 0
-    interrupted = signals.received in (None, signal.SIGINT)  # that is how a recording is ended
+    interrupted = signals.received in (None, signal.SIGINT)  # the usual way to end a recording
     return status if interrupted else signals.exit_status or status
 
 
@@ -209,7 +228,7 @@ def _writer(arguments: argparse.Namespace) -> BagWriter:
 
 def _count(text: str) -> int:
     if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number of at least 0")
+        raise argparse.ArgumentTypeError(f"'{text}' is not an integer of at least 0")
     return int(text)
 
 

@@ -1,4 +1,4 @@
-"""``linkwright bag convert``, ``reindex`` and ``list``: recordings written anew, and what reads and writes them."""
+"""``linkwright bag convert``, ``reindex`` and ``list``: rewrite recordings, and list the storage formats."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _PLUGINS = {
         ),
     ),
 }
-"""What stands for the plugins of rosbag2, by the kinds that ``ros2 bag list`` knows; CDR needs no converter."""
+"""Our equivalents of rosbag2's plugins, by the kinds of ``ros2 bag list``; CDR needs no converter."""
 
 
 def configure_convert(parser: argparse.ArgumentParser) -> None:
@@ -64,19 +64,19 @@ def configure_convert(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         action="append",
         required=True,
-        help="a recording to read, and its format, which is found out without; may be given several times",
+        help="a recording to read and its format, which is detected if omitted; may be repeated",
     )
     parser.add_argument(
         "-o",
         "--output-options",
         metavar="FILE",
         required=True,
-        help="a YAML file with the key output_bags: the options of each recording to be made",
+        help="a YAML file with the key output_bags: the options of each recording to write",
     )
 
 
 def run_convert(arguments: argparse.Namespace) -> int:
-    """Write recordings anew."""
+    """Rewrite recordings."""
     from linkwright.bag.rewriting import rewrite
 
     for given in arguments.input:
@@ -94,7 +94,7 @@ def configure_reindex(parser: argparse.ArgumentParser) -> None:
 
 
 def run_reindex(arguments: argparse.Namespace) -> int:
-    """Write the metadata of a recording anew."""
+    """Rebuild the metadata of a recording."""
     from linkwright.bag.reindexing import reindex
 
     if not arguments.bag.is_dir():
@@ -107,11 +107,11 @@ def run_reindex(arguments: argparse.Namespace) -> int:
 def configure_list(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("kind", metavar="KIND", choices=_PLUGINS, help="storage, converter, compressor or decompressor")
-    parser.add_argument("-v", "--verbose", action="store_true", help="tell what each is, too")
+    parser.add_argument("-v", "--verbose", action="store_true", help="describe each entry too")
 
 
 def run_list(arguments: argparse.Namespace) -> int:
-    """Print the names of what stands for the plugins of a kind."""
+    """Print our equivalents of rosbag2's plugins of a kind."""
     if arguments.verbose:
         print(f"available {arguments.kind} plugins are:")
     for plugin in _PLUGINS[arguments.kind]:

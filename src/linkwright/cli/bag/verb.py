@@ -1,4 +1,4 @@
-"""The verb ``bag`` and the verbs below it."""
+"""The command ``bag`` and its subcommands."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 
 def run_info(arguments: argparse.Namespace) -> int:
-    """Print what a recording holds."""
+    """Print the contents of a recording."""
     from linkwright.bag import BagReader, summary_text
 
     with BagReader(arguments.bag) as bag:
@@ -30,15 +30,15 @@ def run_info(arguments: argparse.Namespace) -> int:
 
 
 VERBS = {
-    "convert": SubVerb(
-        rewrite.configure_convert, rewrite.run_convert, help="write recordings anew with other settings"
+    "convert": SubVerb(rewrite.configure_convert, rewrite.run_convert, help="rewrite recordings with other settings"),
+    "info": SubVerb(configure_info, run_info, help="print the files, times and topics of a recording"),
+    "list": SubVerb(
+        rewrite.configure_list, rewrite.run_list, help="list the storage formats, converters and compressions"
     ),
-    "info": SubVerb(configure_info, run_info, help="print files, times and topics of a recording"),
-    "list": SubVerb(rewrite.configure_list, rewrite.run_list, help="print which formats and compressions there are"),
     "play": SubVerb(play.configure_play, play.run_play, help="publish the messages of a recording again"),
     "record": SubVerb(record.configure_record, record.run_record, help="record topics until Ctrl-C"),
     "reindex": SubVerb(
-        rewrite.configure_reindex, rewrite.run_reindex, help="make a recording's metadata anew from its files"
+        rewrite.configure_reindex, rewrite.run_reindex, help="rebuild a recording's metadata from its files"
     ),
 }
 

@@ -1,4 +1,4 @@
-"""``linkwright completion``: what TAB completes in a shell."""
+"""``linkwright completion``: completion of command lines in a shell."""
 
 from linkwright.cli.completion.verb import configure, run
 

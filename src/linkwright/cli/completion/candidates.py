@@ -1,8 +1,8 @@
 """Completions of a command line.
 
-The commands, their options and what each takes are a table, ``commands.json``, which `tools/command_reference.py`
-writes from the commands' own parsers: to make these takes longer than a user waits for TAB. What an argument is, its
-name in the help tells (``PACKAGE``, ``TOPIC``).
+`tools/command_reference.py` writes the commands, their options and arguments to the table ``commands.json`` from the
+commands' own parsers, because creating the parsers takes longer than a user waits for TAB. The name of an argument in
+the help (``PACKAGE``, ``TOPIC``) selects its candidates.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _LAUNCH = "PACKAGE FILE | PATH [NAME:=VALUE ...]"
 
 
 def divided(line: str) -> list[str]:
-    """The words of a command line up to the cursor, the last of them, perhaps empty, still being written."""
+    """Split a command line up to the cursor into words; the last word is incomplete and may be empty."""
     try:
         words = shlex.split(line)
     except ValueError:  # a quote is open
@@ -30,7 +30,7 @@ def divided(line: str) -> list[str]:
 
 
 def complete(words: Sequence[str]) -> list[str]:
-    """The completions of the last word of a command line; `scripts.FILES` for any file."""
+    """Return the completions of the last word of a command line; `scripts.FILES` requests file names."""
     program, *given = words
     *before, current = given or [""]
     current = current.lstrip("'\"")  # of a quote that is still open
@@ -63,7 +63,7 @@ def _candidates(program: str, before: list[str], current: str, table: dict[str, 
 
 
 def _is_option(words: list[str], index: int, options: dict[str, Any]) -> bool:
-    """Whether a word is an option, or what the option before it takes."""
+    """Return whether a word is an option or the argument of the preceding option."""
     return words[index].startswith("-") or (index > 0 and bool(options.get(words[index - 1])))
 
 

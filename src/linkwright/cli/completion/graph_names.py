@@ -1,7 +1,7 @@
-"""Names of the running graph, as the last look found them.
+"""Names of the running graph, from a cache.
 
-To find the nodes of other processes takes longer than a user waits for TAB. So TAB gives what the last look found, and
-begins a new one in a process of its own.
+Discovering the nodes of other processes takes longer than a user waits for TAB. So TAB offers the names of the last
+discovery, and starts a new one in another process.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 _FRESH_SECONDS = 2.0
-"""A look this young is not repeated."""
+"""Seconds for which the cached names are not refreshed."""
 _STALE_SECONDS = 600.0
-"""One this old tells of what is long gone."""
+"""Seconds after which the cached names are too old to offer."""
 
 
 def names_of(kind: str) -> list[str]:
-    """The ``topics``, ``nodes``, ``services`` or ``actions`` that the last look found."""
+    """Return the cached ``topics``, ``nodes``, ``services`` or ``actions``."""
     path = _path()
     try:
         age = time.time() - path.stat().st_mtime
@@ -43,7 +43,7 @@ def _path() -> Path:
 
 
 def _look_soon(path: Path) -> None:
-    """Begin a look in a process of its own, unless one was begun just now."""
+    """Start discovery in another process, unless it was just started."""
     begun = path.with_suffix(".begun")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -62,7 +62,7 @@ def _look_soon(path: Path) -> None:
 
 
 def look() -> int:
-    """Find the names of the graph now, and write them where `names_of` reads them."""
+    """Discover the names of the graph, and write them to the cache that `names_of` reads."""
     from argparse import Namespace
 
     from linkwright.cli.calls import node_names

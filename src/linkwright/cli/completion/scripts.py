@@ -1,4 +1,4 @@
-"""Scripts for bash, zsh and fish, which hand the words to ``python -m linkwright.cli.completion``."""
+"""Scripts for bash, zsh and fish, which pass the words to ``python -m linkwright.cli.completion``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Sequence
 
 FILES = ":files"
-"""The line by which the shell is told to complete names of files too."""
+"""The line that makes the shell complete file names too."""
 
 _BASH = """\
 _linkwright_complete() {
@@ -99,29 +99,29 @@ function fish_command_not_found
 end
 """,
 }
-"""What a shell does about a command that it does not find: says what to use here for those of ROS."""
+"""The shell's handler for unknown commands, which suggests the replacements for commands of ROS."""
 
 
 def script(shell: str, python: str, commands: Sequence[str]) -> str:
-    """The completion script of a shell.
+    """Return the completion script of a shell.
 
     Args:
         shell: a key of `SHELLS`.
         python: the interpreter that has Linkwright.
-        commands: what is completed.
+        commands: the commands to complete.
     """
     made = SHELLS[shell].replace("PYTHON", shlex.quote(python)).replace("COMMANDS", " ".join(commands))
     return made.replace("FILES", FILES)
 
 
 def shell_script(shell: str, python: str, mark: str, missing: Sequence[str]) -> str:
-    """What a shell of ``linkwright shell`` reads: completion, and what to use for programs that are not here.
+    """Return the start-up script of ``linkwright shell``: completion, and hints for programs that are not available.
 
     Args:
         shell: a key of `SHELLS`.
         python: the interpreter that has Linkwright.
         mark: the environment variable that names the folder of our programs.
-        missing: the programs for which there is something else.
+        missing: the programs that have a replacement.
     """
     names = (" " if shell == "fish" else "|").join(missing)
     not_found = _NOT_FOUND[shell].replace("PYTHON", shlex.quote(python)).replace("NAMES", names)

@@ -25,12 +25,12 @@ Asked = tuple[list[str], list[str], Mapping[str, Any]]
 
 
 def candidates_of(kind: str, path: list[str], placed: list[str], table: Mapping[str, Any]) -> Iterable[str]:
-    """The values that an argument may have.
+    """Return the candidates for an argument.
 
     Args:
-        kind: its name in the help.
+        kind: the argument's name in the help.
         path: the command's names, such as ``topic`` and ``echo``.
-        placed: the words before it that are no options.
+        placed: the preceding positional arguments.
         table: the commands, with our executables and types.
     """
     find = _KINDS.get(kind)
@@ -88,7 +88,7 @@ def _second_description(asked: Asked) -> Iterable[str]:
 
 
 def _arguments_in(path: Path, pattern: re.Pattern[str]) -> list[str]:
-    """The names of the arguments that a file declares; it is searched as text, because to run it takes too long."""
+    """Return the arguments that a file declares; it is searched as text, because running it takes too long."""
     text = path.read_text(encoding="utf-8", errors="replace")
     names = (next(filter(None, found.groups())) for found in pattern.finditer(text))
     return [f"{name}:=" for name in dict.fromkeys(names)]

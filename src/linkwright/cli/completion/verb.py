@@ -1,4 +1,4 @@
-"""``linkwright completion``: print what a shell needs to complete our command lines."""
+"""``linkwright completion``: print the completion script of a shell."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print it."""
+    """Print the script."""
     from linkwright.cli.completion.scripts import script
 
     print(script(arguments.shell, sys.executable, ["linkwright"]), end="")

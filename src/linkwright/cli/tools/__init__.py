@@ -1,1 +1,1 @@
-"""The commands of ROS 2 under their own names, as the shell of Linkwright offers them."""
+"""The commands of ROS 2 under their own names, for ``linkwright shell``."""

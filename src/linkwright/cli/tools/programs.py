@@ -12,7 +12,7 @@ from linkwright.diagnostics import LinkwrightError, missing_extra, print_diagnos
 from linkwright.interruption import raise_interrupts
 
 _FAILED = 255
-"""What the programs of urdfdom end with: ``return -1``."""
+"""The exit status of urdfdom's programs for errors (``return -1``)."""
 
 
 def main(name: str, words: Sequence[str]) -> int:
@@ -20,10 +20,10 @@ def main(name: str, words: Sequence[str]) -> int:
 
     Args:
         name: a key of `TOOLS`.
-        words: its arguments.
+        words: the arguments.
 
     Returns:
-        Its exit status.
+        The exit status.
     """
     return status_of(lambda: TOOLS[name](words))
 
@@ -33,7 +33,7 @@ def _xacro(words: Sequence[str]) -> int:
 
 
 def _check_urdf(words: Sequence[str]) -> int:
-    """Print what urdfdom's program prints; findings that do not hinder urdfdom are left to ``linkwright check``."""
+    """Print the output of urdfdom's program; other findings are left to ``linkwright check``."""
     if not words:
         print("Expect URDF xml file to parse", file=sys.stderr)
         return _FAILED
@@ -95,4 +95,4 @@ TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "launch_test": _launch_test,
     "colcon": _colcon,
 }
-"""Name -> what takes its arguments and gives its exit status."""
+"""Name -> function from arguments to exit status."""

@@ -1,4 +1,4 @@
-"""``ros2`` as ROS users type it: each of its commands is a verb of ours."""
+"""The command ``ros2``: each of its commands is one of ours."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ COMMANDS = (
     "topic",
     "wtf",
 )
-"""The commands of ``ros2`` that exist here, as it lists them."""
+"""The supported commands of ``ros2``, in its order."""
 
 _ONLY_IN_ROS = {
     "extension_points": "it lists plugins of ros2cli",
@@ -40,7 +40,7 @@ _ONLY_IN_ROS = {
 
 
 def ros2(words: Sequence[str]) -> int:
-    """Run a command of ``ros2``; returns its exit status."""
+    """Run a command of ``ros2``, and return its exit status."""
     rest = [word for word in words if word != "--use-python-default-buffering"]
     if not rest or rest[0] in ("-h", "--help"):
         print(_overview())

@@ -23,23 +23,41 @@ _CLEAR = "\x1b[H\x1b[2J\x1b[3J"
 def configure_echo(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
-    parser.add_argument("message_type", metavar="TYPE", nargs="?", help="such as std_msgs/msg/String; the topic's own")
+    parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /chatter")
+    parser.add_argument(
+        "message_type",
+        metavar="TYPE",
+        nargs="?",
+        help="the type, such as std_msgs/msg/String (default: the topic's type)",
+    )
     add_format_arguments(parser, flow_help="print each message on one line")
-    parser.add_argument("--field", metavar="NAMES", help="print only a part, such as pose.pose.position")
-    parser.add_argument("--lost-messages", action="store_true", help="accepted for ros2's sake; lost ones are told of")
-    parser.add_argument("--no-lost-messages", action="store_true", help="do not tell when messages were lost")
-    parser.add_argument("--raw", action="store_true", help="print the bytes that travel")
-    parser.add_argument("--filter", metavar="EXPR", help="print only messages 'm' for which this holds: 'm.data > 3'")
-    parser.add_argument("--once", action="store_true", help="end after the first message")
-    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="end after so long")
-    parser.add_argument("-i", "--include-message-info", action="store_true", help="print when each was sent")
+    parser.add_argument(
+        "--field", metavar="NAMES", help="print only this part of each message, such as pose.pose.position"
+    )
+    parser.add_argument(
+        "--lost-messages",
+        action="store_true",
+        help="accepted for compatibility with ros2; lost messages are always reported",
+    )
+    parser.add_argument("--no-lost-messages", action="store_true", help="do not report lost messages")
+    parser.add_argument("--raw", action="store_true", help="print the serialized bytes")
+    parser.add_argument(
+        "--filter", metavar="EXPR", help="print only messages 'm' that satisfy this expression, such as 'm.data > 3'"
+    )
+    parser.add_argument("--once", action="store_true", help="exit after the first message")
+    parser.add_argument("--timeout", metavar="SECONDS", type=positive_float, help="exit after this time")
+    parser.add_argument(
+        "-i",
+        "--include-message-info",
+        action="store_true",
+        help="print the metadata of each message, such as the time of sending",
+    )
     parser.add_argument("--clear", action="store_true", help="clear the terminal before each message")
     add_subscription_qos_arguments(parser)
 
 
 def run_echo(arguments: argparse.Namespace) -> int:
-    """Print messages until the user ends it."""
+    """Print messages until the user interrupts it."""
     name = absolute(arguments.topic_name)
     fits = None if arguments.filter is None else compile_filter(arguments.filter)
     field = () if arguments.raw else field_path(arguments.field)
@@ -78,7 +96,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
 
 def lost_text(event: Any) -> str:
-    """The text for lost messages (rclpy ``QoSMessageLostInfo``)."""
+    """Return the text for lost messages (rclpy ``QoSMessageLostInfo``)."""
     return (
         "A message was lost!!!\n"
         f"\ttotal count change:{event.total_count_change}\n"

@@ -1,4 +1,4 @@
-"""The Python expression of ``--filter``, which says of a message ``m`` whether it counts."""
+"""The Python expression of ``--filter``, which selects messages ``m``."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _NAMES: dict[str, Any] = {**_FUNCTIONS, "math": math, "True": True, "False": Fal
 
 
 def compile_filter(text: str) -> Callable[[Any], bool]:
-    """Compile an expression such as ``m.data > 3`` to a test of messages.
+    """Compile an expression such as ``m.data > 3`` to a predicate on messages.
 
-    The expression sees the message as ``m``, the module ``math`` and a few functions, and no name that begins with an
+    The expression can use the message ``m``, the module ``math`` and a few functions, but no names with a leading
     underscore.
 
     Raises:
-        LinkwrightError: CLI407, it is no such expression. The function raises it too, for one that cannot be worked
-            out for a message.
+        LinkwrightError: CLI407, it is not a valid expression. The predicate raises it too, if it cannot be evaluated
+            for a message.
     """
     source = SourceText(_NAME, text)
 
@@ -44,7 +44,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
         ) from None
     for node in ast.walk(tree):
         if isinstance(node, _FORBIDDEN):
-            raise fault(phrase("a filter cannot hold {name}", name=type(node).__name__.lower()), node.col_offset)
+            raise fault(phrase("a filter cannot contain {name}", name=type(node).__name__.lower()), node.col_offset)
         if isinstance(node, ast.Attribute) and node.attr.startswith("_"):
             raise fault(phrase("a filter cannot use '{attr}'", attr=node.attr), node.col_offset)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in (*_NAMES, "m"):
@@ -53,7 +53,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
             }
             if node.id not in bound:
                 raise fault(
-                    phrase("a filter knows no '{id}'", id=node.id),
+                    phrase("a filter has no name '{id}'", id=node.id),
                     node.col_offset,
                     phrase("the message is 'm', as in 'm.data > 3'"),
                 )
@@ -61,9 +61,9 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
 
     def fits(message: Any) -> bool:
         try:
-            # The tree was looked through above: no private names, no functions but those listed.
+            # The tree was checked above: no private names, and only the listed functions.
             return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
-        except Exception as error:  # noqa: BLE001 - whatever the user's expression raises
-            raise fault(phrase("the filter fails: {error}", error=foreign(error))) from None
+        except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
+            raise fault(phrase("the filter failed: {error}", error=foreign(error))) from None
 
     return fits

@@ -1,4 +1,4 @@
-"""``linkwright topic hz``, ``bw`` and ``delay``: how often messages come, how large and how old they are."""
+"""``linkwright topic hz``, ``bw`` and ``delay``: measure the rate, bandwidth and delay of messages."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _RATE_WINDOW = 10_000
 _DELAY_WINDOW = 10_000
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
-"""Seconds and nanoseconds, by the second byte of the CDR header, which tells the order of bytes."""
+"""Seconds and nanoseconds, by the second byte of the CDR header, which is the byte order."""
 _CDR_HEADER = 4
 _SECOND = 1_000_000_000
 _SIZE_WINDOW = 100
@@ -34,15 +34,19 @@ _PERIOD = 1.0
 def configure_hz(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("topic_name", metavar="TOPIC", nargs="+", help="such as /chatter; several give a table")
+    parser.add_argument(
+        "topic_name", metavar="TOPIC", nargs="+", help="the topics, such as /chatter; several topics give a table"
+    )
     _add_window_argument(parser, _RATE_WINDOW)
-    parser.add_argument("--filter", metavar="EXPR", help="count only messages 'm' for which this holds: 'm.data > 3'")
-    parser.add_argument("--wall-time", action="store_true", help="go by the computer's clock, not by /clock")
+    parser.add_argument(
+        "--filter", metavar="EXPR", help="count only messages 'm' that satisfy this expression, such as 'm.data > 3'"
+    )
+    parser.add_argument("--wall-time", action="store_true", help="use the computer's clock, not /clock")
     add_subscription_qos_arguments(parser)
 
 
 def run_hz(arguments: argparse.Namespace) -> int:
-    """Print the rate each second until the user ends it. Messages are not read, unless for the filter."""
+    """Print the rate each second until the user interrupts it; messages are deserialized only for the filter."""
     names = list(dict.fromkeys(map(absolute, arguments.topic_name)))
     fits = None if arguments.filter is None else compile_filter(arguments.filter)
 
@@ -50,7 +54,7 @@ def run_hz(arguments: argparse.Namespace) -> int:
         from linkwright.cli.topic.rates import RateWindow, rate_table, rate_text
 
         windows = {name: RateWindow(arguments.window) for name in names}
-        # A node's clock is asked only where it may differ from the computer's: asking it costs more than counting.
+        # The node's clock is used only if it may differ from the computer's: reading it costs more than counting.
         clock = session.node.get_clock()
         now_ns = clock.now_ns if arguments.use_sim_time and not arguments.wall_time else time.monotonic_ns
 
@@ -87,7 +91,7 @@ def configure_delay(parser: argparse.ArgumentParser) -> None:
 
 
 def run_delay(arguments: argparse.Namespace) -> int:
-    """Print the delay each second until the user ends it."""
+    """Print the delay each second until the user interrupts it."""
     name = absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
@@ -99,9 +103,9 @@ def run_delay(arguments: argparse.Namespace) -> int:
             message = phrase(
                 "msg does not have header: topic '{name}' carries {type_name}", name=name, type_name=kind.TYPE_NAME
             )
-            hint = phrase("only messages with a std_msgs/Header say when they were made")
+            hint = phrase("only messages with a std_msgs/Header have a time stamp")
             raise LinkwrightError(Diagnostic("CLI413", message, hint=hint))
-        # Where the header comes first its stamp is read from the bytes, and the rest is left alone.
+        # If the header is the first field, its stamp is read from the bytes without deserializing the rest.
         raw = next(iter(fields)) == "header"
         window = DelayWindow(arguments.window)
         clock = session.node.get_clock()
@@ -122,13 +126,13 @@ def run_delay(arguments: argparse.Namespace) -> int:
 def configure_bw(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("topic_name", metavar="TOPIC", help="such as /camera/image_raw")
+    parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /camera/image_raw")
     _add_window_argument(parser, _SIZE_WINDOW)
     add_subscription_qos_arguments(parser)
 
 
 def run_bw(arguments: argparse.Namespace) -> int:
-    """Print the bandwidth each second until the user ends it. Messages are not read."""
+    """Print the bandwidth each second until the user interrupts it; messages are not deserialized."""
     name = absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
@@ -148,14 +152,14 @@ def run_bw(arguments: argparse.Namespace) -> int:
 
 
 def _add_window_argument(parser: argparse.ArgumentParser, default: int) -> None:
-    """Declare over how many messages it is measured."""
+    """Declare the number of messages to measure over."""
     parser.add_argument(
         "-w",
         "--window",
         metavar="N",
         type=positive_int,
         default=default,
-        help="over how many messages it is taken (default: %(default)s)",
+        help="the number of messages to measure over (default: %(default)s)",
     )
 
 
@@ -168,22 +172,22 @@ def _subscribe(
     *,
     raw: bool,
 ) -> None:
-    """Receive a topic with the QoS that was asked for, or that its publishers have.
+    """Subscribe to a topic with the requested QoS, or with that of its publishers.
 
     Args:
-        session: of the verb.
-        arguments: with those of `add_subscription_qos_arguments`.
+        session: the session of the command.
+        arguments: the parsed arguments, with those of `add_subscription_qos_arguments`.
         message_type: the class of the messages.
-        name: absolute.
-        callback: is given each message, and what is known of it beside if it takes that; its errors end the verb.
-        raw: whether it is given the bytes, and no message is made of them.
+        name: the absolute name.
+        callback: receives each message, and its metadata if it has a second parameter; its errors end the command.
+        raw: whether the callback gets the bytes instead of messages.
     """
     profile = fitting_profile(session.node, name, arguments)
     session.node.create_subscription(message_type, name, session.receiver(callback), profile, raw=raw)
 
 
 async def _report_until_finished(session: Session, text: Callable[[], str | None]) -> int:
-    """Print a text each second, when there is one, until the verb is done; the exit status."""
+    """Print a text, if there is one, each second until the command ends; return the exit status."""
 
     def report() -> None:
         said = text()

@@ -1,4 +1,4 @@
-"""``linkwright topic list``, ``info``, ``find`` and ``type``: which topics there are and what they carry."""
+"""``linkwright topic list``, ``info``, ``find`` and ``type``: the topics and their types."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _TOPICS = Kind(
 )
 
 _INFINITE_NS = 0x7FFFFFFF_FFFFFFFF
-"""From this many nanoseconds on (rmw: 9223372036.854775807 s) a duration counts as endless."""
+"""The smallest infinite duration in nanoseconds (rmw: 9223372036.854775807 s)."""
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
@@ -38,7 +38,9 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
     add_types_argument(parser, types_help="show the type of each topic beside it")
     add_count_argument(parser, "topic")
     add_hidden_argument(parser, "--include-hidden-topics", hidden_help="consider hidden topics as well")
-    parser.add_argument("-v", "--verbose", action="store_true", help="say how many publish and subscribe to each")
+    parser.add_argument(
+        "-v", "--verbose", action="store_true", help="print the numbers of publishers and subscriptions of each topic"
+    )
 
 
 def run_list(arguments: argparse.Namespace) -> int:
@@ -70,14 +72,14 @@ def _counted(title: str, kind: str, topics: Sequence[tuple[str, Sequence[str], i
 def configure_info(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
+    parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /chatter")
     parser.add_argument(
         "-v", "--verbose", action="store_true", help="describe each publisher and subscription: node, type, QoS"
     )
 
 
 def run_info(arguments: argparse.Namespace) -> int:
-    """Print what is known of the topic, as ros2 does."""
+    """Print information on the topic, as ros2 does."""
     name = absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
@@ -101,7 +103,7 @@ def run_info(arguments: argparse.Namespace) -> int:
 def configure_find(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("topic_type", metavar="TYPE", help="such as std_msgs/msg/String")
+    parser.add_argument("topic_type", metavar="TYPE", help="the type, such as std_msgs/msg/String")
     add_count_argument(parser, "topic")
     add_hidden_argument(parser, "--include-hidden-topics", hidden_help="consider hidden topics as well")
 
@@ -114,18 +116,18 @@ def run_find(arguments: argparse.Namespace) -> int:
 def configure_type(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
+    parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /chatter")
 
 
 def run_type(arguments: argparse.Namespace) -> int:
-    """Print the types in use on the topic, a line each."""
+    """Print the types in use on the topic, one per line."""
     return _TOPICS.print_types(arguments, arguments.topic_name, hidden=arguments.include_hidden_topics)
 
 
 def endpoint_text(info: Any) -> str:
-    """The description of an endpoint (rclpy ``TopicEndpointInfo``), in several lines.
+    """Return the description of an endpoint (rclpy ``TopicEndpointInfo``), in several lines.
 
-    The type's hash is shown where the other side tells it, which Humble does not.
+    The type hash is shown if the other side announces it; Humble does not.
     """
     lines = [
         f"Node name: {info.node_name}",
@@ -144,7 +146,7 @@ def endpoint_text(info: Any) -> str:
 
 
 def qos_lines(qos: QoSProfile) -> list[str]:
-    """The policies of a profile, a line each."""
+    """Return the policies of a profile, one per line."""
     history = qos.history.name
     if history == "KEEP_LAST":
         history = f"{history} ({qos.depth})"

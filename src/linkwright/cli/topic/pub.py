@@ -22,51 +22,56 @@ if TYPE_CHECKING:
 _KEEP_ALIVE = 0.1
 _TELL_WAITING = 1.0
 _MATCHED_BOTH_WAYS = 0.15
-"""Seconds after which the subscription that is known here knows the publisher too: what is sent before may be lost."""
+"""Seconds after which a discovered subscription has discovered the publisher too; earlier messages may be lost."""
 _Filled = tuple[Any, list[Callable[[Any], None]]]
 
 
 def configure_pub(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_session_arguments(parser)
-    parser.add_argument("topic_name", metavar="TOPIC", help="such as /chatter")
-    parser.add_argument("message_type", metavar="TYPE", help="such as std_msgs/msg/String")
+    parser.add_argument("topic_name", metavar="TOPIC", help="the topic, such as /chatter")
+    parser.add_argument("message_type", metavar="TYPE", help="the type, such as std_msgs/msg/String")
     values = add_values_arguments(
         parser,
-        values_help="the message in YAML, such as 'data: hello'; fields left out have their defaults, 'header: auto'"
-        " and 'stamp: now' stand for the time of publishing",
+        values_help="the message in YAML, such as 'data: hello'; omitted fields keep their defaults, and "
+        "'header: auto' and 'stamp: now' insert the time of publishing",
     )
     values.add_argument("--yaml-file", metavar="FILE", help="publish the messages of a file, as topic echo prints them")
-    parser.add_argument("-r", "--rate", metavar="N", type=positive_float, default=1.0, help="hertz, default 1")
     parser.add_argument(
-        "-p", "--print", metavar="N", type=unsigned_int, default=1, help="print only each N-th message (default: 1)"
+        "-r", "--rate", metavar="N", type=positive_float, default=1.0, help="the rate in hertz, default 1"
+    )
+    parser.add_argument(
+        "-p", "--print", metavar="N", type=unsigned_int, default=1, help="print only every N-th message (default: 1)"
     )
     times = parser.add_mutually_exclusive_group()
-    times.add_argument("-1", "--once", action="store_true", help="publish one message and end")
-    times.add_argument("-t", "--times", metavar="N", type=unsigned_int, default=0, help="publish N messages and end")
+    times.add_argument("-1", "--once", action="store_true", help="publish one message and exit")
+    times.add_argument("-t", "--times", metavar="N", type=unsigned_int, default=0, help="publish N messages and exit")
     parser.add_argument(
         "-w",
         "--wait-matching-subscriptions",
         metavar="N",
         type=unsigned_int,
-        help="begin when there are so many subscriptions (default: 1 with --once and --times, else 0)",
+        help="wait for this many subscriptions before publishing (default: 1 with --once and --times, else 0)",
     )
     parser.add_argument(
-        "--max-wait-time-secs", metavar="SECONDS", type=positive_float, help="wait no longer than this for them"
+        "--max-wait-time-secs",
+        metavar="SECONDS",
+        type=positive_float,
+        help="the longest time to wait for subscriptions",
     )
     parser.add_argument(
         "--keep-alive",
         metavar="SECONDS",
         type=float,
         default=_KEEP_ALIVE,
-        help="stay so long after the last message (default: %(default)s)",
+        help="how long to keep running after the last message (default: %(default)s)",
     )
     parser.add_argument("-n", "--node-name", metavar="NODE", help="the name of the publishing node")
     add_publisher_qos_arguments(parser)
 
 
 def run_pub(arguments: argparse.Namespace) -> int:
-    """Publish until the user ends it, or as often as was asked for."""
+    """Publish until the user interrupts it, or the requested number of times."""
     from linkwright.messages import get_message
 
     name = absolute(arguments.topic_name)
@@ -99,7 +104,7 @@ def run_pub(arguments: argparse.Namespace) -> int:
 
 
 async def _wait_for(session: Session, publisher: Publisher[Any], wanted: int, longest: float | None) -> bool:
-    """Wait for subscriptions, telling so each second."""
+    """Wait for subscriptions, with a message each second."""
     waited = 0.0
     while publisher.get_subscription_count() < wanted:
         if longest is not None and waited >= longest:

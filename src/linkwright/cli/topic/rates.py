@@ -1,4 +1,4 @@
-"""How often, how late and how much: the figures of ``topic hz``, ``topic delay`` and ``topic bw``, and their texts."""
+"""The statistics of ``topic hz``, ``topic delay`` and ``topic bw``, and their texts."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ class Spread:
     """The statistics of a window of durations, in nanoseconds.
 
     Attributes:
-        mean: their average.
-        least: the shortest.
-        most: the longest.
+        mean: the average.
+        least: the shortest duration.
+        most: the longest duration.
         deviation: the standard deviation.
-        count: how many there are.
+        count: the number of durations.
     """
 
     mean: float
@@ -32,7 +32,7 @@ class Spread:
 
     @classmethod
     def of(cls, durations: Iterable[float]) -> Spread:
-        """The figures of at least one duration."""
+        """Return the statistics of one or more durations."""
         values = list(durations)
         mean = sum(values) / len(values)
         deviation = math.sqrt(sum((value - mean) ** 2 for value in values) / len(values))
@@ -40,11 +40,11 @@ class Spread:
 
     @property
     def rate(self) -> float:
-        """How many there are in a second, were these the times between messages."""
+        """Return the rate in hertz, taking the durations as times between messages."""
         return _SECOND / self.mean if self.mean > 0 else 0.0
 
     def bounds(self) -> str:
-        """The second line that ``topic hz`` and ``topic delay`` print."""
+        """Return the second line of ``topic hz`` and ``topic delay``."""
         return (
             f"\tmin: {self.least / _SECOND:.3f}s max: {self.most / _SECOND:.3f}s "
             f"std dev: {self.deviation / _SECOND:.5f}s window: {self.count}"
@@ -55,7 +55,7 @@ class RateWindow:
     """The times between the last messages of a topic.
 
     Args:
-        size: how many are kept.
+        size: the number of messages in the window.
     """
 
     def __init__(self, size: int) -> None:
@@ -64,7 +64,7 @@ class RateWindow:
         self._new = False
 
     def add(self, now_ns: int) -> bool:
-        """Count a message; True when time went back, and counting began anew."""
+        """Count a message; return True if time jumped back and the window was reset."""
         last, self._last, self._new = self._last, now_ns, True
         if last is None:
             return False
@@ -75,7 +75,7 @@ class RateWindow:
         return False
 
     def spread(self) -> Spread | None:
-        """The figures; None when no message came since they were last asked for."""
+        """Return the statistics, or None if no message arrived since the last call."""
         if not self._new or not self._times:
             return None
         self._new = False
@@ -83,10 +83,10 @@ class RateWindow:
 
 
 class DelayWindow:
-    """How old the last messages of a topic were when they came.
+    """The delays of the last messages of a topic.
 
     Args:
-        size: how many are kept.
+        size: the number of messages in the window.
     """
 
     def __init__(self, size: int) -> None:
@@ -102,7 +102,7 @@ class DelayWindow:
         self._delays.append(now_ns - stamp_ns)
 
     def text(self) -> str | None:
-        """The line of ``topic delay``; None before the first message."""
+        """Return the line of ``topic delay``, or None before the first message."""
         if not self._delays:
             return None
         if not self._new:
@@ -113,10 +113,10 @@ class DelayWindow:
 
 
 class BandwidthWindow(TrafficWindow):
-    """The sizes of the last messages of a topic, as ``topic bw`` tells of them."""
+    """The sizes of the last messages of a topic, for ``topic bw``."""
 
     def text(self, now_ns: int) -> str | None:
-        """The line of ``topic bw``; None while there are fewer than two messages."""
+        """Return the line of ``topic bw``, or None with fewer than two messages."""
         traffic = self.traffic(now_ns)
         if traffic is None:
             return None
@@ -127,7 +127,7 @@ class BandwidthWindow(TrafficWindow):
 
 
 def _unit_for(bytes_each_second: float) -> Callable[[float], str]:
-    """A function that writes numbers of bytes in the unit that suits a rate, as ros2 does."""
+    """Return a function that formats byte counts in the unit that suits a rate, as ros2 does."""
     scale, digits, name = next(unit for limit, unit in _UNITS if bytes_each_second < limit)
     return lambda size: f"{size / scale:.{digits}f} {name}"
 
@@ -136,7 +136,7 @@ _UNITS = ((1e3, (1.0, 0, "B")), (1e6, (1e3, 2, "KB")), (math.inf, (1e6, 2, "MB")
 
 
 def rate_text(spread: Spread) -> str:
-    """The line of ``topic hz`` for one topic."""
+    """Return the line of ``topic hz`` for one topic."""
     return f"average rate: {spread.rate:.3f}\n{spread.bounds()}"
 
 
@@ -144,7 +144,7 @@ _HEADER = ("topic", "rate", "min_delta", "max_delta", "stddev", "window")
 
 
 def rate_table(spreads: Mapping[str, Spread]) -> str:
-    """The table of ``topic hz`` for several topics."""
+    """Return the table of ``topic hz`` for several topics."""
     rows = [
         (
             topic,
