@@ -94,7 +94,7 @@ class TestBuilder:
         assert 'name="v"' in configs.robot_description_semantic["robot_description_semantic"]
         warning = capsys.readouterr().err
         assert "warning[LAUNCH153]: parameter file " in warning
-        assert "taken from the topic /robot_description" in warning
+        assert "read it from the topic /robot_description" in warning
 
     def test_what_it_is_told(self) -> None:
         configs = (

@@ -110,7 +110,7 @@ class TestModulesOfTheWorkspace:
 
     def test_a_missing_one_is_told_with_what_provides_it(self, file: Any) -> None:
         for module, hint in (
-            ("webots_ros2_driver.webots_launcher", "it comes with webots_ros2"),
+            ("webots_ros2_driver.webots_launcher", "it is part of webots_ros2"),
             ("serial.nothing", package_hint("pyserial")),
             ("my_arm_bringup", "put the ROS package 'my_arm_bringup' into the workspace's src folder"),
             ("nobody_has_this", "install the Python package that provides 'nobody_has_this'"),

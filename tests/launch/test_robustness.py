@@ -151,7 +151,7 @@ def test_a_function_that_wants_arguments_is_shown(write: Write) -> None:
 async def test_a_name_that_no_node_can_have(launch, name: str) -> None:
     done = await launch(Node(package="robot_state_publisher", executable="robot_state_publisher", name=name))
     assert not done.succeeded
-    assert f"error[LAUNCH134]: the name '{name}' of a node is malformed: node name " in done.err
+    assert f"error[LAUNCH134]: node name '{name}' is malformed: node name " in done.err
 
 
 @pytest.mark.parametrize("namespace", ["机器人", "a b", "a//b", "a/1"])
@@ -180,11 +180,11 @@ def test_a_line_without_an_end_is_shown_in_pieces() -> None:
 
 PARAM = '<launch>\n <arg name="n" default="x"/>\n <node pkg="robot_state_publisher" exec="robot_state_publisher">\n  {}'
 WRONG_VALUES = {
-    '<param name="p" value="x" type="int"/>': "is 'x', which is no 'int'",
-    '<param name="p" value="1;x" value-sep=";" type="list_of_float"/>': "is [1.0, 'x'], which is no 'list_of_float'",
-    '<param name="p" value="true;maybe" value-sep=";" type="list_of_bool"/>': "which is no 'list_of_bool'",
-    '<param name="p" value="1;x" value-sep=";"/>': "is [1, 'x'], whose items are of several types",
-    '<param name="p" value="$(var n)" type="int"/>': "is not the int that is asked for",
+    '<param name="p" value="x" type="int"/>': "is 'x', which is not of type 'int'",
+    '<param name="p" value="1;x" value-sep=";" type="list_of_float"/>': "'x'], which is not of type 'list_of_float'",
+    '<param name="p" value="true;maybe" value-sep=";" type="list_of_bool"/>': "which is not of type 'list_of_bool'",
+    '<param name="p" value="1;x" value-sep=";"/>': "is [1, 'x'], whose items have different types",
+    '<param name="p" value="$(var n)" type="int"/>': "is not of the requested type int",
 }
 
 

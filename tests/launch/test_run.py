@@ -228,7 +228,7 @@ class TestBadInput:
             "def generate_launch_description():\n    made = LaunchDescription()\n"
             "    made.add_action([LogInfo(msg='x')])\n    return made\n",
         )
-        with pytest.raises(LinkwrightError, match="is given something of type list") as caught:
+        with pytest.raises(LinkwrightError, match="not a value of type list") as caught:
             run_launch(LaunchTarget(str(path)))
         (diagnostic,) = caught.value.diagnostics
         assert diagnostic.code == "LAUNCH147"

@@ -83,7 +83,7 @@ class TestWords:
         assert caught.value.diagnostics[0].hint == "write gui:=true"
 
     def test_nothing(self) -> None:
-        with pytest.raises(LinkwrightError, match="no launch file is named"):
+        with pytest.raises(LinkwrightError, match="no launch file is given"):
             parse_launch_words([])
 
     def test_a_package_alone(self, package: Path) -> None:
@@ -129,7 +129,7 @@ class TestChecks:
             check_arguments(self.description(), {"modl": "m", "launch-prefix": "gdb"})
         (error,) = caught.value.diagnostics
         assert error.code == "LAUNCH114"
-        assert error.hint == "'modl' is given: did you mean 'model'?"
+        assert error.hint == "'modl' is given; did you mean 'model'?"
         with pytest.raises(LinkwrightError) as caught:
             check_arguments(self.description(), {"unlike": "m"})
         assert caught.value.diagnostics[0].hint == "add model:=VALUE"

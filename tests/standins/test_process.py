@@ -192,7 +192,7 @@ class TestManners:
         ("module", "hint"),
         [
             ("carrier_msgs.msg", "hint: put the ROS package 'carrier_msgs' into the workspace's src folder"),
-            ("image_geometry", "hint: it comes with vision_opencv, which has to be compiled"),
+            ("image_geometry", "hint: it is part of vision_opencv, which must be compiled"),
             ("serial", f"hint: {package_hint('pyserial')}"),
             ("unheard_of", "ModuleNotFoundError: No module named 'unheard_of'"),
         ],

@@ -1,4 +1,4 @@
-"""Launch descriptions: actions, substitutions, conditions, events, and running what they describe."""
+"""Launch descriptions: actions, substitutions, conditions and events, and the engine that runs them."""
 
 from linkwright.hosting.plans import is_viewer
 from linkwright.launch.program import find_program, run_viewer

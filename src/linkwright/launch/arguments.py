@@ -1,4 +1,4 @@
-"""Launch arguments as a user writes them: ``name:=value``."""
+"""Launch arguments in the form ``name:=value``."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.substitution import describe
 
 UNDECLARED = frozenset({"launch-prefix", "sigterm_timeout", "sigkill_timeout", "emulate_tty", "ros_namespace"})
-"""Launch configurations that mean something without being declared."""
+"""Launch configurations that have an effect without being declared."""
 
 
 def parse_arguments(words: Iterable[str]) -> dict[str, str]:
-    """Names and values of arguments; of several with one name the last counts.
+    """Parse arguments into names and values; of several with the same name, the last counts.
 
     Raises:
-        LinkwrightError: LAUNCH111, with all words that are not of the form ``name:=value``.
+        LinkwrightError: LAUNCH111, with all arguments that are not of the form ``name:=value``.
     """
     return parse_assignments(words, _malformed)
 
@@ -38,13 +38,13 @@ def _malformed(word: str, hint: Phrase) -> Diagnostic:
 
 
 def check_arguments(description: LaunchDescription, given: Mapping[str, str]) -> list[Diagnostic]:
-    """Compare the arguments given with those that the launch file declares, before anything starts.
+    """Check the arguments against the declarations of the launch file, before anything starts.
 
     Returns:
-        Warnings (LAUNCH113) about arguments that it does not declare: as in ROS they are set all the same.
+        Warnings (LAUNCH113) about undeclared arguments; as in ROS, they are set nevertheless.
 
     Raises:
-        LinkwrightError: LAUNCH112 and LAUNCH114, all wrong values and missing arguments together.
+        LinkwrightError: LAUNCH112 and LAUNCH114, all invalid values and missing arguments together.
     """
     declared = description.get_launch_arguments()
     names = [argument.name for argument in declared]
@@ -74,23 +74,27 @@ def _error_of(argument: DeclareLaunchArgument, given: Mapping[str, str]) -> Sequ
 
 
 def _misspelt(name: str, undeclared: Sequence[str], error: Diagnostic) -> Diagnostic:
-    """The error about a missing argument; its hint names the one that was given with nearly the same name."""
+    """Return the error for a missing argument; its hint names a given argument with a similar name."""
     near = nearest(name, undeclared, limit=1)
     return (
-        error.but(hint=phrase("'{near}' is given: did you mean '{name}'?", near=near[0], name=name)) if near else error
+        error.but(hint=phrase("'{near}' is given; did you mean '{name}'?", near=near[0], name=name)) if near else error
     )
 
 
 def _undeclared(name: str, declared: Sequence[str]) -> Diagnostic:
     hint = did_you_mean(name, declared)
     if hint is None:
-        hint = phrase("it declares {names}", names=quoted_names(declared)) if declared else phrase("it declares none")
+        hint = (
+            phrase("it declares {names}", names=quoted_names(declared))
+            if declared
+            else phrase("it declares no arguments")
+        )
     message = phrase("argument '{name}' is not declared by the launch file", name=name)
     return Diagnostic("LAUNCH113", message, severity=Severity.WARNING, hint=hint)
 
 
 def argument_listing(description: LaunchDescription) -> str:
-    """What ``ros2 launch --show-args`` prints: names, descriptions and defaults of the declared arguments."""
+    """Return the output of ``ros2 launch --show-args``: names, descriptions and defaults of the arguments."""
     lines = ["Arguments (pass arguments as '<name>:=<value>'):"]
     declared = description.get_launch_arguments()
     for argument in declared:

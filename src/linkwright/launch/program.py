@@ -1,4 +1,4 @@
-"""Running one executable of a package, without a launch file."""
+"""Run one executable of a package, without a launch file."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from linkwright.packages.programs.workspace_environment import workspace_environ
 
 @dataclass(frozen=True)
 class Program:
-    """An executable that is ready to be run.
+    """An executable that is ready to run.
 
     Attributes:
         command: its words.
         environment: the environment it needs.
-        is_ours: whether it is a node that comes with us.
+        is_ours: whether it is a node that comes with Linkwright.
     """
 
     command: list[str]
@@ -46,11 +46,11 @@ def find_program(finder: PackageFinder, package: str, executable: str) -> Progra
 
 
 def run_viewer(arguments: Sequence[str], options: LaunchOptions | None = None) -> int:
-    """Run the viewer that stands in for RViz, until the user ends it.
+    """Run the viewer in place of RViz, until the user ends it.
 
     Args:
         arguments: the command line of ``rviz2``.
-        options: how its page is served.
+        options: the options of its page.
 
     Returns:
         The exit status, see `linkwright.launch.run_launch`.

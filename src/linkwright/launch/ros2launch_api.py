@@ -18,7 +18,7 @@ from linkwright.packages.launch_files import is_launch_file_name
 
 
 class MultipleLaunchFilesError(Exception):
-    """Several files of a package have a name.
+    """Several files of a package have the same name.
 
     Attributes:
         paths: the files.
@@ -30,7 +30,7 @@ class MultipleLaunchFilesError(Exception):
 
 
 def get_share_file_path_from_package(*, package_name: str, file_name: str) -> str:
-    """The path of a file of a package, wherever it is in its share folder.
+    """Return the path of a file anywhere in the share folder of a package.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -49,18 +49,18 @@ def get_share_file_path_from_package(*, package_name: str, file_name: str) -> st
 
 
 def get_launch_file_paths(*, path: str) -> list[str]:
-    """The launch files in a folder and those below it."""
+    """Return the launch files in a folder and below."""
     inside = (str(Path(folder, name)) for folder, _, files in os.walk(path) for name in files)
     return [each for each in inside if is_launch_file(each)]
 
 
 def is_launch_file(path: str) -> bool:
-    """Whether a path is one of a launch file."""
+    """Return whether a path is that of a launch file."""
     return is_launch_file_name(str(path)) and Path(path).is_file()
 
 
 def parse_launch_arguments(launch_arguments: Sequence[str]) -> list[tuple[str, str]]:
-    """Names and values of arguments written ``name:=value``; of several with one name the last counts.
+    """Parse arguments ``name:=value``; of several with the same name, the last counts.
 
     Raises:
         RuntimeError: one is malformed.
@@ -76,12 +76,12 @@ def parse_launch_arguments(launch_arguments: Sequence[str]) -> list[tuple[str, s
 
 
 def print_a_launch_file(*, launch_file_path: str) -> None:
-    """Print what is in a launch file."""
+    """Print the contents of a launch file."""
     print(format_launch_description(load_launch_file(Path(launch_file_path))))
 
 
 def print_arguments_of_launch_file(*, launch_file_path: str) -> None:
-    """Print which arguments a launch file takes."""
+    """Print the arguments of a launch file."""
     print(argument_listing(load_launch_file(Path(launch_file_path))))
 
 

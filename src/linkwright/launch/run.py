@@ -1,4 +1,4 @@
-"""Running a launch from the command line to its end."""
+"""Run a launch from the command line to its end."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ from linkwright.packages import PackageFinder
 
 @dataclass(frozen=True)
 class LaunchOptions:
-    """How a launch is run.
+    """The options of a launch.
 
     Attributes:
         host: the address that the viewer's server binds to.
-        port: its port; None for the default one, or the next that is free.
-        open_browser: whether the page is opened in the user's browser.
-        isolate: whether our own nodes run as processes, each by itself.
-        debug: whether it logs in detail.
-        noninteractive: whether there is no terminal that would send signals to the processes too.
-        prefix: a command to put before those of processes.
+        port: its port; None for the default, or the next free one.
+        open_browser: whether to open the page in the user's browser.
+        isolate: whether Linkwright's own nodes run in separate processes.
+        debug: whether to log in detail.
+        noninteractive: whether there is no terminal, which would also send signals to the processes.
+        prefix: a prefix for the command lines of processes.
         prefix_filter: a regular expression for the names of the programs that get it.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
-        skip_missing: whether what cannot run because something is not there is left out.
-        command_to_skip_missing: what the user may type to have that; told where something is missing.
+        skip_missing: whether to skip parts whose package, program or file is missing.
+        command_to_skip_missing: the command that does so, for the hint about missing parts.
         network: whether the nodes of this process join the ROS 2 network, where other programs see them.
-        history: how many bytes of what comes a viewer keeps, to go back to the last minutes; 0 for none.
+        history: bytes of memory for the viewer's history of the last minutes; 0 for none.
     """
 
     host: str = "127.0.0.1"
@@ -61,12 +61,12 @@ class LaunchOptions:
 
     @property
     def configurations(self) -> dict[str, str]:
-        """The launch configurations that say the same."""
+        """Return the launch configurations of these options."""
         given = {"launch-prefix": self.prefix, "launch-prefix-filter": self.prefix_filter}
         return {name: value for name, value in given.items() if value is not None}
 
     def for_session(self, title: str) -> SessionOptions:
-        """The options of the session."""
+        """Return the options of the session."""
         return SessionOptions(
             self.host,
             self.port,
@@ -85,18 +85,18 @@ def run_launch(
 ) -> int:
     """Run a launch file until everything in it has ended or the user ends it.
 
-    The modules that launch files import must be there: see `linkwright.standins.activate`.
+    The modules that launch files import must be available: see `linkwright.standins.activate`.
 
     Args:
         target: the launch file.
         arguments: name -> value of the launch arguments.
-        options: how it is run.
+        options: the options of the launch.
 
     Returns:
         The exit status: 0, 1 if something in the launch failed, 128 and the signal's number after a signal.
 
     Raises:
-        LinkwrightError: what is wrong with the target, the launch file or the arguments.
+        LinkwrightError: the errors in the target, the launch file or the arguments.
     """
     given = dict(arguments or {})
     finder = target.finder()
@@ -121,19 +121,19 @@ def run_launch(
 
 
 def show_arguments(target: LaunchTarget) -> str:
-    """What ``--show-args`` prints about a launch file.
+    """Return the output of ``--show-args`` for a launch file.
 
     Raises:
-        LinkwrightError: what is wrong with the target or the launch file.
+        LinkwrightError: the errors in the target or the launch file.
     """
     return _read(target, argument_listing)
 
 
 def print_description(target: LaunchTarget) -> str:
-    """What ``--print`` prints about a launch file: its entities, and what they lead to.
+    """Return the output of ``--print`` for a launch file: the tree of its entities.
 
     Raises:
-        LinkwrightError: what is wrong with the target or the launch file.
+        LinkwrightError: the errors in the target or the launch file.
     """
     from linkwright.launch.model.introspector import format_launch_description
 
@@ -141,7 +141,7 @@ def print_description(target: LaunchTarget) -> str:
 
 
 def _read(target: LaunchTarget, tell: Callable[[LaunchDescription], str]) -> str:
-    """Read a launch file without running it, and return the text that is made of its description."""
+    """Read a launch file without running it, and return a text about its description."""
     finder = target.finder()
     with own_environment(finder):
         return tell(load_launch_file(target.resolve(finder)))
@@ -154,13 +154,13 @@ def run_description(
     options: LaunchOptions,
     title: str,
 ) -> int:
-    """Run a description that `load` gives, together with the values of the moment to begin with.
+    """Run a description; `load` returns it with its initial locals.
 
     Returns:
         The exit status, see `run_launch`.
 
     Raises:
-        LinkwrightError: what `load` raises.
+        LinkwrightError: the error of `load`.
     """
     log = LaunchLog(debug=options.debug)
 
@@ -194,7 +194,7 @@ async def _run(
 
 
 def _foxglove_bridge(port: int) -> Action:
-    """The node that Foxglove and Lichtblick connect to."""
+    """Return the node that Foxglove and Lichtblick connect to."""
     from linkwright.launch.ros import Node
 
     package = executable = "foxglove_bridge"

@@ -1,4 +1,4 @@
-"""Which launch file is meant: a path, or a package and the name of a file in it."""
+"""The launch file to run: a path, or a package and the name of a file in it."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class LaunchTarget:
     package: str | None = None
 
     def finder(self) -> PackageFinder:
-        """The package finder of this launch, which begins at the file's folder and then the current one."""
+        """Return the package finder of this launch, which starts at the file's folder and the current folder."""
         if self.package is None:
             return PackageFinder(start=[Path(self.file).absolute().parent, Path.cwd()])
         return PackageFinder()
 
     def resolve(self, finder: PackageFinder) -> Path:
-        """The path of the launch file, absolute.
+        """Return the absolute path of the launch file.
 
         Raises:
             LinkwrightError: PKG101, an unknown package; LAUNCH101, the package has no such file, or several.
@@ -70,26 +70,26 @@ class LaunchTarget:
             hint = (
                 phrase("it has {names}", names=joined(names))
                 if names
-                else phrase("it has no launch files; is its setup.py installing them?")
+                else phrase("it has no launch files; does its setup.py install them?")
             )
         raise LinkwrightError(Diagnostic("LAUNCH101", message, hint=hint))
 
 
 def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, str]]:
-    """The words of ``launch PACKAGE FILE [name:=value ...]`` or ``launch PATH [name:=value ...]``.
+    """Parse the words of ``launch PACKAGE FILE [name:=value ...]`` or ``launch PATH [name:=value ...]``.
 
     Raises:
         LinkwrightError: LAUNCH110, no launch file is named; LAUNCH111, malformed arguments.
     """
     split = next((index for index, word in enumerate(words) if ":=" in word), len(words))
     split = min(split, 2)
-    if split == 2 and _is_file(words[0]):  # a path, and after it a word that should be an argument
+    if split == 2 and _is_file(words[0]):  # a path, followed by a word that should be an argument
         split = 1
     named, rest = words[:split], words[split:]
     arguments = parse_arguments(rest)
     if not named:
         raise _incomplete(
-            phrase("no launch file is named"), phrase("name a PACKAGE and a FILE in it, or the PATH of a launch file")
+            phrase("no launch file is given"), phrase("name a PACKAGE and a FILE in it, or the PATH of a launch file")
         )
     if len(named) == 1:
         if not _is_file(named[0]) and not _is_path(named[0]):

@@ -23,7 +23,7 @@ def models_folder() -> Path:
 
 
 def is_installed(entry: ModelEntry, folder: Path | None = None) -> bool:
-    """Whether a model is there; what is there has been checked when it was put there.
+    """Return whether a model is there; what is there has been checked when it was put there.
 
     Args:
         entry: the model.

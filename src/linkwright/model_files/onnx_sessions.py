@@ -74,7 +74,7 @@ def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
 
 
 def has_cuda() -> bool:
-    """Whether the onnxruntime that is installed was built for CUDA; a GPU may still be missing.
+    """Return whether the onnxruntime that is installed was built for CUDA; a GPU may still be missing.
 
     Raises:
         ModuleNotFoundError: onnxruntime is not installed.

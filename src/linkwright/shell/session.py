@@ -170,7 +170,7 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
 
 
 def _has_terminal() -> bool:
-    """Whether a terminal controls this process: its Ctrl-C is sent to the command too."""
+    """Return whether a terminal controls this process: its Ctrl-C is sent to the command too."""
     try:
         os.close(os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY))
     except OSError:

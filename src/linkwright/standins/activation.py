@@ -96,7 +96,7 @@ def _asking_file() -> Path | None:
 
 
 def _may_be_interfaces(name: str) -> bool:
-    """Whether a module may be one of messages, so that it is worth loading their classes to find out."""
+    """Return whether a module may be one of messages, so that it is worth loading their classes to find out."""
     package, _, kind = name.partition(".")
     if kind:
         return kind in ("msg", "srv", "action")

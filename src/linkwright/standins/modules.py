@@ -49,7 +49,7 @@ def find_spec(name: str) -> ModuleSpec | None:
 
 
 def is_ours(module: ModuleType | None) -> bool:
-    """Whether a module is one that was made here."""
+    """Return whether a module is one that was made here."""
     return isinstance(getattr(getattr(module, "__spec__", None), "loader", None), _Loader)
 
 

@@ -55,7 +55,7 @@ class StorageFilter:
     regex_to_exclude: str = ""
 
     def admits(self, topic: str) -> bool:
-        """Whether a topic is read."""
+        """Return whether a topic is read."""
         named, pattern = [*self.topics, *self.services_events], self.regex or self.topics_regex
         wanted = not (named or pattern) or topic in named or bool(pattern and re.search(pattern, topic))
         left_out = self.regex_to_exclude or self.topics_regex_to_exclude
@@ -116,7 +116,7 @@ class TopicMetadata:
             setattr(self, name, value)
 
     def equals(self, other: TopicMetadata) -> bool:
-        """Whether another is the same."""
+        """Return whether another is the same."""
         return self == other
 
 
@@ -178,7 +178,7 @@ class MetadataIo:
     """Reads and writes ``metadata.yaml``, in its version 8, which Humble and later read."""
 
     def metadata_file_exists(self, uri: str) -> bool:
-        """Whether a folder has the file."""
+        """Return whether a folder has the file."""
         return (Path(uri) / METADATA).exists()
 
     def read_metadata(self, uri: str) -> BagMetadata:

@@ -96,7 +96,7 @@ class SequentialReader:
         self._opened().close()
 
     def has_next(self) -> bool:
-        """Whether there is another message."""
+        """Return whether there is another message."""
         return self._next is not None
 
     def read_next(self) -> tuple[str, bytes, int]:

@@ -126,7 +126,7 @@ class BasicNavigator(Node):
             spin_until_future_complete(self, self.goal_handle.cancel_goal_async())
 
     def isTaskComplete(self) -> bool:
-        """Whether the task has ended, or there is none; it waits for a tenth of a second."""
+        """Return whether the task has ended, or there is none; it waits for a tenth of a second."""
         if self.result_future is None:
             return True
         spin_until_future_complete(self, self.result_future, timeout_sec=_STEP)

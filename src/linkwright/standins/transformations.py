@@ -247,7 +247,7 @@ def concatenate_matrices(*matrices: ArrayLike) -> Matrix:
 
 
 def is_same_transform(matrix0: ArrayLike, matrix1: ArrayLike) -> bool:
-    """Whether two matrices are the same motion, up to a factor."""
+    """Return whether two matrices are the same motion, up to a factor."""
     m0, m1 = np.array(matrix0, dtype=float), np.array(matrix1, dtype=float)
     return bool(np.allclose(m0 / m0[3, 3], m1 / m1[3, 3]))
 
@@ -327,7 +327,7 @@ def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float
 
 
 def _read_axes(axes: str) -> tuple[bool, tuple[int, int, int]]:
-    """Whether the axes turn with the body, and the axes about which to turn, as if they did not."""
+    """Return whether the axes turn with the body, and the axes about which to turn, as if they did not."""
     if axes not in _AXES:
         raise ValueError(f"unknown axes '{axes}': write s or r and three axes, such as sxyz")
     a, b, c = ("xyz".index(letter) for letter in axes[1:])

@@ -37,7 +37,7 @@ async def test_all_that_is_missing_is_left_out_and_listed_once(launch, write: Wr
     )
     assert done.messages == ["the rest runs"]
     assert done.succeeded
-    assert done.err.count("warning[LAUNCH146]: 7 parts of the launch are left out, the rest runs") == 1
+    assert done.err.count("warning[LAUNCH146]: 7 parts of the launch are skipped, the rest runs") == 1
     assert "error" not in done.err
     for named in ("no_such_package", "no_such_program", "no_such_share", "no-such-executable", "no_such_module"):
         assert named in done.err
@@ -51,14 +51,14 @@ async def test_what_needs_a_value_of_what_is_left_out_goes_with_it(launch) -> No
         session_options=SKIP,
     )
     assert done.messages == ["the rest runs"]
-    assert "2 parts of the launch are left out" in done.err
+    assert "2 parts of the launch are skipped" in done.err
     assert done.succeeded
 
 
 async def test_a_program_that_cannot_be_started(launch) -> None:
     done = await launch(ExecuteProcess(cmd=["/no/such/program"]), LogInfo(msg="rest"), session_options=SKIP)
     assert done.messages == ["rest"]
-    assert "one part of the launch is left out" in done.err
+    assert "one part of the launch is skipped" in done.err
     assert done.succeeded
 
 
@@ -71,7 +71,7 @@ async def test_other_mistakes_end_the_launch_all_the_same(launch) -> None:
 async def test_the_error_offers_the_command(launch) -> None:
     options = {"command_to_skip_missing": "linkwright launch --skip-missing a.launch.py"}
     done = await launch(Node(package="robot_state_publishr", executable="driver"), session_options=options)
-    assert "to run what can run without it: linkwright launch --skip-missing a.launch.py" in done.err
+    assert "to skip it and run the rest: linkwright launch --skip-missing a.launch.py" in done.err
     assert not done.succeeded
     done = await launch(LogInfo(msg=LaunchConfiguration("typo")), session_options=options)
     assert "--skip-missing" not in done.err
@@ -88,14 +88,14 @@ class TestWithoutTheOption:
             ExecuteProcess(cmd=[sys.executable, "-c", "print('the rest runs')"], output="screen"),
         )
         assert "the rest runs" in done.out
-        assert "3 parts of the launch are left out, the rest runs" in done.err
+        assert "3 parts of the launch are skipped, the rest runs" in done.err
         assert "test_omissions.py" in done.err
         assert "error" not in done.err
         assert done.succeeded
 
     async def test_a_launch_of_which_nothing_is_left_has_failed(self, launch) -> None:
         done = await launch(Node(package="moveit_ros_move_group", executable="move_group"))
-        assert "one part of the launch is left out" in done.err
+        assert "one part of the launch is skipped" in done.err
         assert not done.succeeded
 
     async def test_includes_from_packages_that_are_not_here(self, launch, write: Write) -> None:
@@ -108,7 +108,7 @@ class TestWithoutTheOption:
             ExecuteProcess(cmd=[sys.executable, "-c", "print('the rest runs')"], output="screen"),
         )
         assert "the rest runs" in done.out
-        assert "4 parts of the launch are left out, the rest runs" in done.err
+        assert "4 parts of the launch are skipped, the rest runs" in done.err
         assert done.succeeded
 
     async def test_a_compiled_node_that_was_not_built(self, launch, tmp_path: Path) -> None:
@@ -120,7 +120,7 @@ class TestWithoutTheOption:
         for name, is_left_out in (("driver", True), ("drivr", False)):
             done = await launch(Node(package="of_others", executable=name), LogInfo(msg="rest"), finder=finder)
             assert (done.messages == ["rest"]) is is_left_out
-            assert ("is left out" in done.err) is is_left_out
+            assert ("is skipped" in done.err) is is_left_out
 
     async def test_a_component(self, launch) -> None:
         done = await launch(
@@ -131,9 +131,9 @@ class TestWithoutTheOption:
                 executable="component_container",
                 composable_node_descriptions=[ComposableNode(package="zzz_of_others", plugin="zzz::Driver")],
             ),
-            ends_when(printed("left out")),
+            ends_when(printed("skipped")),
         )
-        assert "one part of the launch is left out, the rest runs" in done.err
+        assert "one part of the launch is skipped, the rest runs" in done.err
         assert "'zzz::Driver'" in done.err
         assert done.succeeded
 
@@ -145,5 +145,5 @@ class TestWithoutTheOption:
         ):
             done = await launch(wrong, LogInfo(msg="rest"))
             assert done.messages == []
-            assert "left out" not in done.err
+            assert "skipped" not in done.err
             assert not done.succeeded

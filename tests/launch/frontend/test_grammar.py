@@ -118,7 +118,7 @@ def test_the_same_anonymous_name_each_time() -> None:
     [
         ("$(var x", "has no closing parenthesis", "end it with ')'"),
         ("$( var x)", "no name after '$('", None),
-        ("$(said 'a)", "the quote ' is never closed", None),
+        ("$(said 'a)", "the quote ' is not closed", None),
         ("$(said a(b))", "'('", "put quotes around it"),
         ("$(said a'b')", "a quote inside the argument", "quote the whole argument"),
         ("$(vra x)", "there is no substitution 'vra'", "did you mean 'var'?"),
@@ -140,7 +140,7 @@ def test_what_cannot_be_read(written: str, message: str, hint: str | None) -> No
 def test_classes_of_errors() -> None:
     with pytest.raises(RuntimeError, match="Unknown substitution: vra"):
         parse_substitution("$(vra x)")
-    with pytest.raises(ValueError, match="cannot be read"):
+    with pytest.raises(ValueError, match="cannot be parsed"):
         parse_substitution("$(var x")
     with pytest.raises(SubstitutionFailure):
         parse_substitution("$(not maybe)")[0].perform(LaunchContext())

@@ -72,7 +72,7 @@ class TestDeclareLaunchArgument:
 
     async def test_choices(self, launch) -> None:
         done = await launch(DeclareLaunchArgument("x", default_value="a", choices=["a", "b"]), x="c")
-        assert "error[LAUNCH112]: argument 'x' has the value 'c', which is none of its choices" in done.err
+        assert "error[LAUNCH112]: argument 'x' has the value 'c', which is not one of its choices" in done.err
         assert "hint: choose from 'a', 'b'" in done.err
 
     def test_descriptions(self) -> None:
@@ -203,9 +203,9 @@ class TestTimerAction:
     async def test_a_wrong_period(self, launch) -> None:
         with pytest.raises(ValueError, match="soon") as raised:
             TimerAction(period="soon", actions=[])
-        assert raised.value.diagnostics[0].message == "the period 'soon' of a timer is no number"
+        assert raised.value.diagnostics[0].message == "the period 'soon' of a timer is not a number"
         done = await launch(TimerAction(period=TextSubstitution(text="later"), actions=[]))
-        assert "the period 'later' of a timer is no number" in done.err
+        assert "the period 'later' of a timer is not a number" in done.err
 
 
 class TestEvents:
@@ -283,7 +283,7 @@ class TestIncludeLaunchDescription:
         never = IncludeLaunchDescription(str(inner), launch_arguments=pairs, condition=IfCondition("false"))
         done = await launch(never, say("before"), IncludeLaunchDescription(str(inner), launch_arguments=pairs))
         assert done.messages == ["before"]
-        assert "error[LAUNCH114]: argument 'speed' is given None, which is no text" in done.err
+        assert "error[LAUNCH114]: the value of argument 'speed' is None, which is not a string" in done.err
         assert not done.succeeded
 
     async def test_a_missing_argument_is_told_before_anything_runs(self, launch, write: Write) -> None:
@@ -291,7 +291,7 @@ class TestIncludeLaunchDescription:
         done = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
         told = f"the included launch file '{inner}' requires argument 'speed', which is not given"
         assert f"error[LAUNCH114]: {told}" in done.err
-        assert "it is given 'sped': is that the one?" in done.err
+        assert "it is given 'sped'; did you mean that?" in done.err
         assert done.messages == []
 
     @pytest.mark.parametrize(

@@ -98,7 +98,7 @@ def test_local_substitution(context: LaunchContext) -> None:
 
 
 def test_this_launch_file(context: LaunchContext) -> None:
-    with pytest.raises(LinkwrightError, match="comes from no file"):
+    with pytest.raises(LinkwrightError, match="does not come from a file"):
         text(ThisLaunchFile(), context)
     context.extend_locals({"current_launch_file_path": "/a/b.launch.py"})
     assert text(ThisLaunchFile(), context) == "/a/b.launch.py"
@@ -271,7 +271,7 @@ class TestCommand:
             ("no-such-program x", "cannot be run: No such file or directory: 'no-such-program'"),
             ("echo 'open", "cannot be split"),
             ("  ", "is empty"),
-            ("xacro", "is given no model file"),
+            ("xacro", "xacro has no model file"),
             ("xacro --deps a.xacro", "option '--deps' of xacro"),
             ("xacro a.xacro b.xacro", "expects exactly one model file, but was given 2"),
         ],
@@ -299,7 +299,7 @@ class TestCommand:
         model.write_text('<robot name="a"><link name="x"/></robot>')
         assert '<link name="x"/>' in text(Command(["xacro ", str(model)]), context)
         assert '<link name="x"/>' in text(Command(["xacro ", str(model), " a:=b"]), context)
-        assert "has blanks and no quotes around it" in capsys.readouterr().err
+        assert "contains spaces and is not quoted" in capsys.readouterr().err
         assert '<link name="x"/>' in text(Command(['xacro "', str(model), '"']), context)
         assert capsys.readouterr().err == ""
 

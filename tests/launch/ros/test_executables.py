@@ -141,7 +141,7 @@ class TestSources:
             write("ws/src/p/CMakeLists.txt", cmake)
         with pytest.raises(LinkwrightError) as caught:
             find_executable(finder, "p", "motion_control")
-        assert caught.value.diagnostics[0].message == "executable 'motion_control' of package 'p' is not here"
+        assert caught.value.diagnostics[0].message == "executable 'motion_control' of package 'p' is not available"
         assert is_unavailable(caught.value)
 
     def test_a_name_that_is_nearly_that_of_another_program_is_misspelt(

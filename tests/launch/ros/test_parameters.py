@@ -77,7 +77,7 @@ class TestParameters:
     def test_a_value_of_another_type(self, context: LaunchContext) -> None:
         with pytest.raises(ValueError) as caught:
             values(context, {"p": ParameterValue(LaunchConfiguration("word"), value_type=int)})
-        assert "parameter 'p' is not the int that is asked for" in told(caught.value)
+        assert "parameter 'p' is not of the requested type int" in told(caught.value)
 
     def test_nested_dictionaries_and_substituted_names(self, context: LaunchContext) -> None:
         found = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
@@ -91,7 +91,7 @@ class TestParameters:
             values(context, {"robot_description": LaunchConfiguration("model")})
         (diagnostic,) = caught.value.diagnostics
         assert diagnostic.code == "LAUNCH132"
-        assert "parameter 'robot_description' is read as YAML" in diagnostic.message
+        assert "parameter 'robot_description' has no type and is not YAML" in diagnostic.message
         assert "ParameterValue(VALUE, value_type=str)" in (diagnostic.hint or "")
         assert diagnostic.span is not None
         assert diagnostic.span.file == __file__
@@ -104,7 +104,7 @@ class TestParameters:
     @pytest.mark.parametrize(
         ("value", "message"),
         [
-            ("{a: 1}", "becomes a mapping, which no parameter can be"),
+            ("{a: 1}", "becomes a mapping, which is not a parameter type"),
             ("[1, x]", "becomes a list of mixed items (int, str)"),
             ("[]", "becomes an empty list"),
             ("[[1], [2]]", "becomes a list of items of type list"),
@@ -123,10 +123,10 @@ class TestParameters:
     @pytest.mark.parametrize(
         ("parameters", "message"),
         [
-            ([{"p": object()}], "is of type object, which no parameter can be"),
+            ([{"p": object()}], "is of type object, which is not a parameter type"),
             ([{"p": Path("/x")}], "is a Path"),
             ([{"p": [1, 2, [3, 4]]}], "has an item of type list"),
-            ([{"g": {"h": {5: "x"}}}], "the name of a parameter must be text, not 5"),
+            ([{"g": {"h": {5: "x"}}}], "the name of a parameter must be a string, not 5"),
             ([5.0], "has an item of type float"),
             ({"a": 5}, "'parameters' of a node must be a list"),
             ("/path.yaml", "'parameters' of a node must be a list"),

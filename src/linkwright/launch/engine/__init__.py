@@ -1,1 +1,1 @@
-"""Running a launch description: the session, its processes, the nodes of this process, signals, live reload."""
+"""The engine that runs a launch description: session, processes, nodes of this process, signals, live reload."""

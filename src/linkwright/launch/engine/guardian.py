@@ -1,7 +1,7 @@
-"""Ending the processes of a launcher that was killed.
+"""The guardian, which ends the processes of a killed launcher.
 
-A launcher that is killed with SIGKILL cannot end its processes. So a small program of its own is started with the first
-of them: it holds the other end of a pipe, knows the process groups, and ends them when the pipe ends unannounced.
+A launcher that is killed with SIGKILL cannot end its processes. So a small program is started with the first process:
+    it holds the other end of a pipe, knows the process groups, and ends them if the pipe closes without notice.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _END_SECONDS = 2.0
 
 
 class Guardian:
-    """The launcher's side of the guardian. Where the system has no process groups it does nothing."""
+    """The launcher's side of the guardian, which does nothing on systems without process groups."""
 
     def __init__(self) -> None:
         self._identity = os.urandom(16).hex()
@@ -27,25 +27,25 @@ class Guardian:
         self._folder: Path | None = None
 
     def marked(self, environment: dict[str, str]) -> dict[str, str]:
-        """The environment for a process that the guardian is to find; starts the guardian."""
+        """Start the guardian, and return the environment by which it finds a process."""
         self._start()
         return {**environment, _MARK: self._identity}
 
     def watch(self, pid: int) -> None:
-        """Take charge of the process group that a process leads."""
+        """Register the process group that a process leads."""
         self._tell(f"+{pid}\n")
 
     def owns(self, folder: Path) -> None:
-        """Take charge of a folder of temporary files too."""
+        """Register a folder of temporary files."""
         self._folder = folder
         self._tell(f"={folder}\n")
 
     def release(self, pid: int) -> None:
-        """Forget a group that is gone."""
+        """Unregister a group that has ended."""
         self._tell(f"-{pid}\n")
 
     def close(self) -> None:
-        """Say that all is in order, and wait until the guardian has gone."""
+        """Announce a regular end, and wait for the guardian to exit."""
         self._closed = True
         process = self._process
         if process is None:
@@ -64,8 +64,8 @@ class Guardian:
     def _start(self) -> None:
         if self._process is not None or self._closed or not hasattr(os, "killpg"):
             return
-        with contextlib.suppress(OSError):  # the launch goes on without, as it would have without us
-            self._process = subprocess.Popen(  # noqa: S603 - our own program
+        with contextlib.suppress(OSError):  # the launch continues without a guardian
+            self._process = subprocess.Popen(  # noqa: S603 - Linkwright's own program
                 [sys.executable, "-I", "-S", "-X", "utf8", str(_PROGRAM), f"{_MARK}={self._identity}"],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
@@ -79,5 +79,5 @@ class Guardian:
 
     def _tell(self, line: str) -> None:
         if self._process is not None and self._process.stdin is not None:
-            with contextlib.suppress(OSError, ValueError):  # it has ended: somebody killed it
+            with contextlib.suppress(OSError, ValueError):  # the guardian was killed
                 self._process.stdin.write(line.encode())

@@ -1,9 +1,9 @@
-"""The program of the guardian: it outlives the launcher by a moment and ends what that has left behind.
+"""The program of the guardian, which briefly outlives the launcher and ends the remaining processes.
 
-It is run by its path with a bare interpreter and imports little, so that it costs a launch next to nothing. Its
-standard input is a pipe from the launcher with a line for each event: ``+PID`` a process group was started, ``-PID``
-it is gone, ``=PATH`` a folder of temporary files was made, ``.`` the launch is over and in order. When the pipe ends
-without that, the launcher was killed.
+It is run by path in a bare interpreter and imports little, so that it costs a launch next to nothing. Its standard
+    input is a pipe from the launcher with a line for each event: ``+PID`` a process group was started, ``-PID`` the
+    group ended, ``=PATH`` a folder of temporary files was created, ``.`` the launch ended regularly. If the pipe closes
+    without the last one, the launcher was killed.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def main(mark: str) -> None:
     """Wait for the end of the launch.
 
     Args:
-        mark: a setting ``NAME=VALUE`` that is in the environment of every process of the launch.
+        mark: a variable ``NAME=VALUE`` in the environment of every process of the launch.
     """
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
@@ -44,10 +44,10 @@ def main(mark: str) -> None:
 
 
 def marked_groups(mark: bytes) -> set[int]:
-    """The groups of processes with the mark, also those started a moment before the launcher ended."""
+    """Return the process groups with the mark, including those started just before the launcher ended."""
     try:
-        entries = os.listdir("/proc")  # noqa: PTH208 - without pathlib, which takes longer to import than all else here
-    except OSError:  # no Linux
+        entries = os.listdir("/proc")  # noqa: PTH208 - importing pathlib would take longer than all the rest
+    except OSError:  # not Linux
         return set()
     pids = [int(entry) for entry in entries if entry.isdigit() and int(entry) != os.getpid()]
     return {_group_of(pid) for pid in pids if _has_mark(pid, mark)} - {0, os.getpgid(0)}
@@ -57,7 +57,7 @@ def _has_mark(pid: int, mark: bytes) -> bool:
     try:
         with open(f"/proc/{pid}/environ", "rb") as file:  # noqa: PTH123 - as above
             return mark in file.read().split(b"\0")
-    except OSError:  # it has ended, or is somebody else's
+    except OSError:  # it has ended, or belongs to another user
         return False
 
 
@@ -69,7 +69,7 @@ def _group_of(pid: int) -> int:
 
 
 def end(groups: set[int]) -> None:
-    """End process groups, gently first."""
+    """End process groups, first with a gentle signal."""
     for number, seconds in _STAGES:
         groups = {group for group in groups if send(group, number)}
         deadline = time.monotonic() + seconds
@@ -79,7 +79,7 @@ def end(groups: set[int]) -> None:
 
 
 def send(group: int, number: int) -> bool:
-    """Send a signal to a group; returns whether there is such a group."""
+    """Send a signal to a group, and return whether the group exists."""
     try:
         os.killpg(group, number)
     except OSError:

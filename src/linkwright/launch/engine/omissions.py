@@ -1,4 +1,4 @@
-"""The parts that a launch leaves out because software they need is not installed."""
+"""The parts that a launch skips because software is not installed."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ if TYPE_CHECKING:
     from linkwright.hosting.launch_log import LaunchLog
 
 _MISSING = frozenset({"LAUNCH101", "LAUNCH124", "LAUNCH131", "LAUNCH142", "PKG101", "PKG102"})
-"""Codes of findings that something is not there."""
+"""Codes of findings on missing software."""
 
 _CONSEQUENCES = frozenset({"LAUNCH121", "LAUNCH123", "LAUNCH137"})
-"""Codes of findings that a value is not set, which may be because of what was left out before."""
+"""Codes of findings on unset values, which skipped parts may have set."""
 
 
 class Omissions:
-    """Decides what may be left out, and tells it.
+    """Decides which parts to skip, and reports them.
 
     Attributes:
-        any: whether anything was left out.
+        any: whether any part was skipped.
 
     Args:
-        log: of the launch.
-        wanted: whether all that cannot run is to be left out; otherwise that which others make and is not here.
-        command: the command that launches the same and leaves out what cannot run; None where there is none.
+        log: the log of the launch.
+        wanted: whether to skip every part that cannot run; otherwise only parts that need missing software of others.
+        command: the command that launches the same and skips the parts that cannot run; None if there is none.
     """
 
     def __init__(self, log: LaunchLog, command: str | None, *, wanted: bool) -> None:
@@ -37,7 +37,7 @@ class Omissions:
         self._untold: list[Note] = []
 
     def take(self, error: LinkwrightError) -> bool:
-        """Leave out what an error kept from running, if something is missing and may be left out; whether it was."""
+        """Skip the part that an error stopped, if missing software allows it, and return whether it was skipped."""
         consequence = self.any and any(diagnostic.code in _CONSEQUENCES for diagnostic in error.diagnostics)
         if not (consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
             return False
@@ -46,31 +46,31 @@ class Omissions:
         return True
 
     def tell(self) -> None:
-        """Print what was left out since the last time."""
+        """Print the parts skipped since the last call."""
         if not self._untold:
             return
         message = counted(
-            "one part of the launch is left out, the rest runs",
-            "{count} parts of the launch are left out, the rest runs",
+            "one part of the launch is skipped, the rest runs",
+            "{count} parts of the launch are skipped, the rest runs",
             len(self._untold),
         )
         self._log.diagnostics([Diagnostic("LAUNCH146", message, severity=Severity.WARNING, notes=tuple(self._untold))])
         self._untold.clear()
 
     def offered(self, error: LinkwrightError) -> tuple[Diagnostic, ...]:
-        """The findings of an error that ends the launch, with the command that would do without what is missing."""
+        """Return the findings of an error that ends the launch, with the command that would skip the missing parts."""
         *others, last = error.diagnostics
         if self._command is None or not _is_missing(error):
             return error.diagnostics
-        note = Note(phrase("to run what can run without it: {command}", command=foreign(self._command)))
+        note = Note(phrase("to skip it and run the rest: {command}", command=foreign(self._command)))
         return (*others, last.but(notes=(*last.notes, note)))
 
 
 def note_that_nothing_is_left(error: LinkwrightError) -> None:
-    """Add to an error that kept the launch file itself from being read why no part of it can be left out."""
+    """Add a note to an error on reading the launch file: why no part of it can be skipped."""
     *others, last = error.diagnostics
     if _is_missing(error) and last.span is not None:
-        note = Note(phrase("the launch file itself needs it: without it there are no parts that could be left out"))
+        note = Note(phrase("the launch file itself needs it, so no part can be skipped"))
         error.diagnostics = (*others, last.but(notes=(*last.notes, note)))
 
 

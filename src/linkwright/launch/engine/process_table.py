@@ -1,4 +1,4 @@
-"""The processes of a launch: which run, how they are started again, and that none is left behind."""
+"""The table of a launch's processes: it starts, respawns and ends them, and leaves none behind."""
 
 from __future__ import annotations
 
@@ -35,26 +35,26 @@ class ProcessTable:
         return bool(self._running)
 
     def start(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process and follow it to its end, and start it again where it respawns."""
+        """Start a process, follow it to its end, and respawn it if so planned."""
         self._session.spawn(self._follow(plan, name))
 
     def stop_matching(self, matcher: ProcessMatcher) -> None:
-        """Ask the processes whose actions a matcher accepts to end, each in the time that its plan gives."""
+        """Ask the processes whose actions match to end, each within the time of its plan."""
         for process in tuple(self._running):
             if matcher(process.plan.action):
                 self._session.spawn(process.stop())
 
     def signal_matching(self, matcher: ProcessMatcher, number: signal.Signals) -> None:
-        """Send a signal to the processes whose actions a matcher accepts."""
+        """Send a signal to the processes whose actions match."""
         for process in tuple(self._running):
             if matcher(process.plan.action):
                 process.signal(number)
 
     def stop_all(self, *, interrupted: bool) -> None:
-        """Ask all processes to end, and start none any more.
+        """Ask all processes to end, and start no more.
 
         Args:
-            interrupted: whether the user waits for the end, so that what has not been started yet is not.
+            interrupted: whether the user interrupted the launch, so that pending processes are not started.
         """
         self._ending.set()
         self._interrupted = interrupted
@@ -62,37 +62,37 @@ class ProcessTable:
             self._session.spawn(process.stop())
 
     def hurry(self) -> None:
-        """Send those that were asked to end SIGTERM now, and SIGKILL soon after."""
+        """Send SIGTERM now to the processes that were asked to end, and SIGKILL soon after."""
         for process in tuple(self._running):
             process.hurry()
 
     @property
     def names(self) -> list[str]:
-        """The names of the running processes, as in the log."""
+        """Return the log names of the running processes."""
         return sorted(process.name for process in self._running)
 
     def seconds_to_end(self) -> float:
-        """How long `stop_all` takes at most."""
+        """Return the maximum duration of `stop_all` in seconds."""
         plans = [process.plan for process in tuple(self._running)]
         return max((plan.seconds_to_sigterm + plan.seconds_to_sigkill for plan in plans), default=0.0)
 
     def kill_all(self) -> None:
-        """End all processes at once, and what ended ones left behind; safe to call from a signal handler."""
+        """Kill all processes and the children of ended ones; safe to call from a signal handler."""
         for process in (*self._running, *self._left_behind):
             process.signal_group(getattr(signal, "SIGKILL", signal.SIGTERM))
 
     def owns(self, folder: Path) -> None:
-        """Have a folder deleted should the launcher be killed."""
+        """Have a folder deleted if the launcher is killed."""
         self._guardian.owns(folder)
 
     def close(self) -> None:
-        """Note that all processes are gone."""
+        """Note that all processes have ended."""
         self._guardian.close()
 
     async def _follow(self, plan: ProcessPlan, name: str) -> None:
         starts = 0
-        # A process whose action was executed before a later one failed is started all the same and then asked to end,
-        # as in ROS: handlers wait for its exit. Not so when the user waits for the end.
+        # As in ROS, a process whose action was executed before a later action failed is still started and then asked to
+        # end, because handlers wait for its exit. After an interrupt, it is not started.
         while not self._ending.is_set() or (starts == 0 and not self._interrupted):
             process = RunningProcess(
                 plan, name, self._session.log, self._session.emit, self._session.would_handle, self._guardian

@@ -1,4 +1,4 @@
-"""Processes of a launch: started in groups of their own, read line by line, ended for sure."""
+"""Processes of a launch, each in its own process group, whose output is read line by line."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ if TYPE_CHECKING:
 _HAS_GROUPS = hasattr(os, "killpg")
 _KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 _LAST_WORDS_SECONDS = 0.2
-"""How long to read on after a process has ended: another that it left behind may hold its streams open for ever."""
+"""Seconds to read on after a process has ended: its children may hold the streams open forever."""
 _LONGEST_LINE = 100_000
-"""Characters that are kept until the line ends that they belong to."""
+"""The maximum number of characters of an incomplete line."""
 _HURRIED_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
-"""How long to wait for the end before these when the user does not want to wait."""
+"""Seconds to wait before each signal when the user does not want to wait."""
 _TERMINALS = frozenset({"xterm", "gnome-terminal", "konsole", "terminator", "x-terminal-emulator", "xfce4-terminal"})
-"""Programs that launch files start others in, as ``prefix``, so that those have a keyboard."""
+"""Terminal programs that launch files use as ``prefix``, so that a process has a keyboard."""
 
 
 class RunningProcess:
     """One process from its start to its end.
 
     Args:
-        plan: what to start.
+        plan: the process to start.
         name: its name in the log, such as ``talker-1``.
-        log: where its lines go.
-        emit: takes the events about it.
-        wants_output: whether any handler is for what it writes.
-        guardian: ends it should the launcher be killed.
+        log: the log for its output.
+        emit: receives its events.
+        wants_output: whether any handler is for its output.
+        guardian: ends it if the launcher is killed.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class RunningProcess:
         self._news = asyncio.Event()
 
     async def run(self) -> int:
-        """Follow the process from start to end; returns its exit status.
+        """Follow the process from start to end, and return its exit status.
 
         Raises:
             LinkwrightError: LAUNCH142, it cannot be started.
@@ -91,7 +91,7 @@ class RunningProcess:
             with contextlib.suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(self._streams_closed.wait(), _LAST_WORDS_SECONDS)
         finally:
-            # Whatever happens here, nothing of the process's group may outlive the launcher.
+            # Whatever happens here, no member of the process group may outlive the launcher.
             if not self._ended.is_set():
                 self.signal_group(_KILL)
             transport.close()
@@ -105,7 +105,7 @@ class RunningProcess:
         return returncode
 
     async def stop(self) -> None:
-        """Ask the process to end, with SIGINT, then SIGTERM, then SIGKILL, each after the time that its plan gives."""
+        """Ask the process to end with SIGINT, then SIGTERM, then SIGKILL, each after the time in its plan."""
         if self._stopping or self._ended.is_set():
             return
         self._stopping = True
@@ -127,7 +127,7 @@ class RunningProcess:
             self.signal_group(_KILL if following == "SIGKILL" else signal.SIGTERM)
 
     def hurry(self) -> None:
-        """Escalate now: whoever waits for the process to end as it was asked does not want to wait any longer."""
+        """Escalate to the next signal now, because the user does not want to wait."""
         self._hurried = True
         self._news.set()
 
@@ -140,12 +140,12 @@ class RunningProcess:
         return self._ended.is_set()
 
     def signal(self, number: signal.Signals) -> None:
-        """Send a signal, as a launch file asked."""
+        """Send a signal on the request of a launch file."""
         self._log.say(self.name, f"sending signal '{number.name}' to process[{self.name}]")
         self.signal_group(number)
 
     def group_lives(self) -> bool:
-        """Whether the process, or any that it started, still runs."""
+        """Return whether the process or any of its children still runs."""
         if self._transport is None or not _HAS_GROUPS:
             return False
         try:
@@ -155,7 +155,7 @@ class RunningProcess:
         return True
 
     def signal_group(self, number: int) -> None:
-        """Send a signal to the process and all that it started."""
+        """Send a signal to the process and its children."""
         transport = self._transport
         if transport is None:
             return
@@ -193,14 +193,14 @@ class RunningProcess:
             await loop.connect_read_pipe(partial(_Terminal, self, number), pipe)
 
     def started(self, transport: asyncio.SubprocessTransport) -> None:
-        """Note that the process runs; nothing of its output comes before this."""
+        """Note that the process runs; its output comes only after this."""
         self._transport = transport
         self._guardian.watch(transport.get_pid())
         details = self._details(transport)
         self.plan.action.process_details = details
         self._log.say(self.name, f"process started with pid [{transport.get_pid()}]")
         self._emit(events.ProcessStarted(action=self.plan.action, **details))
-        if self._stopping:  # asked to end before the process existed
+        if self._stopping:  # `stop` was called before the process existed
             self.signal_group(signal.SIGINT)
 
     def _details(self, transport: asyncio.SubprocessTransport) -> dict[str, Any]:
@@ -250,7 +250,7 @@ class RunningProcess:
     # --- output ---------------------------------------------------------------------------------------------
 
     def take(self, number: int, chunk: bytes) -> None:
-        """Take what the process wrote to stdout (1) or stderr (2)."""
+        """Handle output of the process to stdout (1) or stderr (2)."""
         action = self.plan.action
         action.wrote(number, chunk)
         kind = events.ProcessStdout if number == 1 else events.ProcessStderr
@@ -262,7 +262,7 @@ class RunningProcess:
             self._show(number, line)
 
     def stream_closed(self, number: int) -> None:
-        """Note that nothing more can come from stdout (1) or stderr (2)."""
+        """Note that stdout (1) or stderr (2) is closed."""
         self._open_streams.discard(number)
         if not self._open_streams:
             self._streams_closed.set()
@@ -291,7 +291,7 @@ class RunningProcess:
 
 
 class _Lines:
-    """Divides what a process writes into lines; a line that is very long, or never ends, is shown in pieces."""
+    """Splits the output of a process into lines; very long or endless lines are shown in pieces."""
 
     def __init__(self) -> None:
         self._decode = codecs.getincrementaldecoder("utf-8")("replace").decode
@@ -299,7 +299,7 @@ class _Lines:
         self._length = 0
 
     def feed(self, chunk: bytes) -> list[str]:
-        """The lines that are whole with a chunk of bytes."""
+        """Return the lines that a chunk of bytes completes."""
         first, *others = self._decode(chunk).split("\n")
         self._pieces.append(first)
         self._length += len(first)
@@ -311,13 +311,13 @@ class _Lines:
         return [line.rstrip("\r") for line in whole]
 
     def end(self) -> list[str]:
-        """The last line, if the process did not end it."""
+        """Return the incomplete last line, if any."""
         rest = "".join(self._pieces) + self._decode(b"", final=True)
         return [rest.rstrip("\r")] if rest else []
 
 
 class _Streams(asyncio.SubprocessProtocol):
-    """Passes asyncio's callbacks for a process on."""
+    """Forwards asyncio's callbacks for a process."""
 
     def __init__(self, process: RunningProcess) -> None:
         self._process = process
@@ -337,7 +337,7 @@ class _Streams(asyncio.SubprocessProtocol):
 
 
 class _Terminal(asyncio.Protocol):
-    """Passes on what a process writes to a pseudo terminal."""
+    """Forwards the output of a process on a pseudo terminal."""
 
     def __init__(self, process: RunningProcess, number: int) -> None:
         self._process = process
@@ -351,5 +351,5 @@ class _Terminal(asyncio.Protocol):
 
 
 def _pseudo_terminals() -> list[tuple[int, int]]:
-    """Outer and inner end of two pseudo terminals, for stdout and stderr; none where the system has no such thing."""
+    """Open two pseudo terminals, for stdout and stderr, if the system has them; return their outer and inner ends."""
     return [os.openpty(), os.openpty()] if hasattr(os, "openpty") else []

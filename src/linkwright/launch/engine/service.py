@@ -1,4 +1,4 @@
-"""Launching from a program of one's own (``launch.LaunchService``)."""
+"""Launches from a user's program (``launch.LaunchService``)."""
 
 from __future__ import annotations
 
@@ -26,16 +26,17 @@ class LaunchService:
     """Runs launch descriptions.
 
     Args:
-        argv: kept in the context for the entities.
-        noninteractive: whether no terminal is there, so that Ctrl-C does not reach the processes by itself.
+        argv: the arguments in the context, for the entities.
+        noninteractive: whether there is no terminal, so that Ctrl-C does not reach the processes by itself.
         debug: whether details are logged.
-        log_file_name: of the log of this launch.
+        log_file_name: the name of the log file.
 
-    What is included and emitted before a run is handled when it begins; event handlers stay for the next run.
+    Descriptions and events that are added before a run are handled when it starts; event handlers stay for the next
+    run.
     """
 
     _isolates_nodes = False
-    """Whether nodes that come with Linkwright run as processes too, rather than in this one."""
+    """Whether nodes that come with Linkwright run in separate processes."""
 
     def __init__(
         self,
@@ -61,16 +62,16 @@ class LaunchService:
 
     @property
     def event_loop(self) -> asyncio.AbstractEventLoop | None:
-        """The loop that the launch runs on, while it does."""
+        """The event loop of the launch while it runs."""
         return None if self.__session is None else self.__session.loop
 
     @property
     def task(self) -> asyncio.Task[Any] | None:
-        """The task of the run, while there is one."""
+        """The task of the current run, if any."""
         return self.__task
 
     def include_launch_description(self, launch_description: LaunchDescription) -> None:
-        """Have a description visited; may be called from any thread."""
+        """Queue a description to visit; may be called from any thread."""
         self.emit_event(events.IncludeLaunchDescription(launch_description))
 
     def emit_event(self, event: Any) -> None:
@@ -86,8 +87,8 @@ class LaunchService:
         """End the launch; may be called from any thread.
 
         Returns:
-            Something to be awaited where it is called on the launch's own loop, or while that stands still between
-            two runs of it, unless `force_sync` is given.
+            An awaitable if it is called on the launch's loop, or between two runs of that loop, unless `force_sync` is
+            given.
         """
         if self.__session is None:
             return None
@@ -95,7 +96,7 @@ class LaunchService:
         return asyncio.sleep(0) if self.__is_thread_of_loop() and not force_sync else None
 
     def __is_thread_of_loop(self) -> bool:
-        """Whether the caller is where the launch's loop runs, or will run again."""
+        """Return whether the caller is on the thread of the launch's loop."""
         try:
             return asyncio.get_running_loop() is self.event_loop
         except RuntimeError:
@@ -103,26 +104,26 @@ class LaunchService:
             return loop is not None and not loop.is_running()
 
     def run(self, *, shutdown_when_idle: bool = True) -> int:
-        """Run until nothing runs any more.
+        """Run until the launch is idle.
 
         Args:
-            shutdown_when_idle: whether the launch ends then; otherwise only `shutdown` and signals end it.
+            shutdown_when_idle: whether an idle launch ends; otherwise only `shutdown` and signals end it.
 
         Returns:
             0, or 1 if something in the launch failed.
 
         Raises:
-            RuntimeError: it runs already, or this is not the main thread.
+            RuntimeError: it is already running, or this is not the main thread.
         """
         loop = get_loop()
-        asyncio.set_event_loop(loop)  # and it stays that of the thread, as in ROS
+        asyncio.set_event_loop(loop)  # the loop stays set for the thread, as in ROS
         try:
             return loop.run_until_complete(self.run_async(shutdown_when_idle=shutdown_when_idle))
         finally:
             _end_tasks(loop)
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
-        """`run` as a coroutine, on the running loop."""
+        """Run as a coroutine on the running loop; see `run`."""
         from linkwright.hosting.launch_log import LaunchLog
         from linkwright.hosting.signals import SignalWatch
         from linkwright.hosting.xacro_calls import Descriptions, use_descriptions
@@ -156,7 +157,7 @@ class LaunchService:
 
 
 def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
-    """Cancel what still runs on a loop that goes on to be used."""
+    """Cancel the remaining tasks of a loop that stays in use."""
     if loop.is_running():
         return
     left = asyncio.all_tasks(loop)
@@ -173,6 +174,6 @@ class ServiceOfProcesses(LaunchService):
 
 
 def _starting_folders() -> list[Path]:
-    """Where packages are looked for: from the program that runs, and from the current folder."""
+    """Return the folders where the package search starts: those of the program and the current one."""
     program = Path(sys.argv[0]).absolute().parent if sys.argv and sys.argv[0] else Path.cwd()
-    return [program, Path(os.getcwd())]  # noqa: PTH109 - the folder may have gone
+    return [program, Path(os.getcwd())]  # noqa: PTH109 - the folder may not exist any more

@@ -1,4 +1,4 @@
-"""A launch that runs: the queue of events, the visits to entities, the end."""
+"""A running launch: the event queue, the visits to entities, the shutdown."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ if TYPE_CHECKING:
 
 
 _SILENT_SECONDS = 1.0
-"""After Ctrl-C: then it is told what the end waits for."""
+"""Seconds after Ctrl-C until the log names the processes that delay the end."""
 
 
 class LaunchSession:
     """One launch on the running event loop.
 
     Args:
-        finder: where packages are.
-        options: how it is run.
-        log: what is printed.
-        context: what is known already, with handlers and events that wait; a new one by default.
+        finder: the package finder.
+        options: the options of the launch.
+        log: the log of the launch.
+        context: an existing context with its handlers and queued events; a new one by default.
     """
 
     def __init__(
@@ -75,14 +75,14 @@ class LaunchSession:
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
 
     async def run(self, description: LaunchDescriptionEntity, locals_: dict[str, Any] | None = None) -> bool:
-        """Visit a description and handle events until nothing runs any more.
+        """Visit a description and handle events until the launch is idle.
 
         Args:
-            description: what is launched.
-            locals_: values of the moment to begin with, such as the path of the launch file.
+            description: the launch description.
+            locals_: the initial locals of the context, such as the path of the launch file.
 
         Returns:
-            Whether everything started and nothing in the launch failed.
+            Whether all entities started and none failed.
         """
         self.loop = asyncio.get_running_loop()
         self.context.extend_locals(locals_ or {})
@@ -101,12 +101,12 @@ class LaunchSession:
 
     @property
     def visiting(self) -> bool:
-        """Whether the launch file's code runs right now, so that the event loop cannot react."""
+        """Whether code of the launch file is running now, so that the event loop is blocked."""
         return self._visiting
 
     @property
     def scratch_folder(self) -> Path:
-        """A folder for files that the processes of this launch read; it goes when the launch is over."""
+        """A folder for files that the processes of this launch read; it is deleted after the launch."""
         if self._scratch is None:
             from linkwright.scratch_folders import ScratchFolder
 
@@ -115,19 +115,19 @@ class LaunchSession:
         return Path(self._scratch.name)
 
     def include(self, description: LaunchDescriptionEntity) -> None:
-        """Visit a description as soon as the launch comes to it; may be called from any thread, and before the run."""
+        """Queue a description to visit; may be called from any thread, and before the run."""
         self._included.append(description)
         if self.loop is not None:
             self.loop.call_soon_threadsafe(self._visit_included)
 
-    # --- what actions ask for -------------------------------------------------------------------------------
+    # --- requests of actions --------------------------------------------------------------------------------
 
     def emit(self, event: events.Event) -> None:
         """Put an event into the queue."""
         self._queue.put_nowait(event)
 
     def visit(self, entity: LaunchDescriptionEntity, context: LaunchContext) -> None:
-        """Visit an entity and all it leads to. An error ends the launch, as in ROS."""
+        """Visit an entity and the entities that result from it; an error ends the launch, as in ROS."""
         self._visiting = True
         try:
             self._visit(entity, context)
@@ -143,7 +143,7 @@ class LaunchSession:
             self._omissions.tell()
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
-        """Report why something could not be started; the launch goes on without it."""
+        """Report why something could not be started; the launch continues without it."""
         if self._omissions.take(error):
             self._omissions.tell()
             return
@@ -151,16 +151,16 @@ class LaunchSession:
         self.fail(what)
 
     def fail(self, what: object) -> None:
-        """Record a failure: the launch exits with 1 unless it is mended."""
+        """Record a failure: the launch exits with 1 unless the failure is cleared."""
         self._failures.add(what)
 
     def mend(self, what: object) -> None:
-        """Clear a failure: what had failed works now."""
+        """Clear a failure that has been resolved."""
         self._failures.discard(what)
 
     @property
     def isolates_nodes(self) -> bool:
-        """Whether our own nodes run as processes, each by itself."""
+        """Whether Linkwright's own nodes run in separate processes."""
         return self.options.isolate
 
     @property
@@ -169,11 +169,11 @@ class LaunchSession:
         return self.processes.is_busy
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process and follow it to its end, and start it again where it respawns."""
+        """Start a process, follow it to its end, and respawn it if so planned."""
         self.processes.start(plan, name)
 
     def would_handle(self, event: events.Event) -> bool:
-        """Whether any handler takes an event."""
+        """Return whether any handler takes an event."""
         return self.context.would_handle_event(event)
 
     def report(self, about: object, findings: Sequence[Diagnostic]) -> None:
@@ -181,7 +181,7 @@ class LaunchSession:
         self.reload.report(about, findings)
 
     def number_process(self, base_name: str) -> str:
-        """The name of a process in the log: that of its program with the next number."""
+        """Return the log name of a process: the name of its program with the next number."""
         return f"{base_name}-{next(self._process_numbers)}"
 
     def call_later(
@@ -193,7 +193,7 @@ class LaunchSession:
         cancel_on_shutdown: bool = True,
         schedule: Schedule | None = None,
     ) -> Callable[[], None]:
-        """Visit entities after a while, with the values of this moment; returns what cancels that.
+        """Schedule a visit to entities with the current locals; return a handle that cancels it.
 
         `schedule` has the time counted by something else than the loop.
         """
@@ -226,22 +226,22 @@ class LaunchSession:
     # --- what the nodes of this process tell ------------------------------------------------------------------
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Tell that a node of this process runs."""
+        """Report that a node of this process is running."""
         plan.owner.process_details = plan.details
         self.emit(events.ProcessStarted(action=plan.owner, **plan.details))
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Tell that a node of this process has ended, or could not start, with an exit status."""
+        """Report that a node of this process has ended or could not start, with an exit status."""
         self.emit(events.ProcessExited(action=plan.owner, returncode=status, **plan.details))
 
     # --- the end --------------------------------------------------------------------------------------------
 
     def shut_down(self, reason: str) -> None:
-        """End the launch when the events before this one are handled."""
+        """End the launch after the queued events."""
         self.emit(events.Shutdown(reason=reason))
 
     def interrupt(self, reason: str) -> None:
-        """End the launch because the user said so; what is to end already is given no more than half a second."""
+        """End the launch on the user's request; processes that are already ending get half a second."""
         self.log.caution("launch", reason)
         if self.ending:
             self.processes.hurry()
@@ -251,7 +251,7 @@ class LaunchSession:
             self.loop.call_later(_SILENT_SECONDS, self._tell_what_is_awaited)
 
     def seconds_to_end(self) -> float:
-        """How long the processes may take to end."""
+        """Return how many seconds the processes may take to end."""
         return self.processes.seconds_to_end()
 
     def kill_all(self) -> None:
@@ -292,7 +292,7 @@ class LaunchSession:
             raise located(entity.explain_inside(error), entity.place) from error
 
     def _await_repair(self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError) -> None:
-        """Visit an entity again as soon as the model file that it needs can be expanded."""
+        """Visit an entity again when the model file that it needs can be expanded."""
         self.fail(error.call)
 
         def again(_text: str) -> None:
@@ -348,7 +348,7 @@ class LaunchSession:
         self._react(event)
 
     def _react(self, event: events.Event) -> None:
-        """Carry out the events that end the launch, or stop and signal its processes."""
+        """Handle the events that end the launch, or stop or signal its processes."""
         if isinstance(event, events.Shutdown):
             if not self.ending:
                 self._begin_end(event)
@@ -380,7 +380,7 @@ class LaunchSession:
             self.shut_down("the robot cannot be read, and there is no viewer to wait in")
 
     def hold(self, future: asyncio.Future[Any]) -> None:
-        """Keep the launch running until something that an entity began is done."""
+        """Keep the launch running until a future of an entity is done."""
         if future.done() or future in self._held:
             return
         self._held.add(future)
@@ -392,7 +392,7 @@ class LaunchSession:
         future.add_done_callback(done)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run something in the background; the launch does not end before it has."""
+        """Run a coroutine in the background; the launch waits for its end."""
         assert self.loop is not None
         task = self.loop.create_task(work)
         self._tasks.add(task)

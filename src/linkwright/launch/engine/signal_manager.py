@@ -40,7 +40,7 @@ class AsyncSafeSignalManager:
         """Set the handler of a signal, which is called with the signal's number; None removes it.
 
         Returns:
-            What handled the signal before; None for nothing.
+            The previous handler, or None.
 
         Raises:
             ValueError: there is no such signal.

@@ -1,4 +1,4 @@
-"""The interface by which the parts that run processes use their session."""
+"""The interface of the session for the parts that run processes."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SessionOptions(HostOptions):
-    """How a launch is run.
+    """The options of a launch.
 
     Attributes:
-        isolate: whether our own nodes run as processes, each by itself.
-        shutdown_when_idle: whether the launch ends when nothing runs any more.
-        skip_missing: whether what cannot run because something is not there is left out.
-        command_to_skip_missing: what the user may type to have that; None where it is so, or there is no such command.
+        isolate: whether Linkwright's own nodes run in separate processes.
+        shutdown_when_idle: whether the launch ends when it is idle.
+        skip_missing: whether to skip parts whose package, program or file is missing.
+        command_to_skip_missing: the command that does so; None if it is already so or there is no such command.
     """
 
     isolate: bool = False
@@ -31,13 +31,13 @@ class SessionOptions(HostOptions):
 
 
 class Supervisor(RunningLaunch, Protocol):
-    """What supervises the processes of a launch."""
+    """The supervisor of the processes of a launch."""
 
     def emit(self, event: Event) -> None:
         """Put an event into the queue."""
 
     def would_handle(self, event: Event) -> bool:
-        """Whether any handler takes an event."""
+        """Return whether any handler takes an event."""
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
-        """Report why something could not be started; the launch goes on without it."""
+        """Report why something could not be started; the launch continues without it."""

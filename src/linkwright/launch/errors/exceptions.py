@@ -1,4 +1,4 @@
-"""The exceptions of ``launch`` that programs catch, and errors that are of such a class and of ours."""
+"""The exceptions of ``launch`` that programs catch, and errors that are of both ROS's class and ours."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ class InvalidLaunchFileError(Exception):
     """A launch file cannot be read.
 
     Args:
-        extension: how its name ends; empty where that tells nothing.
-        likely_errors: what was raised by those who tried.
+        extension: the file name extension; empty if it does not determine the language.
+        likely_errors: the exceptions of the parsers that tried.
         launch_file_path: the file.
     """
 
@@ -49,11 +49,11 @@ class SubstitutionFailure(RuntimeError):  # noqa: N818 - its name in ROS
 
 
 def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> LinkwrightError:
-    """A LinkwrightError that is also of another exception's class.
+    """Return a LinkwrightError that is also of another exception's class.
 
     Args:
-        ros_error: the exception a program may expect; the error's text begins with its text. None for a plain error.
-        diagnostics: what is shown to a user.
+        ros_error: the exception that a program may expect, whose text begins the error's text; None for a plain error.
+        diagnostics: the diagnostics for the user.
     """
     if ros_error is None:
         return LinkwrightError(*diagnostics)
@@ -63,7 +63,7 @@ def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> Linkw
 
 
 def _base_of(kind: type[Exception]) -> type[Exception]:
-    """The nearest class that can be made from a text alone."""
+    """Return the nearest base class whose constructor takes only a text."""
     bases: list[type[Any]] = [each for each in kind.__mro__ if not issubclass(each, LinkwrightError)]
     for base in bases:
         try:

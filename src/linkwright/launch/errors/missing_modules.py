@@ -1,4 +1,4 @@
-"""Which ROS package or PyPI distribution a missing Python module comes from, for the hint of an import error."""
+"""The ROS package or PyPI distribution of a missing Python module, for the hint of an import error."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _ROS_PACKAGES = {
     "webots_ros2_core": "webots_ros2",
     "webots_ros2_driver": "webots_ros2",
 }
-"""Module -> the repository that has the ROS package with it."""
+"""Module -> the repository of its ROS package."""
 
 _COMPILED_PACKAGES = {
     "PyKDL": "orocos_kdl",
@@ -38,10 +38,10 @@ _COMPILED_PACKAGES = {
     "python_qt_binding": "rqt",
     "rqt_gui_py": "rqt",
 }
-"""Module -> the repository that has the ROS package with it, parts of which are written in C++."""
+"""Module -> the repository of its ROS package, for packages with parts in C++."""
 
 ROS_MODULES = (*_ROS_PACKAGES, *_COMPILED_PACKAGES)
-"""The modules of ROS packages that are not here, as far as it is known where they come from."""
+"""The modules of ROS packages with a known origin that are not available here."""
 
 _DISTRIBUTIONS = {
     "bosdyn": "bosdyn-client",
@@ -55,7 +55,7 @@ _DISTRIBUTIONS = {
     "skimage": "scikit-image",
     "usb": "pyusb",
 }
-"""Module -> what pip calls the package that has it, where that is another name."""
+"""Module -> the name of its PyPI distribution, if it differs."""
 
 _FROM_PYPI = frozenset({"flatten_dict", "jinja2", "numpy", "pandas", "psutil", "pydantic", "requests", "scipy", "toml"})
 
@@ -74,30 +74,30 @@ _ENDINGS = (
 
 
 def provider_hint(module: str) -> Phrase:
-    """A hint on how to get a module that cannot be imported."""
+    """Return a hint on how to get a module that cannot be imported."""
     return known_provider_hint(module) or phrase(
-        "install the Python package that provides '{module}', or put the ROS package with it into the workspace",
+        "install the Python package that provides '{module}', or add its ROS package to the workspace",
         module=module,
     )
 
 
 def known_provider_hint(module: str) -> Phrase | None:
-    """As `provider_hint`; None for a module of which nothing is known."""
+    """Return the hint of `provider_hint`, or None for an unknown module."""
     top = module.partition(".")[0]
     project = _ROS_PACKAGES.get(top)
     if project is not None:
         return phrase(
-            "it comes with {project}: put the sources into the workspace's src folder, no build is needed",
+            "it is part of {project}: put the sources into the workspace's src folder; no build is needed",
             project=project,
         )
     project = _COMPILED_PACKAGES.get(top)
     if project is not None:
         return phrase(
-            "it comes with {project}, which has to be compiled: source a ROS 2 installation that has it",
+            "it is part of {project}, which must be compiled: source a ROS 2 installation that contains it",
             project=project,
         )
     if top in _DISTRIBUTIONS or top in _FROM_PYPI:
         return package_hint(_DISTRIBUTIONS.get(top, top))
     if top.endswith(_ENDINGS) or top.startswith(("ros_", "ros2_")):
-        return phrase("put the ROS package '{top}' into the workspace's src folder, no build is needed", top=top)
+        return phrase("put the ROS package '{top}' into the workspace's src folder; no build is needed", top=top)
     return None

@@ -1,4 +1,4 @@
-"""Where in a launch file something was written, for the messages about it."""
+"""Locations in launch files, for messages."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ T = TypeVar("T", bound="Placed")
 _OURS = str(Path(__file__).parents[2]) + os.sep
 _SHIPPED_PACKAGES = _OURS + "robots" + os.sep
 _STARTERS = (_OURS + "cli" + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
-"""Folders of the programs that our own code may have been started by: the command line, the event loop."""
+"""Folders of the programs that may have started our code: the command line, the event loop."""
 
 
 class Place(ABC):
-    """Where something was written: in a program (`CodePlace`) or in an XML or YAML file (`MarkupPlace`)."""
+    """A location in a program (`CodePlace`) or in an XML or YAML file (`MarkupPlace`)."""
 
     __slots__ = ()
 
     def __deepcopy__(self, _: object) -> Place:
-        """Itself: places do not change."""
+        """Return the place itself, which is immutable."""
         return self
 
     @staticmethod
     def of_caller() -> Place | None:
-        """The markup being read now, else the nearest frame on the stack that is not Linkwright's own; None without.
+        """Return the markup being read, or the nearest stack frame outside Linkwright, or None.
 
-        What our command line or the event loop was started by (a script, Python itself) is no place of the user's.
+        The frames that started our command line or the event loop (a script, Python itself) do not count.
         """
         if _being_read:
             return _being_read[-1]
@@ -59,11 +59,11 @@ class Place(ABC):
 
     @abstractmethod
     def source(self) -> SourceText | None:
-        """The text of the file; None where it cannot be read again."""
+        """The text of the file; None if it cannot be read again."""
 
     @abstractmethod
     def span(self, source: SourceText | None = None) -> Span:
-        """The lines and columns, worked out when a message needs them."""
+        """The lines and columns, computed when a message needs them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class MarkupPlace(Place):
     """A piece of an XML or YAML launch file.
 
     Attributes:
-        text: the whole file.
+        text: the text of the file.
         start: character offset of the piece.
         end: offset of its end, exclusive.
     """
@@ -94,21 +94,21 @@ class MarkupPlace(Place):
         return self.text.span(self.start, self.end)
 
     def part(self, start: int, end: int) -> MarkupPlace:
-        """A part of it, by offsets in its text in the file."""
+        """Return a part of the piece, by offsets in the file."""
         return MarkupPlace(self.text, min(self.start + start, self.end), min(self.start + end, self.end))
 
 
 class Placed:
-    """Something that knows the place in the user's program or launch file where it was made.
+    """An object that records the location in the user's program or launch file where it was created.
 
     Attributes:
-        place: where it was written; None where that is not known.
+        place: the location; None if it is not known.
     """
 
     place: Place | None = None
 
     def __new__(cls: type[T], *_: Any, **__: Any) -> T:  # noqa: PYI019 - Self needs Python 3.11
-        """Remember the place; done here because classes of users need not call our constructor."""
+        """Record the place here, because users' classes need not call our constructor."""
         made = super().__new__(cls)
         made.place = Place.of_caller()
         return made
@@ -119,7 +119,7 @@ _being_read: list[Place | None] = []
 
 @contextmanager
 def reading(place: Place | None) -> Iterator[None]:
-    """While this lasts, what is made was written at the place."""
+    """Attribute objects that are created in this context to a place."""
     _being_read.append(place)
     try:
         yield
@@ -129,7 +129,7 @@ def reading(place: Place | None) -> Iterator[None]:
 
 @contextmanager
 def not_reading() -> Iterator[None]:
-    """While this lasts, what is made was written where Python's stack says, though markup is being read."""
+    """Attribute objects that are created in this context to Python's stack, not to the markup being read."""
     kept = _being_read[:]
     _being_read.clear()
     try:
@@ -152,11 +152,11 @@ class CodePlace(Place):
         return self.code.co_filename
 
     def source(self) -> SourceText | None:
-        """The program text; None where it cannot be read again."""
+        """The program text; None if it cannot be read again."""
         return read_source(self.file)
 
     def span(self, source: SourceText | None = None) -> Span:
-        """The expression at the place, or its line where Python (3.10) keeps no columns."""
+        """The expression at the place, or its line if Python (3.10) records no columns."""
         positions = getattr(self.code, "co_positions", None)
         if positions is not None:
             exact = next(islice(positions(), self.instruction // 2, None), None)
@@ -175,12 +175,12 @@ class CodePlace(Place):
 
 
 def is_ours(filename: str) -> bool:
-    """Whether a program file belongs to Linkwright itself (and not to a robot package that it ships)."""
+    """Return whether a program file belongs to Linkwright itself, not to a robot package that it ships."""
     return filename.startswith(_OURS) and not filename.startswith(_SHIPPED_PACKAGES)
 
 
 def read_source(filename: str) -> SourceText | None:
-    """The text of a program file, or None where it cannot be read."""
+    """Return the text of a program file, or None if it cannot be read."""
     try:
         return SourceText(filename, Path(filename).read_text(encoding="utf-8", errors="replace"))
     except (OSError, ValueError):
@@ -188,7 +188,7 @@ def read_source(filename: str) -> SourceText | None:
 
 
 def located(error: LinkwrightError, place: Place | None) -> LinkwrightError:
-    """The error with a place for its diagnostics; one that names a place already stays as it is."""
+    """Return the error with a place for its diagnostics; an existing place stays."""
     if place is None or any(diagnostic.span for diagnostic in error.diagnostics):
         return error
     source = place.source()
@@ -206,15 +206,15 @@ def error_at(
     notes: tuple[Note, ...] = (),
     ros_error: Exception | None = None,
 ) -> LinkwrightError:
-    """A new error about what was written at a place.
+    """Return a new error about the text at a place.
 
     Args:
-        place: where it was written.
-        code: of the diagnostic.
-        message: of the diagnostic.
-        hint: of the diagnostic.
-        notes: of the diagnostic.
-        ros_error: what ROS raises here; the error is of its class too, and has its text for programs that look at it.
+        place: the location.
+        code: the code of the diagnostic.
+        message: the message of the diagnostic.
+        hint: the hint of the diagnostic.
+        notes: the notes of the diagnostic.
+        ros_error: the exception that ROS raises here; the error has its class and text, for programs that check them.
     """
     return located(as_ros_error(ros_error, Diagnostic(code, message, notes=notes, hint=hint)), place)
 

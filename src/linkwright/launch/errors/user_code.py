@@ -1,4 +1,4 @@
-"""Exceptions in a user's launch file as findings: what, where, and the nearest name, without a traceback."""
+"""Exceptions in a user's launch file as findings, with location and similar names, without a traceback."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.places import CodePlace, Place, error_at, is_ours, located, read_source
 
 DEEPEST = 300
-"""So many launch actions may lead to one another: files that include files, groups in groups, functions that return
-actions. Python's own limit would be reached a little later, at a place that tells nothing."""
+"""The maximum nesting of launch actions: files that include files, groups in groups, functions that return actions.
+Python's own limit would be reached a little later, at an unrelated place."""
 
 _LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")})
 _CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
@@ -40,15 +40,15 @@ _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argum
 
 
 def explain(error: BaseException, where: str, fallback: Place | None = None) -> LinkwrightError:
-    """An exception as an error with the user's own line.
+    """Convert an exception to an error with the user's own line.
 
     Args:
-        error: what was raised; ``sys.exit`` raises too.
-        where: what was running, such as "launch file 'x.launch.py'".
-        fallback: the place to name when no line of the user's was running.
+        error: the exception, which may come from ``sys.exit``.
+        where: the code that was running, such as "launch file 'x.launch.py'".
+        fallback: the place to report if no line of the user was running.
 
     Returns:
-        The error itself if it is a LinkwrightError, with a place where it had none; else a LAUNCH104.
+        The error itself if it is a LinkwrightError, with a place if it had none; else a LAUNCH104.
     """
     trail = list(_user_places(error.__traceback__))
     place = trail[-1] if trail else fallback
@@ -64,23 +64,24 @@ def explain(error: BaseException, where: str, fallback: Place | None = None) -> 
     )
     source = place.source() if place else None
     span = place.span(source) if place else None
-    callers = dict.fromkeys(reversed(trail[:-1]))  # a function that calls itself is told of once
+    callers = dict.fromkeys(reversed(trail[:-1]))  # a recursive function is reported once
     notes = tuple(Note(phrase("called from here"), caller.span(read_source(caller.file))) for caller in callers)
     diagnostic = Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
 
 
 def endless(place: Place | None) -> LinkwrightError:
-    """The error about actions that lead to one another, as it seems, for ever."""
-    message = phrase("launch actions lead to one another without an end: more than {count} do", count=DEEPEST)
+    """Return the error about apparently endless nesting of actions."""
+    message = phrase("launch actions are nested without end: more than {count} levels", count=DEEPEST)
     hint = phrase(
-        "a launch file must not include itself, nor a function return itself, without a condition that ends it"
+        "a launch file that includes itself, or a function that returns itself, needs a condition that ends "
+        "the recursion"
     )
     return error_at(place, "LAUNCH156", message, hint)
 
 
 def too_deep(path: str) -> LinkwrightError:
-    """The error about a launch file that is nested deeper than Python's stack is."""
+    """Return the error about a launch file that is nested too deeply for Python's stack."""
     message = phrase("launch file '{path}' is nested too deeply to be read", path=display_path(path))
     return error_at(None, "LAUNCH156", message)
 
@@ -97,14 +98,14 @@ def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
 
 
 def is_users(filename: str) -> bool:
-    """Whether a file of code is the user's own: neither Linkwright's nor of an installed library."""
+    """Return whether a code file is the user's: neither Linkwright's nor of an installed library."""
     if filename.startswith("<") or is_ours(filename):
         return False
     return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))
 
 
 def _hint(error: BaseException, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """What the user may have meant."""
+    """Return a hint on what the user may have meant."""
     if isinstance(error, ImportError):
         return _import_hint(error)
     if isinstance(error, NameError):
@@ -121,7 +122,7 @@ def _hint(error: BaseException, source: SourceText | None, span: Span | None) ->
 
 
 def _offered(owner: object) -> list[str]:
-    """The public names of a module or object; not its submodules, which share their names with what they define."""
+    """Return the public names of an object; not submodules, which are often named like their contents."""
     return [
         name
         for name in dir(owner)
@@ -152,7 +153,7 @@ def _import_hint(error: ImportError) -> Phrase | None:
 
 
 def where_it_is(error: ImportError) -> Phrase | None:
-    """Which other module has the name that one lacks; None where that module knows of none, as real ones do."""
+    """Return the other module that has a missing name; None if the module, like real ones, does not know it."""
     words = _CANNOT_IMPORT.search(str(error))
     if words is None:
         return None
@@ -163,7 +164,7 @@ def where_it_is(error: ImportError) -> Phrase | None:
 
 
 def _keyword_hint(error: TypeError) -> Phrase | None:
-    """The nearest argument name for a call with one that does not exist."""
+    """Return a hint with the nearest argument name for a call with an unknown argument."""
     found = _UNEXPECTED_ARGUMENT.search(str(error))
     frame = _innermost_frame(error, users_only=True)
     if not found or frame is None:
@@ -175,7 +176,7 @@ def _keyword_hint(error: TypeError) -> Phrase | None:
 
 
 def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None) -> Phrase | None:
-    """The misspelt argument name, in the text of the call, that was to be a required one."""
+    """Return a hint with the argument in the call that may be a misspelt required one."""
     found = _MISSING_ARGUMENT.search(str(error))
     if not found or source is None or span is None:
         return None
@@ -184,12 +185,14 @@ def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None
     for missing in re.findall(r"'(\w+)'", found.group(1)):
         near = nearest(missing, (name for name in written if name != missing))
         if near:
-            return phrase("'{missing}' is missing; it says {near}", missing=missing, near=quoted_names(near, " or "))
+            return phrase(
+                "'{missing}' is missing; the call has {near}", missing=missing, near=quoted_names(near, " or ")
+            )
     return None
 
 
 def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
-    """Classes that the frame knows and that are, or derive from, the one whose constructor complained."""
+    """Return the classes in the frame that are, or derive from, the class whose constructor failed."""
     known = [*frame.f_globals.values(), *frame.f_locals.values()]
     return [
         function_type

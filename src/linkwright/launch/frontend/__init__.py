@@ -1,1 +1,1 @@
-"""Reading launch files: Python, XML, YAML, and the substitutions in their texts."""
+"""Readers of launch files (Python, XML, YAML) and of the substitutions in them."""

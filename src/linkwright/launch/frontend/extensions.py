@@ -1,4 +1,4 @@
-"""Extensions of launch files (tags, substitutions, languages): ours, of installed packages, of the workspace."""
+"""Extensions of launch files (tags, substitutions, languages) of Linkwright, installed packages and the workspace."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ _OURS = {
     PARSERS: {"xml": "linkwright.launch.frontend.xml:Parser", "yaml": "linkwright.launch.frontend.yaml:Parser"},
 }
 _STAND_INS = {ACTIONS: {"ros_gz_sim": "linkwright.launch.ros.gazebo"}, PARSERS: {}}
-"""Ours in the place of packages, unless these are installed."""
+"""Our replacements for packages that are not installed."""
 
 
 def load(group: str) -> Iterator[tuple[str, Any]]:
-    """Name and object of each entry point of a group, ours first; for one that fails there is a warning instead."""
+    """Yield the name and object of each entry point of a group, ours first; one that fails yields a warning instead."""
     installed = entry_points(group=group)
     stand_ins = {name: value for name, value in _STAND_INS[group].items() if name not in installed.names}
     ours = (EntryPoint(name, value, group) for name, value in {**_OURS[group], **stand_ins}.items())
@@ -54,7 +54,7 @@ _loaded: set[tuple[Path, str]] = set()
 
 
 def load_workspace_extensions() -> None:
-    """Import the modules with tags and substitutions of the packages that the finder in force finds, each once."""
+    """Import the extension modules of the packages that the active finder finds, each once."""
     finder = current_finder()
     for package, share in finder.packages().items():
         for module in _modules(package, share):
@@ -76,7 +76,7 @@ def _import(module: str, finder: PackageFinder, share: Path) -> None:
 
 
 def _modules(package: str, share: Path) -> Iterator[str]:
-    """The modules that a package's entry points name."""
+    """Return the modules that a package's entry points name."""
     if is_installed(share):
         for folder in python_folders(install_prefix(share), package):
             for path in folder.glob("*-info/entry_points.txt"):
@@ -89,7 +89,7 @@ def _modules(package: str, share: Path) -> Iterator[str]:
 
 
 def _named(lines: list[str]) -> Iterator[str]:
-    """The modules of lines ``name = module:attribute``."""
+    """Return the modules in lines of the form ``name = module:attribute``."""
     for line in lines:
         _, equals, target = line.partition("=")
         module = target.partition(":")[0].strip()

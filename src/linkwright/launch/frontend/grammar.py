@@ -1,8 +1,8 @@
 r"""Substitutions in text: ``$(name argument ...)``, with quotes, escapes and substitutions inside.
 
-The rules are those of ``launch.frontend``. A backslash takes any meaning from the character after it. Arguments are
-divided by blanks; one with blanks in it stands in single or double quotes. Inside these, quotes of the same kind are
-written with a backslash, and a substitution there has arguments without quotes.
+The rules are those of ``launch.frontend``. A backslash escapes the next character. Spaces separate arguments; an
+argument with spaces is in single or double quotes. Inside quotes, the same quotes need a backslash, and a substitution
+has arguments without quotes.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ _UNQUOTED_END = frozenset(_BLANK + "()")
 
 
 def replace_escaped_characters(data: str) -> str:
-    """The text with each backslash gone that stands before a character."""
+    """Return the text with backslash escapes resolved."""
     return _ESCAPED.sub(r"\1", data)
 
 
 def parse_substitution(string_value: str) -> list[Substitution]:
-    """A text as a list of substitutions.
+    """Parse a text into a list of substitutions.
 
     Raises:
-        ValueError: LAUNCH119, it cannot be read.
+        ValueError: LAUNCH119, it cannot be parsed.
         RuntimeError: LAUNCH119, there is no such substitution.
     """
     if not string_value:
@@ -41,7 +41,7 @@ def parse_substitution(string_value: str) -> list[Substitution]:
 
 
 def parse_if_substitutions(value: Any) -> Any:
-    """A value with the substitutions in its texts; texts without any stay texts.
+    """Parse the substitutions in the strings of a value; strings without any stay strings.
 
     Raises:
         ValueError: a list has plain values of several types.
@@ -70,17 +70,17 @@ class _Reader:
         self._place = place
 
     def template(self) -> list[Substitution]:
-        """The whole text."""
+        """Parse the entire text."""
         parts = self._parts(until="", argument=False)
         assert self._at == len(self._text)
         return parts
 
     def _parts(self, until: str, argument: bool) -> list[Substitution]:
-        """Text and substitutions up to a closing character.
+        """Yield text and substitutions up to a closing character.
 
         Args:
-            until: the quote that ends them, left unread; empty outside of quotes.
-            argument: whether they are an argument, so that a blank or a parenthesis ends them too.
+            until: the closing quote, which is not consumed; empty outside quotes.
+            argument: whether they form an argument, so that a space or a parenthesis ends them too.
         """
         parts: list[Substitution] = []
         start = self._at
@@ -111,7 +111,7 @@ class _Reader:
         self._at += 2
         name = _NAME.match(self._text, self._at)
         if name is None:
-            self._fail(phrase("no name after '$('"), phrase(r"write \$( for the characters themselves"))
+            self._fail(phrase("no name after '$('"), phrase("write \\$( for the literal characters"))
         self._at = name.end()
         arguments = []
         while True:
@@ -144,7 +144,7 @@ class _Reader:
         if self._at >= len(self._text):
             self._at = start
             self._fail(
-                phrase("the quote {opening} is never closed", opening=opening),
+                phrase("the quote {opening} is not closed", opening=opening),
                 phrase("close it, or write \\{opening} for the character", opening=opening),
             )
         self._at += 1
@@ -163,7 +163,7 @@ class _Reader:
             hint = hint or phrase(r"put quotes around it, or write \(")
         self._fail(
             phrase("{character} after '{text}'", character=repr(character), text=self._text[: self._at][-20:]),
-            hint or phrase("divide arguments by blanks"),
+            hint or phrase("separate arguments by spaces"),
         )
 
     def _part(self, start: int, end: int) -> Place | None:
@@ -171,5 +171,5 @@ class _Reader:
 
     def _fail(self, message: Phrase, hint: Phrase) -> NoReturn:
         place = self._part(self._at, self._at + 1)
-        text = phrase("substitution in '{text}' cannot be read: {message}", text=self._text, message=message)
+        text = phrase("substitution in '{text}' cannot be parsed: {message}", text=self._text, message=message)
         raise error_at(place, "LAUNCH119", text, hint, ros_error=ValueError(text))

@@ -1,4 +1,4 @@
-"""Including other launch files."""
+"""The action that includes another launch file."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ class IncludeLaunchDescription(Action):
     around it keeps them apart.
 
     Args:
-        launch_description_source: where the description comes from; a path will do.
-        launch_arguments: pairs of name and value of the arguments given to it.
+        launch_description_source: the source of the description, or a path.
+        launch_arguments: pairs of name and value.
     """
 
     def __init__(
@@ -69,14 +69,15 @@ class IncludeLaunchDescription(Action):
         if not isinstance(launch_description_source, LaunchDescriptionSource):
             launch_description_source = AnyLaunchDescriptionSource(launch_description_source)
         self._source = launch_description_source
-        # As in ROS, a value that is no text, such as None, is an error of the run only: the file may never be included.
+        # As in ROS, a value that is not a string, such as None, is an error only at run time: the file may never be
+        # included.
         self._arguments = [
             (normalize_to_list_of_substitutions(name), _normalized(value)) for name, value in launch_arguments or ()
         ]
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``file`` and the ``arg`` (or ``let``) inside."""
+        """Read ``file`` and the ``arg`` (or ``let``) inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["launch_description_source"] = parser.parse_substitution(entity.get_attr("file"))
         arguments = []
@@ -91,39 +92,39 @@ class IncludeLaunchDescription(Action):
 
     @property
     def launch_description_source(self) -> LaunchDescriptionSource:
-        """Where the description comes from."""
+        """The source of the description."""
         return self._source
 
     @property
     def launch_arguments(self) -> list[tuple[list[Substitution], Any]]:
-        """Names and values of the arguments, as substitutions; a value that cannot be one as it was given."""
+        """Names and values of the arguments as substitutions; values that cannot be converted stay as given."""
         return self._arguments
 
     def describe(self) -> str:
-        """Where the description comes from."""
+        """Return the source of the description."""
         return f"{type(self).__name__}({self._source.location})"
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """The description, if it can be had before the launch runs."""
+        """Return the description, if it can be read before the launch runs."""
         description = self._source.try_get_launch_description_without_context()
         return [] if description is None else [description]
 
     def hides_entities(self) -> bool:
-        """Whether only the running launch can tell which file is included."""
+        """Return whether the included file is known only when the launch runs."""
         return self._source.try_get_launch_description_without_context() is None
 
     def arguments_given_inside(self) -> tuple[str, ...]:
-        """The names of the arguments that are plain text."""
+        """Return the names of the arguments that are plain text."""
         names = (name[0] for name, _ in self._arguments if len(name) == 1)
         return tuple(name.text for name in names if isinstance(name, TextSubstitution))
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """The description, to be visited next with its arguments set.
+        """Return the description to visit next, with its arguments set.
 
         Raises:
-            RuntimeError: LAUNCH114, an argument that it requires is not given.
-            TypeError: LAUNCH114, the value of an argument is no text.
-            LinkwrightError: what its source raises.
+            RuntimeError: LAUNCH114, a required argument is missing.
+            TypeError: LAUNCH114, the value of an argument is not a string.
+            LinkwrightError: the error of the source.
         """
         try:
             description = self._source.get_launch_description(context)
@@ -149,7 +150,7 @@ class IncludeLaunchDescription(Action):
         ]
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """An error that happened in what is included, with a note about how it came to be included."""
+        """Return an error in the included description with a note on where it was included."""
         if self.place is not None and self._source.location_path is not None:
             note = Note(phrase("included from here"), self.place.span(self.place.source()))
             error.diagnostics = tuple(
@@ -159,12 +160,12 @@ class IncludeLaunchDescription(Action):
         return error
 
     def _is_of_substitute(self) -> bool:
-        """Whether the file is one that our own in the place of a package of ROS does not have."""
+        """Return whether the file is missing in our replacement of a ROS package."""
         path = self._source.location_path
         return path is not None and not path.exists() and any(is_substitute(folder) for folder in path.parents)
 
     def _file_values(self) -> dict[str, str]:
-        """The values of the moment that tell which file is being visited."""
+        """Return the locals that name the file being visited."""
         path = self._source.location_path
         if path is None:
             return {}
@@ -179,7 +180,7 @@ class IncludeLaunchDescription(Action):
             unknown = [name for name in given if name not in names]
             near = nearest(argument.name, unknown)
             hint = (
-                phrase("it is given {near}: is that the one?", near=quoted_names(near, " or "))
+                phrase("it is given {near}; did you mean that?", near=quoted_names(near, " or "))
                 if near
                 else self._how_to_give(argument.name)
             )
@@ -204,13 +205,15 @@ class IncludeLaunchDescription(Action):
     def _check_values(self, names: list[str]) -> None:
         for name, (_, value) in zip(names, self._arguments, strict=True):
             if not isinstance(value, list):
-                message = phrase("argument '{name}' is given {value}, which is no text", name=name, value=repr(value))
-                hint = phrase("give a text or a substitution, or leave the argument out")
+                message = phrase(
+                    "the value of argument '{name}' is {value}, which is not a string", name=name, value=repr(value)
+                )
+                hint = phrase("pass a string or a substitution, or omit the argument")
                 ros_error = TypeError(f"Failed to normalize given item of type '{type(value)}'")
                 raise error_at(self.place, "LAUNCH114", message, hint, ros_error=ros_error)
 
     def _how_to_give(self, name: str) -> Phrase:
-        """How an argument is given, in the language of the including file."""
+        """Return a hint on how to pass an argument, in the language of the including file."""
         if not isinstance(self.place, MarkupPlace):
             return phrase("add ('{name}', VALUE) to launch_arguments", name=name)
         if self.place.text.text.lstrip().startswith("<"):
@@ -229,6 +232,6 @@ class IncludeScopedLaunchDescription(IncludeLaunchDescription):
     """An `IncludeLaunchDescription` whose launch configurations and environment end with it."""
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """The description in a scope, to be visited next."""
+        """Return the description in a scope, to visit next."""
         opening: list[LaunchDescriptionEntity] = [PushLaunchConfigurations(), PushEnvironment()]
         return [*opening, *super().execute(context), PopEnvironment(), PopLaunchConfigurations()]

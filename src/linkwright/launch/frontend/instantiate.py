@@ -1,4 +1,4 @@
-"""The action of a tag, and the substitution of ``$(name ...)``."""
+"""Creation of the action of a tag and of the substitution ``$(name ...)``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _method(methods: dict[str, Any], name: str) -> Any:
-    """The function that reads a tag or substitution; for an unknown one, extensions of unbuilt packages are loaded."""
+    """Return the parse function of a tag or substitution; load extensions of unbuilt packages if it is unknown."""
     if name not in methods:
         from linkwright.launch.frontend.extensions import load_workspace_extensions
 
@@ -26,7 +26,7 @@ def _method(methods: dict[str, Any], name: str) -> Any:
 
 
 def instantiate_action(entity: Entity, parser: Parser) -> Action:
-    """The action of a tag.
+    """Return the action of a tag.
 
     Raises:
         RuntimeError: LAUNCH115, the tag is not known.
@@ -60,7 +60,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
 def instantiate_substitution(
     type_name: str, args: Sequence[Any] | None = None, place: Place | None = None
 ) -> Substitution:
-    """The substitution of a name, with a list of substitutions for each argument.
+    """Return the substitution of a name, with a list of substitutions for each argument.
 
     Raises:
         RuntimeError: LAUNCH119, the name is not known, or its arguments are wrong.

@@ -1,4 +1,4 @@
-"""Launch files of any kind, Python, XML and YAML, read by their path."""
+"""Readers of launch files of any kind: Python, XML and YAML."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _MARKUP = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
 
 
 def load_launch_file(path: Path) -> LaunchDescription:
-    """The description of a launch file; its kind is told by its name, else by trying.
+    """Load the description of a launch file, whose kind follows from its name, or else by trying.
 
     Raises:
         LinkwrightError: LAUNCH101 to LAUNCH109 and LAUNCH115 to LAUNCH119, what is wrong with the file.
@@ -42,13 +42,13 @@ def load_launch_file(path: Path) -> LaunchDescription:
     except LinkwrightError as error:
         errors.append(error)
     message = phrase("launch file '{path}' is neither Python, XML nor YAML", path=display_path(path))
-    hint = phrase("its name should end in .launch.py, .launch.xml or .launch.yaml, which tells what it is")
+    hint = phrase("its name should end in .launch.py, .launch.xml or .launch.yaml")
     ros_error = InvalidLaunchFileError("", likely_errors=errors, launch_file_path=path)
     raise error_at(None, "LAUNCH107", message, hint, ros_error=ros_error) from errors[0]
 
 
 def load_markup_launch_file(path: Path, text: str | None = None) -> LaunchDescription:
-    """The description of an XML or YAML launch file, or one in a language that a package has a parser for.
+    """Load the description of an XML or YAML launch file, or of one in a language with a parser in a package.
 
     Raises:
         LinkwrightError: LAUNCH101, LAUNCH102, LAUNCH107 to LAUNCH109 and LAUNCH115 to LAUNCH119.
@@ -77,7 +77,7 @@ def load_python_launch_file_as_module(launch_file_path: str | os.PathLike[str]) 
 
 
 def get_launch_description_from_python_launch_file(launch_file_path: str | os.PathLike[str]) -> LaunchDescription:
-    """The description of a Python launch file.
+    """Load the description of a Python launch file.
 
     Raises:
         FileNotFoundError: LAUNCH101, there is no such file.
@@ -89,7 +89,7 @@ def get_launch_description_from_python_launch_file(launch_file_path: str | os.Pa
 def get_launch_description_from_frontend_launch_file(
     launch_file_path: str | os.PathLike[str], *, parser: Any = None
 ) -> LaunchDescription:
-    """The description of an XML or YAML launch file."""
+    """Load the description of an XML or YAML launch file."""
     if parser is None:
         return load_markup_launch_file(Path.cwd() / launch_file_path)
     entity, made = parser.load(launch_file_path)
@@ -102,19 +102,19 @@ def get_launch_description_from_any_launch_file(
     *,
     parser: Any = None,  # noqa: ARG001 - the interface in ROS
 ) -> LaunchDescription:
-    """The description of a launch file of any kind; first as its name says, then as the other kind.
+    """Load a launch file of any kind: first as its name suggests, then as the other kind.
 
     Raises:
         InvalidLaunchFileError: LAUNCH107, neither can read it.
     """
-    names = sys.modules.get(_ANY, sys.modules[__name__])  # where users and tests put functions of their own
+    names = sys.modules.get(_ANY, sys.modules[__name__])  # users and tests replace these functions
     in_markup = names.get_launch_description_from_frontend_launch_file
     in_python = names.get_launch_description_from_python_launch_file
     path = Path(launch_file_path)
     errors: list[Exception] = []
     for load in (in_python, in_markup) if path.suffix == ".py" else (in_markup, in_python):
         try:
-            return load(launch_file_path)  # type: ignore[no-any-return]  # it may be a user's function
+            return load(launch_file_path)  # type: ignore[no-any-return]  # may be a user's function
         except Exception as error:  # noqa: BLE001, PERF203 - launch files are programs, and there are two tries
             errors.append(error)
     ros_error = InvalidLaunchFileError(path.suffix[1:], likely_errors=errors, launch_file_path=launch_file_path)

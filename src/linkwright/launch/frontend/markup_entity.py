@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import Any, NoReturn
 
-from linkwright.diagnostics import did_you_mean, nearest, phrase, quoted_names, term
+from linkwright.diagnostics import Phrase, did_you_mean, nearest, phrase, quoted_names, term
 from linkwright.launch.errors.places import Place, error_at
 from linkwright.launch.model.markup.entity import Entity
 
 
 class MarkupEntity(Entity):
-    """An entity with named parts, which notes down what is asked for.
+    """An entity with named parts, which records the parts that were read.
 
     Args:
         type_name: its tag.
-        place: where it stands.
+        place: its location.
         parent: the entity around it.
     """
 
@@ -37,16 +37,16 @@ class MarkupEntity(Entity):
 
     @property
     def place(self) -> Place | None:
-        """Where it stands."""
+        """The location."""
         return self._place
 
     def _check_all_asked(self, present: Iterable[str], what: str, ros_text: str) -> None:
-        """Report what is there and was not read.
+        """Report the parts that were not read.
 
         Args:
-            present: names of what is there.
-            what: what it is called.
-            ros_text: ROS's own text about it, with the names to be put behind.
+            present: the names of all parts.
+            what: the word for a part.
+            ros_text: ROS's own text, to which the names are appended.
         """
         unknown = [name for name in present if name not in self._asked]
         if not unknown:
@@ -71,13 +71,13 @@ class MarkupEntity(Entity):
     def _missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:
         others = [each for each in present if each not in self._asked]
         near = nearest(name, others)
-        hint = phrase("it has {names}: is that the one?", names=quoted_names(near, " or ")) if near else None
+        hint = phrase("it has {names}; did you mean that?", names=quoted_names(near, " or ")) if near else None
         message = phrase("'{type_name}' needs an attribute '{name}'", type_name=self._type_name, name=name)
         raise error_at(self._place, "LAUNCH117", message, hint, ros_error=AttributeError(ros_error))
 
     def _wrong_type(self, name: str, value: Any, data_type: Any, ros_error: str) -> NoReturn:
         message = phrase(
-            "attribute '{name}' of '{type_name}' is {value}, which is no {type_words}",
+            "attribute '{name}' of '{type_name}' is {value}, which is not {type_words}",
             name=name,
             type_name=self._type_name,
             value=repr(value),
@@ -86,7 +86,12 @@ class MarkupEntity(Entity):
         raise error_at(self._place_of_part(name), "LAUNCH118", message, ros_error=TypeError(ros_error))
 
 
-def type_words(data_type: Any) -> str:
-    """A type in a user's words."""
-    words = {int: phrase("whole number"), float: "number", bool: phrase("truth value ('true' or 'false')"), str: "text"}
-    return words.get(data_type, "list of such values")
+def type_words(data_type: Any) -> Phrase:
+    """Return the name of a type for users."""
+    words = {
+        int: phrase("an integer"),
+        float: phrase("a number"),
+        bool: phrase("a boolean ('true' or 'false')"),
+        str: phrase("a string"),
+    }
+    return words.get(data_type, phrase("a list of the right type"))

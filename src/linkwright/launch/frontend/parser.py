@@ -1,4 +1,4 @@
-"""Readers of launch files in markup languages, and which of them reads which file."""
+"""Parsers of launch files in markup languages, and the choice of a parser for a file."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 class Parser:
-    """Makes actions and substitutions out of entities. A parser for a language overrides `load`."""
+    """Creates actions and substitutions from entities; a parser for a language overrides `load`."""
 
     extensions_loaded: ClassVar[bool] = False
     frontend_parsers: ClassVar[dict[str, type[Parser]] | None] = None
 
     @classmethod
     def load_launch_extensions(cls) -> None:
-        """Import what exposes actions and substitutions: ours, and that of packages with such an entry point."""
+        """Import the modules that expose actions and substitutions: ours, and those named by entry points."""
         if Parser.extensions_loaded:
             return
         for _ in extensions.load(extensions.ACTIONS):
@@ -39,7 +39,7 @@ class Parser:
 
     @classmethod
     def load_parser_implementations(cls) -> None:
-        """Find the parsers: ours for XML and YAML, and those of packages with such an entry point."""
+        """Return the parsers: ours for XML and YAML, and those of packages with such an entry point."""
         if Parser.frontend_parsers is not None:
             return
         parsers: dict[str, type[Parser]] = {}
@@ -47,29 +47,29 @@ class Parser:
             parsers.setdefault(name, loaded)
         Parser.frontend_parsers = dict(sorted(parsers.items()))
 
-    # --- what functions that read tags ask for ---------------------------------------------------------------
+    # --- the interface for functions that read tags ---------------------------------------------------------
 
     def parse_action(self, entity: Entity) -> Action:
-        """The action of an entity."""
+        """Return the action of an entity."""
         self.load_launch_extensions()
         return instantiate_action(entity, self)
 
     def parse_substitution(self, value: str) -> list[Substitution]:
-        """A text with ``$(...)`` in it, as substitutions."""
+        """Parse a text with ``$(...)`` in it into substitutions."""
         self.load_launch_extensions()
         return grammar.parse_substitution(value)
 
     def parse_if_substitutions(self, value: Any) -> Any:
-        """A value with the substitutions in its texts."""
+        """Parse the substitutions in the strings of a value."""
         self.load_launch_extensions()
         return grammar.parse_if_substitutions(value)
 
     def escape_characters(self, value: str) -> str:
-        """The text with its escapes resolved."""
+        """Return the text with its escapes resolved."""
         return grammar.replace_escaped_characters(value)
 
     def parse_description(self, entity: Entity) -> LaunchDescription:
-        """The launch description of a root entity.
+        """Return the launch description of a root entity.
 
         Raises:
             RuntimeError: LAUNCH109, the root is not called ``launch``.
@@ -79,7 +79,7 @@ class Parser:
         if entity.type_name != "launch":
             ros_error = RuntimeError("Expected 'launch' as root tag")
             message = phrase(
-                "the root of a launch file is 'launch', and this is '{type_name}'", type_name=entity.type_name
+                "the root of a launch file must be 'launch', not '{type_name}'", type_name=entity.type_name
             )
             raise error_at(entity.place, "LAUNCH109", message, ros_error=ros_error)
         deprecated = entity.get_attr("deprecated", optional=True)
@@ -89,7 +89,7 @@ class Parser:
         for child in entity.children:
             try:
                 actions.append(self.parse_action(child))
-            except LinkwrightError as error:  # noqa: PERF203 - independent errors are told together
+            except LinkwrightError as error:  # noqa: PERF203 - independent errors are reported together
                 problems.append(error)
         if len(problems) == 1:
             raise problems[0]
@@ -103,12 +103,12 @@ class Parser:
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """The file name extensions that this parser reads, without the first dot."""
+        """Return the file name extensions that this parser reads, without the first dot."""
         return set()
 
     @classmethod
     def may_parse(cls, filename: str) -> bool:
-        """Whether the name of a file is one for this parser."""
+        """Return whether a file name is one for this parser."""
         return any(filename.endswith("." + extension) for extension in cls.get_file_extensions())
 
     @classmethod
@@ -118,7 +118,7 @@ class Parser:
 
     @classmethod
     def is_extension_valid(cls, extension: str) -> bool:
-        """Whether there is a parser of this name."""
+        """Return whether there is a parser with this name."""
         warnings.warn("Parser.is_extension_valid is deprecated, use Parser.is_filename_valid instead", stacklevel=2)
         return extension in cls._parsers()
 
@@ -136,7 +136,7 @@ class Parser:
 
     @classmethod
     def is_filename_valid(cls, filename: str) -> bool:
-        """Whether the name of a file is one for any parser."""
+        """Return whether a file name is one for any parser."""
         return any(parser.may_parse(filename) for parser in cls._parsers().values())
 
     @classmethod
@@ -151,12 +151,12 @@ class Parser:
 
     @classmethod
     def load(cls, file: Any) -> tuple[Entity, Parser]:
-        """The root entity of a file, given by its path or open, and the parser for it.
+        """Return the root entity of a path or open file, and its parser.
 
-        The parser is chosen by the file's name; where the name does not tell, each is tried.
+        The file's name selects the parser; if it does not, each parser is tried.
 
         Raises:
-            InvalidFrontendLaunchFileError: LAUNCH107 to LAUNCH109 and XML codes, what is wrong with it.
+            InvalidFrontendLaunchFileError: LAUNCH107 to LAUNCH109 and XML codes, the errors in the file.
         """
         name, text = read_file(file)
         chosen = cls.get_parsers_from_filename(name) or _by_suffix(name, cls._parsers())
@@ -166,7 +166,7 @@ class Parser:
             again.name = name
             try:
                 return parser.load(again)
-            except RecursionError:  # the text is nested without measure, in whatever language
+            except RecursionError:  # the text is nested too deeply
                 raise
             except Exception as error:  # noqa: BLE001 - parsers of packages may raise anything
                 errors.append(error)
@@ -182,7 +182,7 @@ class Parser:
 
 
 def read_file(file: Any) -> tuple[str, str]:
-    """Name and text of a file, given by its path or open.
+    """Return the name and text of a path or open file.
 
     Raises:
         LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable.
@@ -197,14 +197,14 @@ def read_file(file: Any) -> tuple[str, str]:
 
 
 def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tuple[Diagnostic, ...]:
-    """The findings on a file that no parser can read: those of the parser whose language it looks like."""
+    """Return the findings on a file that no parser can read, from the parser of the most likely language."""
     told = [error.diagnostics for error in errors if isinstance(error, LinkwrightError)]
     looks_like_xml = text.lstrip().startswith("<")
     for diagnostics in told:
         if len(told) == 1 or diagnostics[0].code.startswith("XML") is looks_like_xml:
             return diagnostics
     message = phrase(
-        "launch file '{name}' is neither XML nor YAML that a launch file could be", name=display_path(name)
+        "launch file '{name}' is neither XML nor YAML in the form of a launch file", name=display_path(name)
     )
     return (Diagnostic("LAUNCH107", message),)
 

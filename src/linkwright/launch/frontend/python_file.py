@@ -1,4 +1,4 @@
-"""Python launch files: reading them, running them, and saying what is wrong with them."""
+"""Python launch files: read them, run them, and report their errors."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _MODULE_NAME = "python_launch_file"
 
 
 def load_python_launch_file(path: Path) -> LaunchDescription:
-    """Run a launch file and return the description that its ``generate_launch_description()`` makes.
+    """Run a launch file and return the description of its ``generate_launch_description()``.
 
     Raises:
         LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable, LAUNCH103 a syntax error, LAUNCH104 an
@@ -68,7 +68,7 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
 
 
 def _definition(function: Callable[..., Any], source: SourceText) -> Place:
-    """The line of a launch file that defines a function; the first one for a function from elsewhere."""
+    """Return the line of a launch file that defines a function; the first line if another file defines it."""
     code = getattr(function, "__code__", None)
     line = code.co_firstlineno if code is not None and code.co_filename == source.name else 1
     start = source.offset(line, 1)
@@ -86,7 +86,7 @@ def load_python_module(path: Path) -> ModuleType:
 
 
 def _run(source: SourceText, path: Path) -> ModuleType:
-    """Run a launch file that is found at a path, which it sees as its own; messages name the user's file."""
+    """Run a launch file at a path, which is its ``__file__``; messages name the user's file."""
     try:
         code = compile(source.text, source.name, "exec", dont_inherit=True)
     except SyntaxError as error:
@@ -99,16 +99,16 @@ def _run(source: SourceText, path: Path) -> ModuleType:
     module = ModuleType(_MODULE_NAME)
     module.__file__ = str(path)
     try:
-        exec(code, module.__dict__)  # noqa: S102 - a launch file is a program that the user asks to run
+        exec(code, module.__dict__)  # noqa: S102 - a launch file is a program that the user runs
     except (Exception, SystemExit) as error:
         if isinstance(error, SystemExit) and not error.code:
-            raise  # it is done, and all is well
+            raise  # a regular exit
         raise explain(error, phrase("launch file '{path}'", path=display_path(source.name))) from error
     return module
 
 
 def read_launch_file(path: Path) -> SourceText:
-    """The text of a launch file of any kind, by the name of the user's own file (see `source_of`).
+    """Return the text of a launch file of any kind, by the name of the user's own file (see `source_of`).
 
     Raises:
         LinkwrightError: LAUNCH101 no such file, LAUNCH102 unreadable.

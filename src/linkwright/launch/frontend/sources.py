@@ -1,4 +1,4 @@
-"""Where launch descriptions come from."""
+"""Sources of launch descriptions."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from linkwright.launch.model.substitution import (
 
 
 class LaunchDescriptionSource(Placed):
-    """A launch description, or the file to get it from.
+    """A launch description, or the file to read it from.
 
     Args:
-        launch_description: the description, if it is there already.
-        location: the path of the file otherwise.
-        method: how it comes to be, for those who read about it.
+        launch_description: the description, if it already exists.
+        location: otherwise the path of the file.
+        method: the way it is loaded, for listings.
     """
 
     def __init__(
@@ -41,33 +41,33 @@ class LaunchDescriptionSource(Placed):
 
     @property
     def location(self) -> str:
-        """The path as it was given; before it is known, the substitutions that give it."""
+        """The path as given, or its substitutions before it is known."""
         if self._known_location is not None:
             return self._known_location
         return " + ".join(map(repr, self._location))
 
     @property
     def location_path(self) -> Path | None:
-        """The path, once it is known; None for a description that comes from no file."""
+        """The path, once it is known; None for a description without a file."""
         return Path.cwd() / self._known_location if self._known_location else None
 
     @property
     def method(self) -> str:
-        """How the description is made."""
+        """The way the description is loaded."""
         return self._method
 
     def get_launch_description(self, context: LaunchContext) -> LaunchDescription:
-        """The description.
+        """Return the description.
 
         Raises:
-            LinkwrightError: what is wrong with the file.
+            LinkwrightError: the errors in the file.
         """
         if self._known_location is None:
             self._known_location = perform_substitutions(context, self._location)
         return self._get()
 
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
-        """The description, if nothing but its text is needed to find it."""
+        """Return the description, if its path contains no substitutions that need a context."""
         if self._description is None and all(isinstance(part, TextSubstitution) for part in self._location):
             self._known_location = "".join(part.text for part in self._location if isinstance(part, TextSubstitution))
             return self._get()
@@ -84,14 +84,14 @@ class LaunchDescriptionSource(Placed):
 
     def _get_launch_description(self, location: str) -> LaunchDescription:
         """Read the file; classes of users override this by its name in ROS."""
-        raise NotImplementedError(f"{type(self).__name__} does not say how to read '{location}'")
+        raise NotImplementedError(f"{type(self).__name__} does not implement how to read '{location}'")
 
 
 class PythonLaunchDescriptionSource(LaunchDescriptionSource):
     """A Python launch file.
 
     Args:
-        launch_file_path: its path; a list is joined as it stands, as in ROS.
+        launch_file_path: its path; a list is joined without separators, as in ROS.
     """
 
     def __init__(self, launch_file_path: SomeSubstitutionsType | Path) -> None:

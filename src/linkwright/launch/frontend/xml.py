@@ -21,7 +21,7 @@ class Entity(MarkupEntity):
     """An element of a launch file.
 
     Args:
-        xml_element: the element; one of ``xml.etree.ElementTree`` will do.
+        xml_element: the element; ``xml.etree.ElementTree`` is accepted too.
         parent: the entity around it.
     """
 
@@ -31,24 +31,24 @@ class Entity(MarkupEntity):
 
     @property
     def children(self) -> list[AnyEntity]:
-        """The elements inside, all of which count as read now."""
+        """The child elements, all of which count as read from now on."""
         self._asked.update((element.tag, None) for element in self._element.elements())
         return [Entity(element, parent=self) for element in self._element.elements()]
 
     def assert_entity_completely_parsed(self) -> None:
-        """Check that all attributes and elements inside have been read.
+        """Check that all attributes and child elements have been read.
 
         Raises:
-            ValueError: LAUNCH116, with the first that has not.
+            ValueError: LAUNCH116, with the first unread one.
         """
         tags = [element.tag for element in self._element.elements()]
         self._check_all_asked(tags, "element", "Unexpected nested tag(s) found in")
         self._check_all_asked(self._element.attributes, "attribute", "Unexpected attribute(s) found in")
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """An attribute, or the elements inside of one tag; see `linkwright.launch.model.markup.entity.Entity`.
+        """Return an attribute, or the child elements with a tag; see `linkwright.launch.model.markup.entity.Entity`.
 
-        The value is turned into the type. With an attribute ``NAME-sep`` it is divided into a list.
+        The value is converted to the type. An attribute ``NAME-sep`` splits it into a list.
         """
         self._asked[name] = None
         attributes = self._element.attributes
@@ -93,17 +93,17 @@ class Parser(AnyParser):
 
     @classmethod
     def load(cls, file: Any) -> tuple[AnyEntity, AnyParser]:
-        """The root entity of a file, given by its path or open, and a parser for it.
+        """Return the root entity of a path or open file, and a parser for it.
 
         Raises:
-            LinkwrightError: what is wrong with the XML.
+            LinkwrightError: the errors in the XML.
         """
         name, text = read_file(file)
         return Entity(parse(text, name).root), cls()
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """The file name extensions, without the first dot."""
+        """Return the file name extensions, without the first dot."""
         return {"launch.xml"}
 
 

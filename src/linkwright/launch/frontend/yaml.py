@@ -19,7 +19,7 @@ from linkwright.launch.model.markup.values import is_instance_of
 _CHILDREN = "children"
 
 _BARE = {"include": "file"}
-"""Tag -> what stands behind it alone, as in ``- include: other.launch.py``."""
+"""Tag -> the attribute of a single value, as in ``- include: other.launch.py``."""
 
 
 class Entity(MarkupEntity):
@@ -38,12 +38,12 @@ class Entity(MarkupEntity):
 
     @property
     def children(self) -> list[AnyEntity]:
-        """The entities inside: the items of a list, or those of the mapping's ``children``.
+        """The child entities: the items of a list, or of the mapping's ``children``.
 
         Raises:
             TypeError: LAUNCH118, it is neither a list nor a mapping.
             ValueError: LAUNCH117, the mapping has no ``children``.
-            RuntimeError: LAUNCH118, an item is no mapping with one key.
+            RuntimeError: LAUNCH118, an item is not a mapping with one key.
         """
         self._children_asked = True
         listed = self._element
@@ -85,19 +85,19 @@ class Entity(MarkupEntity):
         """Check that all keys have been read.
 
         Raises:
-            ValueError: LAUNCH116, with the first that has not.
+            ValueError: LAUNCH116, with the first unread one.
         """
         if isinstance(self._element, dict):
             self._check_all_asked(self._element, "key", "Unexpected key(s) found in")
         elif isinstance(self._element, list) and not self._children_asked:
             text = f"Unexpected nested entity(ies) found in `{self.type_name}`: {self._element}"
-            message = phrase("'{type_name}' takes no list of actions", type_name=self.type_name)
+            message = phrase("'{type_name}' does not accept a list of actions", type_name=self.type_name)
             raise error_at(self.place, "LAUNCH116", message, ros_error=ValueError(text))
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """An attribute, or the entities inside of one name; see `linkwright.launch.model.markup.entity.Entity`.
+        """Return an attribute, or the child entities with a name; see `linkwright.launch.model.markup.entity.Entity`.
 
-        The value must be of the type as YAML reads it; but a number or truth value will do for a text, as in newer ROS.
+        YAML must read the value as the type, but a number or boolean is accepted for a string, as in newer ROS.
         """
         self._asked[name] = None
         if not isinstance(self._element, (dict, list)):
@@ -135,7 +135,7 @@ class Entity(MarkupEntity):
 
 
 def _spelled(value: bool | float) -> str:
-    """A value of YAML as a text that means the same to conditions and parameters."""
+    """Return a YAML value as text with the same meaning in conditions and parameters."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
@@ -144,10 +144,10 @@ class Parser(AnyParser):
 
     @classmethod
     def load(cls, file: Any) -> tuple[AnyEntity, AnyParser]:
-        """The root entity of a file, given by its path or open, and a parser for it.
+        """Return the root entity of a path or open file, and a parser for it.
 
         Raises:
-            LinkwrightError: LAUNCH108, it is no YAML; LAUNCH109, it is not the mapping of one key.
+            LinkwrightError: LAUNCH108, it is not YAML; LAUNCH109, it is not a mapping with one key.
         """
         name, text = read_file(file)
         tree = load(text, name)
@@ -161,7 +161,7 @@ class Parser(AnyParser):
 
     @classmethod
     def get_file_extensions(cls) -> set[str]:
-        """The file name extensions, without the first dot."""
+        """Return the file name extensions, without the first dot."""
         return {"launch.yaml", "launch.yml"}
 
 
@@ -169,13 +169,13 @@ class Parser(AnyParser):
 
 
 class PlacedMapping(dict[Any, Any]):
-    """A mapping that knows where it begins."""
+    """A mapping that records its location."""
 
     place: Place | None = None
 
 
 class _Loader(yaml.SafeLoader):
-    """Loads plain values, with texts and mappings that know where they stand."""
+    """Loads plain values; strings and mappings record their locations."""
 
     launch_text: SourceText
 
@@ -184,7 +184,7 @@ class _Loader(yaml.SafeLoader):
         self._open_anchors: list[str | None] = []
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
-        """A node of the file; an alias of a node that it is itself inside of would never end."""
+        """Compose a node, and reject an alias inside its own anchor, which would never end."""
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]  # of PyYAML
         anchor = getattr(event, "anchor", None)
         if isinstance(event, yaml.AliasEvent) and anchor in self._open_anchors:
@@ -219,10 +219,10 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
 def load(text: str, name: str) -> Any:
-    """The data of a YAML text; its strings are `PlacedText`.
+    """Load the data of a YAML text, with strings as `PlacedText`.
 
     Raises:
-        LinkwrightError: LAUNCH108, it is no YAML.
+        LinkwrightError: LAUNCH108, it is not YAML.
     """
     source = SourceText(name, text)
     loader = _Loader(text)
@@ -233,7 +233,7 @@ def load(text: str, name: str) -> Any:
         mark = error.problem_mark or error.context_mark
         span = source.span(mark.index) if mark else None
         problem = ", ".join(part for part in (error.problem, error.context) if part)
-        hint = phrase("indent with blanks") if mark and source.text[mark.index : mark.index + 1] == "\t" else None
+        hint = phrase("indent with spaces") if mark and source.text[mark.index : mark.index + 1] == "\t" else None
         diagnostic = Diagnostic(
             "LAUNCH108", phrase("YAML syntax: {problem}", problem=foreign(problem)), span, hint=hint, source=source
         )

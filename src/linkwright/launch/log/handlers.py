@@ -10,34 +10,34 @@ _CLASSES: dict[str, type[Any]] = {}
 
 
 class ForEachLogger:
-    """A handler that formats the lines of some loggers in ways of their own."""
+    """A handler with separate formatters for some loggers."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._formatters: dict[str, logging.Formatter] = {}
 
     def setFormatterFor(self, logger: logging.Logger, formatter: logging.Formatter) -> None:  # noqa: N802 - ROS's name
-        """Have the lines of a logger formatted by a formatter."""
+        """Set the formatter for the lines of a logger."""
         self._formatters[logger.name] = formatter
 
     def unsetFormatterFor(self, logger: logging.Logger) -> None:  # noqa: N802 - ROS's name
-        """Have the lines of a logger formatted as those of others."""
+        """Remove the formatter for the lines of a logger."""
         self._formatters.pop(logger.name, None)
 
     def format(self, record: logging.LogRecord) -> str:
-        """A line."""
+        """Format a line."""
         record.msg, record.args = record.getMessage(), None
         formatter = self._formatters.get(record.name)
         if formatter is not None:
             return formatter.format(record)
-        return str(super().format(record))  # type: ignore[misc]  # the class that it is mixed into has it
+        return str(super().format(record))  # type: ignore[misc]  # the class that it is mixed into defines it
 
 
 class Handler(ForEachLogger, logging.Handler):
     """A handler that users derive from."""
 
 
-class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]  # no generic at run time
+class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]  # not generic at run time
     """Writes lines to a stream."""
 
 
@@ -46,7 +46,7 @@ class FileHandler(ForEachLogger, logging.FileHandler):
 
 
 class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
-    """Writes lines to a file that others may move away."""
+    """Writes lines to a file that other programs may move."""
 
 
 def handler_class(name: str) -> type[Any]:

@@ -1,7 +1,7 @@
-"""The logging that launch files ask ``launch.logging`` for: Python's own, in the form of launch lines.
+"""The loggers of ``launch.logging``: Python's loggers with the format of launch lines.
 
-It is apart from what the launcher itself writes (`linkwright.hosting.launch_log`), but looks alike and honours the
-same environment variables. A file is opened when the first line goes to it.
+They are separate from the launcher's own log (`linkwright.hosting.launch_log`), but have the same format and follow the
+same environment variables. A file is opened with its first line.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
 
 
 class _ScreenHandler(StreamHandler):
-    """Writes lines to what is stdout at the moment."""
+    """Writes lines to the current stdout."""
 
     @property
     def stream(self) -> Any:
@@ -61,18 +61,18 @@ def _make_unique_log_dir(*, base_path: str) -> str:
     return str(new_log_folder(Path(base_path)))
 
 
-def _renew_latest_log_dir(*, log_dir: str) -> bool:  # noqa: ARG001 - the name and form that ROS's tests replace
-    return True  # the folder's maker has done it
+def _renew_latest_log_dir(*, log_dir: str) -> bool:  # noqa: ARG001 - ROS's tests replace a function with this signature
+    return True  # the function that creates the folder has done it
 
 
 class LaunchConfig:
-    """How launch logs."""
+    """The configuration of launch's logging."""
 
     def __init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
-        """Go back to the beginning."""
+        """Reset the configuration."""
         self._log_dir: str | None = None
         self.log_file_name = MAIN_LOG
         self.file_handlers: dict[str, logging.Handler] = {}
@@ -87,7 +87,7 @@ class LaunchConfig:
 
     @property
     def level(self) -> int:
-        """The least level that is logged."""
+        """The lowest level that is logged."""
         return logging.root.getEffectiveLevel()
 
     @level.setter
@@ -97,7 +97,7 @@ class LaunchConfig:
 
     @property
     def log_dir(self) -> str:
-        """The folder of this launch's files, made when it is asked for."""
+        """The folder of this launch's files, created on first use."""
         if self._log_dir is None:
             module = _public_module()
             self._log_dir = module._make_unique_log_dir(base_path=_get_logging_directory())
@@ -119,13 +119,13 @@ class LaunchConfig:
         self._log_dir = None if new_log_dir is None else str(new_log_dir)
 
     def share(self, folder: Path) -> None:
-        """Put the files beside those of the launch that runs, as long as there are none elsewhere."""
+        """Use the folder of the running launch, unless there are files in another folder."""
         if not self.file_handlers:
             self._log_dir = str(folder)
 
     @property
     def log_handler_factory(self) -> Callable[..., logging.Handler]:
-        """What makes the handler of a file, of its path and ``encoding``."""
+        """The factory of file handlers, which takes a path and ``encoding``."""
         return self._log_handler_factory or (FileHandler if os.name == "nt" else WatchedFileHandler)
 
     @log_handler_factory.setter
@@ -133,32 +133,32 @@ class LaunchConfig:
         self._log_handler_factory = factory
 
     def set_screen_format(self, screen_format: str | None, *, screen_style: Any = None) -> None:
-        """Choose how lines look on the screen: ``default``, ``default_with_timestamp``, or a format."""
+        """Set the format of lines on the screen: ``default``, ``default_with_timestamp``, or a format."""
         override = os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT")
         self.screen_formatter = _formatter(screen_format, screen_style, override, FORMATS, "screen")
         if self.screen_handler is not None:
             self.screen_handler.setFormatter(self.screen_formatter)
 
     def set_log_format(self, log_format: str | None, *, log_style: Any = None) -> None:
-        """Choose how lines look in files: ``default``, or a format."""
+        """Set the format of lines in files: ``default``, or a format."""
         override = os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT")
         self.file_formatter = _formatter(log_format, log_style, override, FILE_FORMATS, "log")
         for handler in self.file_handlers.values():
             handler.setFormatter(self.file_formatter)
 
     def get_screen_handler(self) -> logging.Handler:
-        """The handler for the screen."""
+        """Return the handler for the screen."""
         if self.screen_handler is None:
             self.screen_handler = _ScreenHandler()
             self.screen_handler.setFormatter(self.screen_formatter)
         return self.screen_handler
 
     def get_log_file_path(self, file_name: str = MAIN_LOG) -> str:
-        """The path of a file."""
+        """Return the path of a file."""
         return str(Path(self.log_dir) / file_name)
 
     def get_log_file_handler(self, file_name: str = MAIN_LOG) -> logging.Handler:
-        """The handler for a file, the same each time."""
+        """Return the handler for a file, the same on each call."""
         if file_name not in self.file_handlers:
             handler = self.log_handler_factory(self.get_log_file_path(file_name), encoding="utf-8")
             handler.setFormatter(self.file_formatter)
@@ -181,7 +181,7 @@ def _formatter(
 
 
 def _public_module() -> Any:
-    """The module by whose name users, and ROS's tests, replace the functions that make folders."""
+    """Return the public module in which users and ROS's tests replace the functions that create folders."""
     return sys.modules.get("launch.logging") or sys.modules[__name__]
 
 
@@ -189,18 +189,18 @@ launch_config = LaunchConfig()
 
 
 def get_logger(name: str | None = None) -> logging.Logger:
-    """A logger whose lines look like those of the launcher, on the screen and in the main file."""
+    """Return a logger for the screen and the main file, with the format of the launcher's lines."""
     logger = logging.getLogger(name)
     for handler in (launch_config.get_screen_handler(), launch_config.main_file):
         if handler not in logger.handlers and not _shown_above(logger, handler):
             logger.addHandler(handler)
     if not launch_config.level_chosen and logger.getEffectiveLevel() > logging.INFO:
-        logger.setLevel(logging.INFO)  # Python's default would hide what the launcher shows
+        logger.setLevel(logging.INFO)  # Python's default would hide lines that the launcher shows
     return logger
 
 
 def _shown_above(logger: logging.Logger, handler: logging.Handler) -> bool:
-    """Whether a logger above this one shows its lines already."""
+    """Return whether a parent logger already shows its lines."""
     above: logging.Logger | None = logger if logger.propagate else None
     while above is not None and above.parent is not None:
         above = above.parent
@@ -210,14 +210,14 @@ def _shown_above(logger: logging.Logger, handler: logging.Handler) -> bool:
 
 
 def log_launch_config(*, logger: logging.Logger = logging.root) -> None:
-    """Log where the files are, and the least level."""
+    """Log the folder of the files and the lowest level."""
     if launch_config.file_handlers:
         logger.info("All log files can be found below %s", launch_config.log_dir)
     logger.info("Default logging verbosity is set to %s", logging.getLevelName(logging.root.getEffectiveLevel()))
 
 
 def get_output_loggers(process_name: str, output_config: Any) -> tuple[logging.Logger, logging.Logger]:
-    """The loggers for what a process writes to stdout and to stderr.
+    """Return the loggers for the stdout and stderr of a process.
 
     Args:
         process_name: the process.
@@ -273,7 +273,7 @@ def _normalize_output_configuration(config: Any) -> dict[str, set[str]]:
 
 
 def reset() -> None:
-    """Take the handlers and levels away from all loggers that were made here, and go back to the beginning."""
+    """Remove the handlers and levels of all loggers that were created here, and reset the configuration."""
     for logger in list(logging.root.manager.loggerDict.values()):
         handlers = getattr(logger, "handlers", ())
         kept = [handler for handler in handlers if not isinstance(handler, ForEachLogger)]

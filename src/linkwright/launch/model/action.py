@@ -19,7 +19,7 @@ class Action(LaunchDescriptionEntity):
     """An entity that does something when it is visited and its condition holds.
 
     Args:
-        condition: decides at the visit whether `execute` runs.
+        condition: determines at the visit whether `execute` runs.
     """
 
     def __init__(self, *, condition: Condition | None = None, **unknown: Any) -> None:
@@ -29,10 +29,10 @@ class Action(LaunchDescriptionEntity):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """The class and the keyword arguments for the tag of an XML or YAML file: here its ``if`` or ``unless``.
+        """Return the class and the keyword arguments for a tag of an XML or YAML file: here its ``if`` or ``unless``.
 
         Raises:
-            RuntimeError: LAUNCH118, both are there.
+            RuntimeError: LAUNCH118, it has both.
         """
         return cls, parse_condition(entity, parser)
 
@@ -42,17 +42,17 @@ class Action(LaunchDescriptionEntity):
         return getattr(self, "_condition", None)
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities inside, for an action without a condition."""
+        """Return the child entities of an action without a condition."""
         return list(self.get_sub_entities()) if self.condition is None else []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """The entities inside, for an action with a condition."""
+        """Return the child entities of an action with a condition."""
         if self.condition is None:
             return []
         return [("Conditionally included: " + str(self.condition), list(self.get_sub_entities()))]
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Execute, if the condition holds; gives None where nothing is to be visited next."""
+        """Execute the action if the condition holds; return the entities to visit next, or None."""
         if self.condition is not None and not self.condition.evaluate(context):
             return None
         following = self.execute(context)
@@ -60,7 +60,7 @@ class Action(LaunchDescriptionEntity):
         return None if following is None else as_entities(following)
 
     def _tell_completion(self, context: LaunchContext) -> None:
-        """Emit the event of its completion, where a handler is for it; of what has a future, once that is done."""
+        """Emit the completion event if there is a handler for it; if the action has a future, when that is done."""
         from linkwright.launch.model.events import ExecutionComplete
 
         event = ExecutionComplete(action=self)
@@ -73,19 +73,19 @@ class Action(LaunchDescriptionEntity):
             future.add_done_callback(lambda _: context.emit_event_sync(event))
 
     def execute(self, context: LaunchContext) -> Any:
-        """Do the work; may return entities to be visited next."""
+        """Execute the action; may return entities to visit next."""
         return None
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """The entities inside, for a reader who asks which arguments are declared."""
+        """Return the child entities, to find the declared arguments."""
         return []
 
 
 def parse_condition(entity: Entity, parser: Parser) -> dict[str, Any]:
-    """The keyword argument ``condition``, by the ``if`` or ``unless`` of a tag; nothing without them.
+    """Return the keyword argument ``condition`` for the ``if`` or ``unless`` of a tag, if it has one.
 
     Raises:
-        RuntimeError: LAUNCH118, both are there.
+        RuntimeError: LAUNCH118, it has both.
     """
     conditions = (("if", IfCondition), ("unless", UnlessCondition))
     given = {kind: entity.get_attr(name, optional=True) for name, kind in conditions}

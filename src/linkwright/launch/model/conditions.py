@@ -23,7 +23,7 @@ class InvalidConditionExpressionError(Exception):
     """The expression of a condition is neither true nor false.
 
     Args:
-        given: its value, and what was accepted as true and as false; or one text.
+        given: its value and the accepted true and false values; or one text.
     """
 
     def __init__(self, *given: Any) -> None:
@@ -36,28 +36,28 @@ class InvalidConditionExpressionError(Exception):
 
 
 class Condition(Placed):
-    """Decides when an action is visited whether it runs.
+    """Determines whether a visited action runs.
 
     Args:
-        predicate: called with the launch context; without one, the action never runs.
+        predicate: called with the launch context; if omitted, the action never runs.
     """
 
     def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
         self._predicate = predicate
 
     def describe(self) -> str:
-        """A short form for listings."""
+        """Return a short form for listings."""
         return f"{type(self).__name__}()"
 
     def __str__(self) -> str:
         return self.describe()
 
     def _predicate_func(self, context: LaunchContext) -> bool:
-        """The same as `evaluate`, by the name under which launch files call it that look inside ROS's conditions."""
+        """Evaluate, by ROS's private name, which some launch files call."""
         return self.evaluate(context)
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Whether the action runs."""
+        """Return whether the action runs."""
         if self._predicate is None:
             return False
         try:
@@ -123,7 +123,7 @@ def _equals(name: str, expected: SomeSubstitutionsType | None) -> Callable[[Laun
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bool:
-    """The truth of an expression: ``true`` or ``1``, ``false`` or ``0``, in upper or lower case.
+    """Evaluate an expression: ``true`` or ``1``, ``false`` or ``0``, in upper or lower case.
 
     Raises:
         InvalidConditionExpressionError: for any other text.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Performed(Protocol):
-    """A substitution, as far as the context knows."""
+    """The interface of substitutions for the context."""
 
     place: Place | None
 
@@ -31,17 +31,17 @@ class Performed(Protocol):
 
 
 class Handler(Protocol):
-    """An event handler, as far as the context knows."""
+    """The interface of event handlers for the context."""
 
     def matches(self, event: Any) -> bool:
-        """Whether the handler is for the event."""
+        """Return whether the handler accepts the event."""
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """The entities to be visited for the event."""
+        """Return the entities to visit for the event."""
 
 
 class EventQueue:
-    """The events that wait to be handled.
+    """The queue of events.
 
     Attributes:
         on_put: called when one is added.
@@ -58,26 +58,26 @@ class EventQueue:
             self.on_put()
 
     def get_nowait(self) -> Event:
-        """Take the oldest event.
+        """Remove and return the oldest event.
 
         Raises:
-            asyncio.QueueEmpty: when there is none.
+            asyncio.QueueEmpty: there is none.
         """
         if not self._events:
             raise asyncio.QueueEmpty
         return self._events.popleft()
 
     def qsize(self) -> int:
-        """How many events wait."""
+        """Return the number of queued events."""
         return len(self._events)
 
     def empty(self) -> bool:
-        """Whether none waits."""
+        """Return whether the queue is empty."""
         return not self._events
 
 
 class Locals:
-    """The values of the moment as attributes, to be read only."""
+    """The locals as read-only attributes."""
 
     def __init__(self, values: dict[str, Any]) -> None:
         object.__setattr__(self, "_values", values)
@@ -99,8 +99,8 @@ class LaunchContext:
     Attributes:
         argv: the arguments the launch was started with.
         launch_configurations: name -> value of the launch configurations in scope.
-        environment: the environment variables, those of this process, as in ROS: what is set here is seen by
-            the processes started later and by ``$(env ...)`` in xacro files.
+        environment: the environment variables of this process, as in ROS: changes are visible to processes started
+            later and to ``$(env ...)`` in xacro files.
     """
 
     def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
@@ -120,7 +120,7 @@ class LaunchContext:
         self._session: RunningLaunch | None = None
 
     def perform_substitution(self, substitution: Performed) -> str:
-        """The text of a substitution; an error says where the substitution was written."""
+        """Evaluate a substitution; an error names its location."""
         try:
             return substitution.perform(self)
         except LinkwrightError as error:
@@ -132,39 +132,39 @@ class LaunchContext:
 
     @property
     def locals(self) -> Locals:
-        """The values of the moment, such as ``event`` while an event is handled."""
+        """The locals, such as ``event`` while an event is handled."""
         return Locals(self.get_locals_as_dict())
 
     def get_locals_as_dict(self) -> dict[str, Any]:
-        """The same values as a dict."""
+        """Return the locals as a dict."""
         merged = dict(self._globals)
         for layer in self._locals:
             merged.update(layer)
         return merged
 
     def extend_locals(self, extensions: dict[str, Any]) -> None:
-        """Set values of the moment."""
+        """Set locals."""
         self._locals[-1].update(extensions)
 
     def remove_locals(self, names: Iterable[str]) -> None:
-        """Remove local values from every scope that has them."""
+        """Remove locals from every scope."""
         for name in names:
             for layer in self._locals:
                 layer.pop(name, None)
 
     def extend_globals(self, extensions: dict[str, Any]) -> None:
-        """Set values that outlast the moment."""
+        """Set values that persist across scopes."""
         self._globals.update(extensions)
 
     def push_locals(self) -> None:
-        """Open a scope of locals: what `extend_locals` sets from here on ends with `pop_locals`."""
+        """Open a scope of locals, which `pop_locals` closes."""
         self._locals.append({})
 
     def pop_locals(self) -> None:
         """Close a scope of locals.
 
         Raises:
-            RuntimeError: when none has begun.
+            RuntimeError: no scope is open.
         """
         if len(self._locals) < 2:
             raise RuntimeError("locals stack unexpectedly empty")
@@ -180,7 +180,7 @@ class LaunchContext:
         """Close the innermost scope of launch configurations, and restore those before it.
 
         Raises:
-            RuntimeError: when none is open.
+            RuntimeError: no scope is open.
         """
         if not self._configurations_stack:
             raise RuntimeError("launch_configurations stack unexpectedly empty")
@@ -196,14 +196,14 @@ class LaunchContext:
         """Close the innermost scope of environment variables, and restore those before it.
 
         Raises:
-            RuntimeError: when none is open.
+            RuntimeError: no scope is open.
         """
         if not self._environment_stack:
             raise RuntimeError("environment stack unexpectedly empty")
         self.reset_environment(self._environment_stack.pop())
 
     def reset_environment(self, environment: dict[str, str] | None = None) -> None:
-        """Replace the environment by another one; by that in which the context was made when none is given."""
+        """Replace the environment, by default with the one at the creation of the context."""
         if environment is None:
             environment = self._initial_environment
         for name in [name for name in self.environment if name not in environment]:
@@ -211,7 +211,7 @@ class LaunchContext:
         self.environment.update(environment)
 
     def snapshot(self) -> LaunchContext:
-        """A context with the configurations as they are now, for an action that is to be tried again later."""
+        """Return a context with the current configurations, for an action to retry later."""
         copy = LaunchContext(argv=self.argv, noninteractive=self.noninteractive)
         copy.launch_configurations.update(self.launch_configurations)
         copy._globals = dict(self._globals)
@@ -222,7 +222,7 @@ class LaunchContext:
         copy._event_handlers = self._event_handlers
         return copy
 
-    # Users' entities and tests call these by the names that they have in ROS.
+    # Users' entities and tests call these by their names in ROS.
     _push_locals = push_locals
     _pop_locals = pop_locals
     _push_launch_configurations = push_launch_configurations
@@ -234,7 +234,7 @@ class LaunchContext:
     # --- the running launch ---------------------------------------------------------------------------------
 
     def attach(self, session: RunningLaunch) -> EventQueue:
-        """Attach the launch that runs in the context, which handles the events of the queue returned."""
+        """Attach a running launch, and return the queue of events that it handles."""
         self._session = session
         return self._event_queue
 
@@ -244,7 +244,7 @@ class LaunchContext:
         return self._session is not None
 
     def detach(self) -> None:
-        """Detach the context from a launch that is over."""
+        """Detach the context from a finished launch."""
         self._session = None
         self._event_queue.on_put = None
         self._locals = self._locals[:1]
@@ -254,7 +254,7 @@ class LaunchContext:
         """The running launch.
 
         Raises:
-            RuntimeError: when nothing runs in this context.
+            RuntimeError: no launch runs in this context.
         """
         if self._session is None:
             raise RuntimeError("no launch runs in this context")
@@ -262,14 +262,14 @@ class LaunchContext:
 
     @property
     def descriptions(self) -> Descriptions | None:
-        """The robot descriptions of the running launch; None when nothing runs."""
+        """The robot descriptions of the running launch, or None."""
         return None if self._session is None else self._session.descriptions
 
     def log(self, name: str, level: int, text: str) -> None:
-        """Write a line into the log of the launch.
+        """Write a line to the log of the launch.
 
         Args:
-            name: whose line it is.
+            name: the name of the source.
             level: as in ``logging``.
             text: the line.
         """
@@ -288,7 +288,7 @@ class LaunchContext:
 
     @property
     def log_folder(self) -> Path:
-        """The folder that this launch writes its log into."""
+        """The folder of this launch's log."""
         if self._session is not None:
             return self._session.log.folder
         from linkwright.launch.log.loggers import launch_config
@@ -311,7 +311,7 @@ class LaunchContext:
 
     @property
     def is_shutdown(self) -> bool:
-        """Whether the launch is ending."""
+        """Return whether the launch is ending."""
         return self._is_shutdown or (self._session is not None and self._session.ending)
 
     def _set_is_shutdown(self, state: bool) -> None:
@@ -326,12 +326,12 @@ class LaunchContext:
         self._loop = loop
 
     def add_completion_future(self, completion_future: asyncio.Future[Any]) -> None:
-        """Have the launch not end before something is done."""
+        """Delay the end of the launch until a future is done."""
         if self._session is not None:
             self._session.hold(completion_future)
 
     def register_event_handler(self, event_handler: Handler, append: bool = False) -> None:
-        """Register a handler for every event from now on, before or after those registered earlier."""
+        """Register a handler for future events, before or after those registered earlier."""
         if append:
             self._event_handlers.append(event_handler)
         else:
@@ -341,16 +341,16 @@ class LaunchContext:
         """Unregister a handler.
 
         Raises:
-            ValueError: if it is not registered.
+            ValueError: it is not registered.
         """
         self._event_handlers.remove(event_handler)
 
     def would_handle_event(self, event: Event) -> bool:
-        """Whether any handler is for the event."""
+        """Return whether any handler accepts the event."""
         return any(True for _ in self.handlers_of(event))
 
     def handlers_of(self, event: Event) -> Iterator[Handler]:
-        """The handlers that are for the event, in the order in which they are asked."""
+        """Return the handlers that accept the event, in order."""
         return (handler for handler in tuple(self._event_handlers) if handler.matches(event))
 
     def emit_event_sync(self, event: Event) -> None:

@@ -1,4 +1,4 @@
-"""Which arguments a launch description declares."""
+"""The arguments that a launch description declares."""
 
 from __future__ import annotations
 
@@ -11,14 +11,13 @@ from linkwright.launch.model.actions.configurations import ResetLaunchConfigurat
 from linkwright.launch.model.entity import LaunchDescriptionEntity
 
 _DEEPEST = 100
-"""Entities inside of each other that are looked into: a file that includes itself, if only under a condition, has no
-end before it runs."""
+"""The maximum depth of the search: a file that includes itself under a condition has no end before it runs."""
 
 
 def declared_arguments(
     entities: Iterable[LaunchDescriptionEntity], conditional_inclusion: bool = False
 ) -> list[DeclareLaunchArgument]:
-    """The arguments declared by entities and by what they hold and include, as far as can be known now.
+    """Return the arguments that entities, their children and their includes declare, as far as known.
 
     The first declaration of a name counts. Those behind a condition are marked by ``conditionally_included``.
     Declarations after a `ResetLaunchConfigurations` cannot be given from outside, and do not count.
@@ -27,22 +26,22 @@ def declared_arguments(
 
 
 def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
-    """The names among the given ones that a description does not declare; none where not all of it is known yet."""
+    """Return the names that a description does not declare; none if parts of it are not known yet."""
     found = _Declared.by(entities)
     return [] if found.incomplete else [name for name in names if name not in found.names]
 
 
 class _TooDeepError(Exception):
-    """Entities are nested deeper than they are looked into."""
+    """Entities are nested deeper than the search goes."""
 
 
 class _Declared:
     """The declarations of entities.
 
     Attributes:
-        arguments: name -> declaration of what can be given from outside.
-        names: all names, those included that an including file gives.
-        incomplete: whether something is included that cannot be looked into.
+        arguments: name -> declaration, for arguments that can be given from outside.
+        names: all names, including those that an including file gives.
+        incomplete: whether an included file cannot be searched.
     """
 
     def __init__(self) -> None:
@@ -52,7 +51,7 @@ class _Declared:
 
     @classmethod
     def by(cls, entities: Iterable[LaunchDescriptionEntity], *, conditional: bool = False) -> _Declared:
-        """Collect the declarations of entities and of those inside of them."""
+        """Collect the declarations of entities and their descendants."""
         found = cls()
         with suppress(_TooDeepError):
             found.collect(entities, conditional=conditional)
@@ -66,16 +65,16 @@ class _Declared:
         set_outside: tuple[str, ...] = (),
         depth: int = 1,
     ) -> None:
-        """Add the declarations of entities and of those inside of them.
+        """Add the declarations of entities and their descendants.
 
         Args:
-            entities: where to look.
-            conditional: whether a condition decides if they are visited.
+            entities: the entities to search.
+            conditional: whether they are visited under a condition.
             set_outside: the names that an including file gives.
-            depth: of the entities, from 1 on.
+            depth: the depth of the entities, from 1.
 
         Raises:
-            _TooDeepError: they are too many.
+            _TooDeepError: they are nested too deeply.
         """
         if depth > _DEEPEST:
             self.incomplete = True

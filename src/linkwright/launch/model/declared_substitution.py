@@ -1,6 +1,6 @@
 """Substitutions that are declared: a name, arguments and a function.
 
-A class says by which tag ``$(tag ...)`` makes it, how listings show it, and which arguments it has::
+A class declares its tag ``$(tag ...)``, its form in listings and its arguments::
 
     class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})"):
         name: Texts = Texts()
@@ -8,8 +8,7 @@ A class says by which tag ``$(tag ...)`` makes it, how listings show it, and whi
 
         def perform(self, context: LaunchContext) -> str: ...
 
-Its constructor, its properties, what it reads of XML and YAML, and the check of how many arguments there are follow
-from that.
+Its constructor, its properties, its parser for XML and YAML, and the check of the number of arguments follow from that.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ else:
     C = TypeVar("C")
 
     def dataclass_transform(**_: Any) -> Callable[[C], C]:
-        """Tells type checkers that a constructor is made from the fields; of no effect when the program runs."""
+        """Tell type checkers that the constructor is generated from the fields; no effect at run time."""
         return lambda decorated: decorated
 
 
@@ -40,12 +39,12 @@ _REQUIRED = object()
 
 
 class Texts:
-    """An argument made of texts and substitutions, to be joined.
+    """An argument of texts and substitutions to join.
 
     Args:
-        default: what is taken where it is not given.
-        kw_only: whether Python code gives it by its name only.
-        read: makes a list of substitutions of what is given.
+        default: the default value.
+        kw_only: whether Python code passes it only by name.
+        read: converts a value to a list of substitutions.
     """
 
     def __init__(
@@ -65,76 +64,76 @@ class Texts:
 
     @property
     def is_required(self) -> bool:
-        """Whether it has to be given."""
+        """Whether it is required."""
         return self.default is _REQUIRED
 
     def __get__(self, owner: Any, kind: type | None = None) -> list[Substitution]:
         """The argument, as substitutions."""
         if owner is None:
-            return self  # type: ignore[return-value]  # the declaration, asked of the class
+            return self  # type: ignore[return-value]  # the declaration, read from the class
         texts: list[Substitution] = owner.__dict__[self.name]
         return texts
 
     def __set__(self, owner: Any, value: SomeSubstitutionsType | Path) -> None:
-        """Take what is given, checked and brought into one form."""
+        """Check, normalize and store a value."""
         owner.__dict__[self.name] = self.read(value)
 
     def describe(self, value: Any) -> str:
-        """The argument as listings show it."""
+        """Return the argument for listings."""
         return describe(value)
 
 
 class OptionalTexts(Texts):
-    """Such an argument that may be None."""
+    """A `Texts` argument that may be None."""
 
     if TYPE_CHECKING:
-        # What is read of an instance may be None; mypy sees only the method of another type.
+        # The attribute of an instance may be None; mypy sees only the different type of the method.
         def __get__(self, owner: Any, kind: type | None = None) -> list[Substitution] | None:  # type: ignore[override]  # see above
             ...
 
     def __set__(self, owner: Any, value: SomeSubstitutionsType | Path | None) -> None:
-        """Take what is given, checked and brought into one form."""
+        """Check, normalize and store a value."""
         owner.__dict__[self.name] = None if value is None else self.read(value)
 
     def describe(self, value: Any) -> str:
-        """The argument as listings show it."""
+        """Return the argument for listings."""
         return describe(value or [])
 
 
 class AnyTexts(Texts):
-    """Such an argument that may be given as a value of another kind too, which `read` takes."""
+    """A `Texts` argument that also accepts other values that `read` converts."""
 
     def __set__(self, owner: Any, value: Any) -> None:
-        """Take what is given, checked and brought into one form."""
+        """Check, normalize and store a value."""
         owner.__dict__[self.name] = self.read(value)
 
 
 class AnyOptionalTexts(OptionalTexts):
-    """Such an argument that may be None or a value of another kind."""
+    """An `AnyTexts` argument that may be None."""
 
     def __set__(self, owner: Any, value: Any) -> None:
-        """Take what is given, checked and brought into one form."""
+        """Check, normalize and store a value."""
         super().__set__(owner, value)
 
 
 class TextLists(Texts):
-    """An argument that is a list of such texts."""
+    """An argument that is a list of `Texts`."""
 
     def __init__(self, *, default: Any = _REQUIRED, read: Callable[[Any], Any] = iter) -> None:
         super().__init__(default=default, read=lambda value: list(map(normalize_to_list_of_substitutions, read(value))))
 
-    # What is given and read is a list more than of `Texts`; nobody holds both by the type of the latter.
+    # Its values are lists of those of `Texts`; no code uses both through the type of the latter.
     if TYPE_CHECKING:
 
         def __get__(self, owner: Any, kind: type | None = None) -> list[list[Substitution]]:  # type: ignore[override]  # see above
             ...
 
     def __set__(self, owner: Any, value: Iterable[SomeSubstitutionsType]) -> None:  # type: ignore[override]  # see above
-        """Take what is given, checked and brought into one form."""
+        """Check, normalize and store a value."""
         owner.__dict__[self.name] = self.read(value)
 
     def describe(self, value: Any) -> str:
-        """The argument as listings show it."""
+        """Return the argument for listings."""
         return ", ".join(map(describe, value))
 
 
@@ -143,8 +142,8 @@ class DeclaredSubstitution(Substitution):
     """The base of declared substitutions.
 
     Class arguments:
-        tag: the name in ``$(name ...)``; several with slashes between them; none for Python code only.
-        shown: how listings show it, with the arguments in braces and its class as ``{kind}``; by default the class and
+        tag: the name in ``$(name ...)``; slashes separate several; empty for Python code only.
+        shown: its form in listings, with the arguments in braces and its class as ``{kind}``; by default the class and
             all arguments.
     """
 
@@ -168,13 +167,13 @@ class DeclaredSubstitution(Substitution):
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """The class and the keyword arguments.
+        """Return the class and the keyword arguments.
 
         Args:
             data: the arguments, each a list of substitutions.
 
         Raises:
-            Exception: there are too many or too few, see `wrong_count`.
+            Exception: there are too many or too few arguments, see `wrong_count`.
         """
         arguments = cls._arguments
         least, most = sum(argument.is_required for argument in arguments), len(arguments)
@@ -184,12 +183,12 @@ class DeclaredSubstitution(Substitution):
         return cls, dict(zip((argument.name for argument in arguments), data, strict=False))
 
     @classmethod
-    def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - for classes that tell
-        """What is raised where another number of arguments is given; ROS raises various classes."""
+    def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - for classes that use it
+        """Return the exception for a wrong number of arguments; ROS raises various classes."""
         return TypeError(f"{cls._tag} substitution expects {expected}")
 
     def describe(self) -> str:
-        """Its class and its arguments."""
+        """Return its class and arguments."""
         texts = {argument.name: argument.describe(vars(self)[argument.name]) for argument in self._arguments}
         if self._shown is None:
             return f"{type(self).__name__}({', '.join(texts.values())})"
@@ -197,7 +196,7 @@ class DeclaredSubstitution(Substitution):
 
 
 def _constructor(cls: type[DeclaredSubstitution]) -> Callable[..., None]:
-    """A function with the declared arguments, so that Python itself checks them and editors know them."""
+    """Generate a constructor with the declared arguments, so that Python checks them and editors know them."""
     names: dict[str, Any] = {}
     parameters = ["self"]
     for argument in sorted(cls._arguments, key=lambda each: each.kw_only):

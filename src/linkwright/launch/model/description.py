@@ -1,4 +1,4 @@
-"""The launch description: what a launch file returns."""
+"""The launch description, which a launch file returns."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     Args:
         initial_entities: the entities.
-        deprecated_reason: why it should not be used any more; said when it is visited.
+        deprecated_reason: the reason for its deprecation, which is logged at its visit.
     """
 
     def __init__(
@@ -41,28 +41,28 @@ class LaunchDescription(LaunchDescriptionEntity):
 
     @property
     def deprecated(self) -> bool:
-        """Whether it should not be used any more."""
+        """Whether it is deprecated."""
         return self._deprecated_reason is not None
 
     @property
     def deprecated_reason(self) -> str | None:
-        """Why it should not be used any more."""
+        """The reason for its deprecation."""
         return self._deprecated_reason
 
     def describe(self) -> str:
-        """How many entities it has."""
+        """Return the number of its entities."""
         number = len(self._entities)
         return f"{type(self).__name__}({number} {'entity' if number == 1 else 'entities'})"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities, as tools that look at a description ask for them."""
+        """Return the entities, for tools that inspect a description."""
         return self._entities
 
     def add_entity(self, entity: LaunchDescriptionEntity) -> None:
         """Append an entity.
 
         Raises:
-            AttributeError: LAUNCH147, it is none.
+            AttributeError: LAUNCH147, it is not an entity.
         """
         self._entities.append(_checked(entity))
 
@@ -70,12 +70,12 @@ class LaunchDescription(LaunchDescriptionEntity):
         """Append an action.
 
         Raises:
-            AttributeError: LAUNCH147, it is none.
+            AttributeError: LAUNCH147, it is not an entity.
         """
         self._entities.append(_checked(action))
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """The entities, to be visited next."""
+        """Return the entities to visit next."""
         if self.deprecated:
             file = context.get_locals_as_dict().get("current_launch_file_path")
             where = f"launch file [{file}] is" if file else "launch description is"
@@ -85,20 +85,20 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self._entities
 
     def get_launch_arguments(self, conditional_inclusion: bool = False) -> list[DeclareLaunchArgument]:
-        """The arguments declared here and, as far as can be known before it runs, in what is included.
+        """Return the arguments declared here and, as far as known before it runs, in included descriptions.
 
-        Of several declarations with one name the first is given. A declaration behind a condition is marked
-        by its ``conditionally_included``.
+        Of several declarations with the same name, the first counts. A declaration under a condition is marked by its
+        ``conditionally_included``.
         """
         return declared_arguments(self.entities, conditional_inclusion)
 
 
 def _checked(entity: Any) -> Any:
-    """Check that entities can be visited: ROS fails only when the launch runs, and far from the place."""
+    """Check that entities can be visited; ROS fails only when the launch runs, far from the location."""
     if isinstance(entity, LaunchDescriptionEntity) or hasattr(entity, "visit"):
         return entity
     kind = type(entity).__name__
-    message = phrase("a launch description holds actions, and is given something of type {kind}", kind=kind)
-    hint = phrase("add each action by itself") if isinstance(entity, (list, tuple)) else None
+    message = phrase("a launch description accepts actions, not a value of type {kind}", kind=kind)
+    hint = phrase("add each action separately") if isinstance(entity, (list, tuple)) else None
     text = f"'{kind}' object has no attribute 'visit'"
     raise error_at(Place.of_caller(), "LAUNCH147", message, hint, ros_error=AttributeError(text))

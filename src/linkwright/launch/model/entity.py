@@ -1,4 +1,4 @@
-"""Entities: what a launch description is made of."""
+"""Entities, the elements of a launch description."""
 
 from __future__ import annotations
 
@@ -14,38 +14,38 @@ if TYPE_CHECKING:
 
 
 class LaunchDescriptionEntity(Placed):
-    """Something a launch description holds."""
+    """An element of a launch description."""
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Do the work and return the entities to be visited next."""
+        """Visit the entity, and return the entities to visit next."""
         return None
 
     def describe(self) -> str:
-        """A short description."""
+        """Return a short description."""
         return f"{type(self).__name__}()"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities that are always visited after it, as far as is known before the launch."""
+        """Return the entities that are always visited after it, as far as known before the launch."""
         return []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """The entities that are visited under a condition, each lot behind words about the condition."""
+        """Return the entities that are visited under a condition, with a text about each condition."""
         return []
 
     def arguments_given_inside(self) -> tuple[str, ...]:
-        """The names of the launch arguments that it gives to the entities inside it, those known before the launch."""
+        """Return the names of launch arguments that it passes to its children, as far as known in advance."""
         return ()
 
     def hides_entities(self) -> bool:
-        """Whether it leads to entities that nobody can know before the launch, such as those of a file."""
+        """Return whether some of its entities are unknown before the launch, such as those of a file."""
         return False
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """An error of the entities that this one led to, with notes on how they were reached."""
+        """Return an error of its child entities with notes on the way to them."""
         return error
 
     def get_asyncio_future(self) -> asyncio.Future[Any] | None:
-        """A future that is done when the entity has ended; None when it ends with its visit."""
+        """Return a future that is done when the entity has ended, or None if it ends with its visit."""
         return None
 
 
@@ -56,7 +56,7 @@ SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
 
 
 def as_entities(value: Any) -> list[LaunchDescriptionEntity]:
-    """One entity, several, or None, as a list.
+    """Return one entity, several, or None as a list.
 
     Raises:
         TypeError: for anything that is not an entity.

@@ -1,4 +1,4 @@
-"""Event handlers: the entities to be visited when an event comes."""
+"""Event handlers, which visit entities on an event."""
 
 from __future__ import annotations
 
@@ -34,25 +34,25 @@ class BaseEventHandler:
 
     @property
     def handler_description(self) -> str | None:
-        """The reaction in words, for listings of a launch."""
+        """A text about the reaction, for listings of a launch."""
         return None
 
     @property
     def matcher_description(self) -> str | None:
-        """The events that it is for in words, for listings of a launch."""
+        """A text about the accepted events, for listings of a launch."""
         return None
 
     @property
     def entities(self) -> Any:
-        """The entities that it visits, as far as they are known beforehand."""
+        """The entities that it visits, as far as known."""
         return None
 
     def matches(self, event: Any) -> bool:
-        """Whether the handler is for the event."""
+        """Return whether the handler accepts the event."""
         return self._matcher(event)
 
     def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """A line for listings of a launch, and the entities that it visits."""
+        """Return a line for listings of a launch, and the entities that it visits."""
         text = (
             f"{type(self).__name__}(matcher='{self.matcher_description}', handler='{self.handler_description}', "
             f"handle_once={self.handle_once})"
@@ -60,7 +60,7 @@ class BaseEventHandler:
         return text, list(_listed(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Note the event; what derives from it returns the entities to be visited."""
+        """Record the event; subclasses return the entities to visit."""
         context.extend_locals({"event": event})
         if self.handle_once:
             context.unregister_event_handler(self)
@@ -68,7 +68,7 @@ class BaseEventHandler:
 
 
 class EventHandler(BaseEventHandler):
-    """Gives entities to be visited when an event comes that its matcher accepts.
+    """Visits entities on an event that its matcher accepts.
 
     Args:
         matcher: called with the event.
@@ -84,22 +84,22 @@ class EventHandler(BaseEventHandler):
 
     @property
     def entities(self) -> Any:
-        """The entities to be visited."""
+        """The entities to visit."""
         return self._entities
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """The entities to be visited for the event."""
+        """Return the entities to visit for the event."""
         super().handle(event, context)
         return self._entities
 
 
 class _ReactingHandler(BaseEventHandler):
-    """Has given entities visited, or those that a function of event and context returns.
+    """Visits entities, or those that a function of event and context returns.
 
     Args:
         matcher: called with the event.
         reaction: the entities, or a function of event and context that returns them.
-        name: what the user knows the reaction by.
+        name: the user's name of the reaction.
         handle_once: whether it is unregistered after the first event.
 
     Raises:
@@ -114,16 +114,16 @@ class _ReactingHandler(BaseEventHandler):
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
-        """The entities to be visited, as far as they are known beforehand."""
+        """The entities to visit, as far as known."""
         return self._entities
 
     @property
     def handler_description(self) -> str:
-        """The function, or that there are actions."""
+        """The name of the function, or a word for actions."""
         return "<actions>" if self._function is None else str(self._function)
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """The entities to be visited for the event."""
+        """Return the entities to visit for the event."""
         super().handle(event, context)
         return self._entities if self._function is None else self._function(event, context)
 
@@ -133,7 +133,7 @@ class OnActionEventBase(_ReactingHandler):
 
     Args:
         action_matcher: the action, a function of an action, or None for all.
-        on_event: what is visited, or a function of event and context that returns that.
+        on_event: the entities to visit, or a function of event and context that returns them.
         target_event_cls: the class of the events.
         target_action_cls: the class of the actions.
         handle_once: whether it is unregistered after the first event.
@@ -168,7 +168,7 @@ class OnActionEventBase(_ReactingHandler):
 
     @property
     def matcher_description(self) -> str:
-        """Which events it is for."""
+        """A text about the accepted events."""
         if self._action_name is None:
             return f"event == {self._event_name}"
         return f"event == {self._event_name} and {self._action_name}(event.action)"
@@ -191,9 +191,9 @@ def _listed(entities: Any) -> Iterable[Any]:
 
 
 class OnExecutionComplete(OnActionEventBase):
-    """Reacts when an action was executed; when it takes time, such as a process, once it has ended.
+    """Reacts when an action has been executed; for one that takes time, such as a process, when it has ended.
 
-    Without a target it reacts to all actions but those that it gives itself, which would never end.
+    Without a target it reacts to all actions except its own, which would never end.
     """
 
     def __init__(
@@ -211,7 +211,7 @@ class OnExecutionComplete(OnActionEventBase):
             self._action_name = None
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """The entities to be visited for the event."""
+        """Return the entities to visit for the event."""
         following = super().handle(event, context)
         self._given += as_entities(following) if following is not None else ()
         return following
@@ -233,7 +233,7 @@ class OnIncludeLaunchDescription(BaseEventHandler):
 
 
 class OnShutdown(_ReactingHandler):
-    """Reacts when the launch is to end."""
+    """Reacts to the shutdown of the launch."""
 
     def __init__(self, *, on_shutdown: EntitiesOrCallable, handle_once: bool = False, **_: Any) -> None:
         super().__init__(
@@ -245,5 +245,5 @@ class OnShutdown(_ReactingHandler):
 
     @property
     def matcher_description(self) -> str:
-        """Which events it is for."""
+        """A text about the accepted events."""
         return "event issubclass of launch.events.Shutdown"

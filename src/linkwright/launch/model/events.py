@@ -1,4 +1,4 @@
-"""Events: what happens while a launch runs."""
+"""The events of a running launch."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from linkwright.launch.errors.places import Place
 
 
 class ProcessAction(Protocol):
-    """An action that has a process, or a node of the launcher's own process, started.
+    """An action that starts a process, or a node in the launcher's process.
 
     Attributes:
-        place: where in the user's program it was made.
+        place: its location in the user's program.
         process_details: ``name``, ``cmd``, ``cwd``, ``env`` and ``pid`` once it runs.
     """
 
@@ -21,23 +21,23 @@ class ProcessAction(Protocol):
     process_details: dict[str, Any] | None
 
     def wrote(self, stream: int, text: bytes) -> None:
-        """Note what the process wrote to stdout (1) or stderr (2)."""
+        """Store output of the process to stdout (1) or stderr (2)."""
 
     def exited(self, event: ProcessExited, context: Any) -> list[Any]:
-        """The entities that are to be visited now that the process has ended."""
+        """Return the entities to visit when the process has ended."""
 
 
 ProcessMatcher = Callable[[ProcessAction], bool]
 
 
 class Event:
-    """Something that happened or is asked for."""
+    """Something that happened or is requested."""
 
     name = "launch.Event"
 
 
 class IncludeLaunchDescription(Event):
-    """A description is to be visited."""
+    """A request to visit a description."""
 
     name = "launch.events.IncludeLaunchDescription"
 
@@ -46,7 +46,7 @@ class IncludeLaunchDescription(Event):
 
 
 class Shutdown(Event):
-    """The launch is to end."""
+    """A request to end the launch."""
 
     name = "launch.events.Shutdown"
 
@@ -56,7 +56,7 @@ class Shutdown(Event):
 
 
 class TimerEvent(Event):
-    """The time of a timer has come."""
+    """A timer has expired."""
 
     name = "launch.events.TimerEvent"
 
@@ -75,7 +75,7 @@ class ExecutionComplete(Event):
 
 
 class RunningProcessEvent(Event):
-    """Something about a process, or about a node that runs in the launcher's own process.
+    """An event of a process, or of a node in the launcher's process.
 
     Attributes:
         action: the action that started it.
@@ -107,7 +107,7 @@ class RunningProcessEvent(Event):
 
     @property
     def execute_process_action(self) -> ProcessAction:
-        """The action, by its older name."""
+        """The action, under its older name."""
         return self.action
 
 
@@ -121,7 +121,7 @@ class ProcessExited(RunningProcessEvent):
     """A process has ended.
 
     Args:
-        returncode: its exit status; minus the signal's number where a signal ended it.
+        returncode: its exit status; the negative signal number if a signal ended it.
         details: see `RunningProcessEvent`.
     """
 
@@ -181,7 +181,7 @@ class ProcessStderr(ProcessIO):
 
 
 class ProcessTargetedEvent(Event):
-    """Something is asked of the processes that the matcher accepts."""
+    """A request to the processes that the matcher accepts."""
 
     name = "launch.events.process.ProcessTargetedEvent"
 
@@ -190,7 +190,7 @@ class ProcessTargetedEvent(Event):
 
 
 class ProcessStdin(ProcessTargetedEvent):
-    """Text is to be sent to the processes that the matcher accepts.
+    """A request to send text to the processes that the matcher accepts.
 
     Attributes:
         text: the bytes.
@@ -204,13 +204,13 @@ class ProcessStdin(ProcessTargetedEvent):
 
 
 class ShutdownProcess(ProcessTargetedEvent):
-    """The processes that the matcher accepts are to end."""
+    """A request to end the processes that the matcher accepts."""
 
     name = "launch.events.process.ShutdownProcess"
 
 
 class SignalProcess(ProcessTargetedEvent):
-    """A signal is to be sent to the processes that the matcher accepts.
+    """A request to send a signal to the processes that the matcher accepts.
 
     Attributes:
         signal: the signal.
@@ -229,22 +229,22 @@ class SignalProcess(ProcessTargetedEvent):
 
 
 def matches_action(target_action: object) -> ProcessMatcher:
-    """A matcher that accepts the process of one action."""
+    """Return a matcher that accepts the process of an action."""
     return lambda action: action is target_action
 
 
 def matches_pid(pid: int) -> ProcessMatcher:
-    """A matcher that accepts the process with an id."""
+    """Return a matcher that accepts the process with an id."""
     return lambda action: action.process_details is not None and action.process_details["pid"] == pid
 
 
 def matches_name(name: str) -> ProcessMatcher:
-    """A matcher that accepts processes by their name in the log."""
+    """Return a matcher that accepts processes by their name in the log."""
     return lambda action: action.process_details is not None and action.process_details["name"] == name
 
 
 def matches_executable(executable: str) -> ProcessMatcher:
-    """A matcher that accepts processes by the last part of their program's path."""
+    """Return a matcher that accepts processes by the last part of their program's path."""
 
     def accepts(action: ProcessAction) -> bool:
         details = action.process_details

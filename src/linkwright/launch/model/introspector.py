@@ -14,15 +14,15 @@ _INDENT = "    "
 
 
 class LaunchIntrospector:
-    """Tells what is in a launch description without running it."""
+    """Describes the contents of a launch description without running it."""
 
     def format_launch_description(self, launch_description: LaunchDescription) -> str:
-        """The entities, each on a line, those inside of others indented."""
+        """Return the entities, one per line, with children indented."""
         return format_launch_description(launch_description)
 
 
 def format_launch_description(description: LaunchDescription) -> str:
-    """The entities of a description, each on a line, those inside of others indented below them as a tree."""
+    """Return the entities of a description as an indented tree, one per line."""
     return "\n".join([description.describe(), *_tree(description.entities)])
 
 
@@ -40,7 +40,7 @@ def _tree(entities: Iterable[Any], depth: int = 1) -> list[str]:
 
 
 def _described(entity: Any) -> tuple[str, list[LaunchDescriptionEntity]]:
-    """An entity's description, and the entities inside of it."""
+    """Return an entity's description and its children."""
     if isinstance(entity, RegisterEventHandler):
         text, inside = entity.event_handler.describe()
         return f"RegisterEventHandler('{text}'):", inside

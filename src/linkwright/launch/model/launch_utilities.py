@@ -1,4 +1,4 @@
-"""Small functions of ``launch.utilities`` that users' actions and event handlers call."""
+"""Functions of ``launch.utilities`` for users' actions and event handlers."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ FilePath = str | bytes | os.PathLike[Any]
 
 
 def isclassinstance(obj: object) -> bool:
-    """Whether something is an instance of a class: in Python 3, everything is."""
+    """Return whether an object is an instance of a class; in Python 3, every object is."""
     return hasattr(obj, "__class__")
 
 
 def is_a(obj: object, entity_type: type) -> bool:
-    """Whether something is of a class, or of one derived from it."""
+    """Return whether an object is an instance of a class."""
     return isinstance(obj, entity_type)
 
 
 def is_a_subclass(obj: object, entity_type: type) -> bool:
-    """Whether something is of a class or one derived from it, or is such a class itself."""
+    """Return whether an object is an instance or a subclass of a class."""
     return isinstance(obj, entity_type) or (inspect.isclass(obj) and issubclass(obj, entity_type))
 
 
@@ -55,12 +55,12 @@ def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: 
 
 
 def create_future(loop: asyncio.AbstractEventLoop | None) -> asyncio.Future[Any]:
-    """A future of a loop, by default of the running one."""
+    """Create a future of a loop, by default of the running one."""
     return (loop or get_loop()).create_future()
 
 
 def get_loop() -> asyncio.AbstractEventLoop:
-    """The running loop; where none runs, the one that this thread had before, or a new one."""
+    """Return the running loop, or else the thread's previous loop, or a new one."""
     try:
         return asyncio.get_running_loop()
     except RuntimeError:
@@ -71,13 +71,13 @@ def get_loop() -> asyncio.AbstractEventLoop:
 
 
 _loops: list[asyncio.AbstractEventLoop] = []
-"""The loop of programs that run several things one after another, once one was asked for."""
+"""The loop of programs that run several launches one after another, once requested."""
 
 
 def visit_all_entities_and_collect_futures(
     entity: LaunchDescriptionEntity, context: LaunchContext
 ) -> list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]]:
-    """Visit an entity and all it leads to, and gather what those do that go on after their visit."""
+    """Visit an entity and its descendants, and collect the futures of those that run on after their visit."""
     following = entity.visit(context)
     future = entity.get_asyncio_future()
     collected = [] if future is None else [(entity, future)]
@@ -87,7 +87,7 @@ def visit_all_entities_and_collect_futures(
 
 
 def shutdown_on_process_exit(process_action: Any) -> RegisterEventHandler:
-    """An action that has the launch end when a process has ended."""
+    """Return an action that shuts the launch down when a process has ended."""
     from linkwright.launch.model.actions import EmitEvent, RegisterEventHandler
     from linkwright.launch.model.events import Shutdown
     from linkwright.launch.model.process_event_handlers import OnProcessExit

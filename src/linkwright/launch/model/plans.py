@@ -1,4 +1,4 @@
-"""Plans of processes, which actions make; those of our own nodes are `linkwright.hosting.plans.HostedPlan`s."""
+"""Plans of processes, which actions create; those of our own nodes are `linkwright.hosting.plans.HostedPlan`s."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.launch.model.events import ProcessAction
 
 @dataclass(frozen=True)
 class ProcessPlan:
-    """A process to be started; see `ExecuteLocal` for what the parts mean."""
+    """A process to start; `ExecuteLocal` describes the fields."""
 
     action: ProcessAction
     name: str

@@ -1,4 +1,4 @@
-"""Event handlers for processes: that they start, write and end."""
+"""Event handlers for the start, output and end of processes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.launch.model.event_handlers import EntitiesOrCallable, OnActionE
 
 
 def _check_target(target_action: Any, handler: str) -> None:
-    """Raise TypeError for a target that no process can be."""
+    """Raise TypeError for a target that cannot be a process."""
     if target_action is None or isinstance(target_action, ExecuteLocal):
         return
     if isinstance(target_action, LaunchDescriptionEntity) or not callable(target_action):
@@ -61,10 +61,10 @@ class OnProcessIO(_OnProcessEvent):
     """Reacts when a process writes.
 
     Args:
-        target_action: the action whose process is meant; all by default.
-        on_stdin: function of the event, for what is sent to stdin.
-        on_stdout: function of the event, for what is written to stdout.
-        on_stderr: function of the event, for what is written to stderr.
+        target_action: the action of the process; all by default.
+        on_stdin: function of the event, for input to stdin.
+        on_stdout: function of the event, for output to stdout.
+        on_stderr: function of the event, for output to stderr.
         handle_once: whether it is unregistered after the first event.
     """
 

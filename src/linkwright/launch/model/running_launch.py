@@ -1,4 +1,4 @@
-"""The interface of the running launch for actions: they describe what is to be done, and the engine does it."""
+"""The interface of the running launch for actions, which the engine implements."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 
 class Scheduled(Protocol):
-    """A call that is to come."""
+    """A scheduled call."""
 
     def cancel(self) -> None:
-        """Do not call."""
+        """Cancel the call."""
 
 
 Schedule = Callable[[float, Callable[[], None]], Scheduled]
-"""Has a function called once after some seconds."""
+"""Calls a function once after some seconds."""
 
 
 class NodeHosting(Protocol):
@@ -38,21 +38,21 @@ class NodeHosting(Protocol):
 
     @property
     def launcher_node(self) -> Node:
-        """The launcher's own node, with which it asks services and follows topics; made when first asked for."""
+        """The launcher's own node for services and topics, created on first use."""
 
     def plan(self, plan: HostedPlan) -> None:
-        """Have a node started as soon as the launcher comes to it; none any more once the launch ends."""
+        """Schedule the start of a node; ignored once the launch is ending."""
 
     def use_simulated_time(self, value: bool) -> None:
         """Switch the launcher's own node between ``/clock`` and wall time."""
 
 
 class RunningLaunch(Protocol):
-    """The launch that runs."""
+    """The running launch."""
 
     @property
     def finder(self) -> PackageFinder:
-        """Where packages are."""
+        """The package finder."""
 
     @property
     def log(self) -> LaunchLog:
@@ -64,7 +64,7 @@ class RunningLaunch(Protocol):
 
     @property
     def left_out(self) -> set[str]:
-        """The names, without namespaces, of nodes that were left out since they cannot be had."""
+        """The names, without namespaces, of nodes that were skipped because they are not available."""
 
     @property
     def host(self) -> NodeHosting:
@@ -72,25 +72,25 @@ class RunningLaunch(Protocol):
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop | None:
-        """The loop it runs on, while it does."""
+        """The event loop, while it runs."""
 
     @property
     def ending(self) -> bool:
-        """Whether it is about to end."""
+        """Whether it is ending."""
 
     @property
     def isolates_nodes(self) -> bool:
-        """Whether our own nodes run as processes, each by itself."""
+        """Whether Linkwright's own nodes run in separate processes."""
 
     @property
     def scratch_folder(self) -> Path:
-        """A folder for files that the processes of this launch read; it goes when the launch is over."""
+        """A folder for files that the processes of this launch read; it is deleted after the launch."""
 
     def number_process(self, base_name: str) -> str:
-        """The name of a process in the log: that of its program with the next number."""
+        """Return the log name of a process: the name of its program with the next number."""
 
     def start_process(self, plan: ProcessPlan, name: str) -> None:
-        """Start a process and follow it to its end, and start it again where it respawns."""
+        """Start a process, follow it to its end, and respawn it if so planned."""
 
     def call_later(
         self,
@@ -101,16 +101,16 @@ class RunningLaunch(Protocol):
         cancel_on_shutdown: bool = True,
         schedule: Schedule | None = None,
     ) -> Callable[[], None]:
-        """Emit an event and visit entities after a while; returns what cancels that."""
+        """Schedule an event and a visit to entities; return a handle that cancels them."""
 
     def hold(self, future: asyncio.Future[Any]) -> None:
-        """Have the launch not end before something that an entity began is done."""
+        """Keep the launch running until a future of an entity is done."""
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run something in the background; the launch does not end before it has."""
+        """Run a coroutine in the background; the launch waits for its end."""
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
-        """Report why something could not be started; the launch goes on without it."""
+        """Report why something could not be started; the launch continues without it."""
 
     def fail(self, what: object) -> None:
         """Record a failure: the launch exits with 1."""

@@ -1,4 +1,4 @@
-"""Programs of Gazebo that launch files start as processes, and that are nodes here."""
+"""Programs of Gazebo that launch files start as processes, which nodes of Linkwright replace."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ if TYPE_CHECKING:
     from linkwright.nodes.gazebo.command_line import SimulatorCommand
 
 PROGRAMS = frozenset({"gazebo", "gzserver", "gzclient", "gz", "ign"})
-"""The programs of Gazebo; most commands are none of these, and are told from them without further ado."""
+"""The programs of Gazebo, for a quick check that excludes most commands."""
 _RUBY = "ruby"
-"""What the commands of gz are written in, and some launch files run them with."""
+"""The interpreter of the gz commands, with which some launch files run them."""
 
 
 def simulator_of(words: Sequence[str], environment: Mapping[str, str]) -> SimulatorCommand | None:
-    """The node that stands in for a command; None where it is none of Gazebo's, or that is installed.
+    """Return the node that replaces a command; None if it is not Gazebo's, or Gazebo is installed.
 
     Args:
-        words: of the command line.
-        environment: in which ``PATH`` is looked through.
+        words: the words of the command line.
+        environment: the environment whose ``PATH`` is searched.
     """
     if words and PurePath(words[0]).name == _RUBY:
         words = words[1:]

@@ -1,4 +1,4 @@
-"""Substitutions: text that is known only when the launch runs."""
+"""Substitutions, text that is known only when the launch runs."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 
 class Substitution(Placed):
-    """Something that becomes text when it is performed in a launch context."""
+    """An object that gives text when it is performed in a launch context."""
 
     def __repr__(self) -> str:
         return f"<{_public_name(type(self))} {self.describe()}>"
 
     def describe(self) -> str:
-        """A short form for listings, as ``ros2 launch --show-args`` prints it."""
+        """Return a short form for listings, as ``ros2 launch --show-args`` prints it."""
         return f"{type(self).__name__}()"
 
     def perform(self, context: LaunchContext) -> str:
@@ -28,7 +28,7 @@ class Substitution(Placed):
 
 
 class TextSubstitution(Substitution):
-    """Text that is already known."""
+    """A constant text."""
 
     def __init__(self, *, text: str) -> None:
         if not isinstance(text, str):
@@ -36,7 +36,7 @@ class TextSubstitution(Substitution):
         self.text = text
 
     def describe(self) -> str:
-        """The text in quotes."""
+        """Return the text in quotes."""
         return f"'{self.text}'"
 
     def perform(self, context: LaunchContext) -> str:
@@ -45,13 +45,13 @@ class TextSubstitution(Substitution):
 
 
 SomeSubstitutionsType = str | Substitution | Iterable[str | Substitution]
-"""A text, a substitution, or several of them to be joined."""
+"""A text, a substitution, or several of them to join."""
 
 SomeSubstitutionsType_types_tuple = (str, Substitution, Iterable)
 
 
 def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
-    """A value of `SomeSubstitutionsType` as a list of substitutions; paths count as text.
+    """Return a value of `SomeSubstitutionsType` as a list of substitutions; paths count as text.
 
     Raises:
         TypeError: for anything else.
@@ -66,12 +66,12 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
 
 
 def perform_substitutions(context: LaunchContext, substitutions: Iterable[Substitution]) -> str:
-    """The texts of several substitutions, joined."""
+    """Return the joined texts of several substitutions."""
     return "".join(context.perform_substitution(substitution) for substitution in substitutions)
 
 
 def describe(substitutions: Iterable[Substitution]) -> str:
-    """Several substitutions as listings show them."""
+    """Return several substitutions in the form of listings."""
     return " + ".join(substitution.describe() for substitution in substitutions)
 
 
@@ -84,7 +84,7 @@ def _single(value: Any) -> Substitution:
 
 
 def _public_name(kind: type) -> str:
-    """The name by which users import a class: ours have those of ``launch``."""
+    """Return the name by which users import a class: ours appear under ``launch``."""
     if not kind.__module__.startswith("linkwright."):
         return f"{kind.__module__}.{kind.__qualname__}"
     module = "".join("_" + each.lower() if each.isupper() else each for each in kind.__name__).lstrip("_")

@@ -16,15 +16,15 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
     """Parse the arguments of ``xacro``.
 
     Args:
-        words: what follows ``xacro``.
-        text: the same as written, before it was split into words.
-        folder: what relative paths start from.
+        words: the arguments of ``xacro``.
+        text: the arguments as written, before the split into words.
+        folder: the folder for relative paths.
 
     Returns:
-        The use of xacro, and a remark for the user or None.
+        The parsed arguments, and a remark for the user or None.
 
     Raises:
-        LinkwrightError: LAUNCH128, if the words are no use of xacro that gives a text.
+        LinkwrightError: LAUNCH128, these arguments of xacro do not produce a text.
     """
     files: list[str] = []
     arguments: dict[str, str] = {}
@@ -39,7 +39,8 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
         elif word.startswith("-") and len(word) > 1:
             if word not in _OPTIONS_WITHOUT_EFFECT and not word.startswith(("-v", "--verbosity=")):
                 raise _misuse(
-                    phrase("option '{word}' of xacro has no place in a launch file", word=word), phrase("leave it out")
+                    phrase("option '{word}' of xacro is not supported in a launch file", word=word),
+                    phrase("leave it out"),
                 )
         else:
             files.append(word)
@@ -53,15 +54,15 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
                     count=len(files),
                     files=quoted_names(files),
                 ),
-                phrase("put quotes around a path with blanks: Command(['xacro \"', path, '\"'])"),
+                phrase("put quotes around a path with spaces: Command(['xacro \"', path, '\"'])"),
             )
         files = [whole.strip()]
         remark = phrase(
-            "the path '{files}' has blanks and no quotes around it: real xacro would take it for several files",
+            "the path '{files}' contains spaces and is not quoted: xacro itself would read it as several files",
             files=files[0],
         )
     if not files:
-        raise _misuse(phrase("xacro is given no model file"), phrase("write Command(['xacro ', path])"))
+        raise _misuse(phrase("xacro has no model file"), phrase("write Command(['xacro ', path])"))
     return XacroCall(folder / files[0], tuple(arguments.items())), remark
 
 

@@ -1,7 +1,7 @@
 """The modules that launch files of MoveIt packages import: ``launch_param_builder`` and ``moveit_configs_utils``.
 
-Both collect parameters from the files of a package. With them such packages load here as well, and their
-``robot_state_publisher`` and viewer run; the programs of MoveIt themselves are compiled ones.
+Both collect parameters from the files of a package. With them, such packages load here too, and their
+``robot_state_publisher`` and viewer run; the programs of MoveIt itself are compiled.
 """
 
 from linkwright.launch.moveit.builder import MoveItConfigsBuilder, ParameterBuilder

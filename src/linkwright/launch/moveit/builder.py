@@ -1,4 +1,4 @@
-"""Finding and reading parameters of a package (``moveit_configs_utils``, ``launch_param_builder``)."""
+"""Builders that find and read the parameters of a package (``moveit_configs_utils``, ``launch_param_builder``)."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ _Path = str | Path | None
 
 
 class ParameterBuilder:
-    """Collects parameters; every method but the last returns the builder, so that calls can be chained.
+    """Collects parameters; every method except the last returns the builder, so that calls can be chained.
 
     Args:
-        package_name: the package that paths start from.
+        package_name: the package for relative paths.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -51,7 +51,7 @@ class ParameterBuilder:
         parameter_namespace: str | None = None,
         mappings: Mapping[str, Any] | None = None,
     ) -> Self:
-        """Add what a YAML file says, below a name if one is given."""
+        """Add the contents of a YAML file, optionally below a name."""
         content = load_yaml(self._package_path / file_path, mappings) or {}
         target = self._parameters.setdefault(parameter_namespace, {}) if parameter_namespace else self._parameters
         target.update(content)
@@ -80,11 +80,11 @@ class ParameterBuilder:
 
 
 class MoveItConfigsBuilder(ParameterBuilder):
-    """Reads the files of a configuration package, each from its usual place or from the path given.
+    """Reads the files of a configuration package, each from its usual place or from a given path.
 
     Args:
         robot_name: the robot.
-        robot_description: the parameter that the URDF is given in; the names of some others begin with it.
+        robot_description: the parameter for the URDF, which is also the prefix of some others.
         package_name: the package, by default the robot's name and ``_moveit_config``.
 
     Raises:
@@ -101,7 +101,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         self.__urdf, self.__srdf = self.__models()
 
     def robot_description(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
-        """Read the URDF; warn where there is no such file: nodes then take it from ``/robot_description``."""
+        """Read the URDF; warn if there is no such file: nodes then read it from ``/robot_description``."""
         path = self.__urdf if file_path is None else self._package_path / file_path
         try:
             model = _model(path, mappings or self.__urdf_arguments)
@@ -118,7 +118,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def robot_description_kinematics(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read the solvers of inverse kinematics."""
+        """Read the inverse kinematics solvers."""
         self.__moveit_configs.robot_description_kinematics = self.__below("_kinematics", file_path, "kinematics.yaml")
         return self
 
@@ -138,7 +138,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """`pilz_cartesian_limits` by its former name."""
+        """Alias of `pilz_cartesian_limits`, its former name."""
         return self.pilz_cartesian_limits(file_path or _FOLDER / "cartesian_limits.yaml")
 
     def trajectory_execution(
@@ -147,7 +147,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         """Read the controllers.
 
         Raises:
-            RuntimeError: LAUNCH154, there are several files of them, and none is named as usual.
+            RuntimeError: LAUNCH154, there are several such files, and none has the usual name.
         """
         made: Parameters = {"moveit_manage_controllers": moveit_manage_controllers}
         path = self._package_path / file_path if file_path is not None else self.__controllers()
@@ -165,7 +165,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         publish_robot_description: bool = False,
         publish_robot_description_semantic: bool = False,
     ) -> MoveItConfigsBuilder:
-        """Say what is published of the planning scene."""
+        """Set which parts of the planning scene are published."""
         self.__moveit_configs.planning_scene_monitor = {
             "publish_planning_scene": publish_planning_scene,
             "publish_geometry_updates": publish_geometry_updates,
@@ -193,12 +193,12 @@ class MoveItConfigsBuilder(ParameterBuilder):
         """Read the planners.
 
         Args:
-            default_planning_pipeline: the one to use where none is named.
+            default_planning_pipeline: the pipeline to use by default.
             pipelines: their names; by default all that the package has a file for.
             load_all: whether the default includes those that MoveIt itself has files for, if it is in the workspace.
 
         Raises:
-            RuntimeError: LAUNCH154, the default is none of them.
+            RuntimeError: LAUNCH154, the default is not one of them.
         """
         folders = [self._package_path / _FOLDER, *_default_folder()]
         names = list(pipelines) if pipelines is not None else _stems(folders if load_all else folders[:1], _PLANNING)
@@ -208,7 +208,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
             listed = ",".join(names)
             text = f"default_planning_pipeline: `{default}` doesn't name any of the input pipelines `{listed}`"
             message = phrase(
-                "the default planning pipeline '{default}' is none of the pipelines: {names}",
+                "the default planning pipeline '{default}' is not one of the pipelines: {names}",
                 default=default,
                 names=joined(names),
             )
@@ -224,7 +224,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def to_moveit_configs(self) -> MoveItConfigs:
-        """All parameters; what was not read yet is read from its usual place, if it is there."""
+        """Return all parameters; missing ones are read from their usual place, if they exist there."""
         configs = self.__moveit_configs
         if not configs.robot_description:
             self.robot_description()
@@ -248,7 +248,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return configs
 
     def to_dict(self, include_moveit_configs: bool = True) -> Parameters:
-        """The parameters that were added one by one, and unless told otherwise those of `to_moveit_configs`."""
+        """Return the parameters that were added one by one, and by default those of `to_moveit_configs`."""
         if include_moveit_configs:
             self._parameters.update(self.to_moveit_configs().to_dict())
         return self._parameters
@@ -262,7 +262,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return {self.__parameter + ending: load_yaml(self.__file(given, usual))}
 
     def __models(self) -> tuple[Path, Path]:
-        """The files of URDF and SRDF: where the Setup Assistant noted them, else named after the robot."""
+        """Return the files of URDF and SRDF: from the Setup Assistant's file, else named after the robot."""
         settings = self._package_path / ".setup_assistant"
         noted = (load_yaml(settings) or {}).get("moveit_setup_assistant_config", {}) if settings.exists() else {}
         urdf_noted, srdf_noted = (noted.get(kind) or noted.get(kind.upper()) or {} for kind in ("urdf", "srdf"))
@@ -289,20 +289,20 @@ class MoveItConfigsBuilder(ParameterBuilder):
                     folder=display_path(folder),
                     names=joined(names),
                 )
-                hint = phrase("say which: .trajectory_execution(file_path='config/NAME_controllers.yaml')")
+                hint = phrase("choose one: .trajectory_execution(file_path='config/NAME_controllers.yaml')")
                 raise error_at(Place.of_caller(), "LAUNCH154", message, hint, ros_error=RuntimeError(text))
         return folder / (names[0] + _CONTROLLERS) if names else None
 
 
 def _warn_without_model(error: LookupError) -> None:
-    message = phrase("MoveIt's parameters have no URDF; it is taken from the topic /robot_description")
+    message = phrase("MoveIt's parameters have no URDF; nodes read it from the topic /robot_description")
     for found in getattr(error, "diagnostics", ()):
         warning = found.but(severity=Severity.WARNING, notes=(*found.notes, Note(message)))
         print_diagnostics([warning], sys.stderr)
 
 
 def _model(path: Path, mappings: _Mappings) -> Any:
-    """The text of a model; what gives it when the launch runs, where arguments are substitutions."""
+    """Return the text of a model, or a substitution for it if its arguments are substitutions."""
     if all(isinstance(word, str) for pair in (mappings or {}).items() for word in pair):
         return load_xacro(path, mappings)
     from linkwright.launch.ros import ParameterValue
@@ -311,7 +311,7 @@ def _model(path: Path, mappings: _Mappings) -> Any:
 
 
 def _stems(folders: Sequence[Path], ending: str) -> list[str]:
-    """The names of files in folders, without their ending, each once."""
+    """Return the stems of file names in folders, without duplicates."""
     found = (path.name.removesuffix(ending) for folder in folders for path in sorted(folder.glob(f"*{ending}")))
     return list(dict.fromkeys(found))
 

@@ -11,18 +11,18 @@ Parameters = dict[str, Any]
 
 @dataclass
 class MoveItConfigs:
-    """Parameters by what they are about; each is a dictionary for ``parameters`` of a node.
+    """Parameters by subject; each is a dictionary for ``parameters`` of a node.
 
     Attributes:
         package_path: share folder of the configuration package.
         robot_description: the URDF.
         robot_description_semantic: the SRDF.
-        robot_description_kinematics: solvers of inverse kinematics.
+        robot_description_kinematics: inverse kinematics solvers.
         planning_pipelines: planners.
-        trajectory_execution: controllers, and how trajectories are given to them.
-        planning_scene_monitor: what is published of the planning scene.
+        trajectory_execution: controllers and the execution of trajectories.
+        planning_scene_monitor: the published parts of the planning scene.
         sensors_3d: the sensors whose data becomes the occupancy map.
-        move_group_capabilities: what move_group can do besides its usual capabilities.
+        move_group_capabilities: additional capabilities of move_group.
         joint_limits: limits that replace those of the URDF.
         moveit_cpp: parameters of MoveItCpp.
         pilz_cartesian_limits: limits for the Pilz planner.
@@ -45,7 +45,7 @@ class MoveItConfigs:
 
     @property
     def cartesian_limits(self) -> Parameters:
-        """`pilz_cartesian_limits` by its former name."""
+        """Alias of `pilz_cartesian_limits`, its former name."""
         return self.pilz_cartesian_limits
 
     def to_dict(self) -> Parameters:

@@ -1,4 +1,4 @@
-"""Files of a MoveIt configuration: text, YAML, xacro (``launch_param_builder.utils``), and what expands one later."""
+"""Files of a MoveIt configuration: text, YAML, xacro (``launch_param_builder.utils``), and a substitution for xacro."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ _TEMPLATE_MARKS = ("{{", "{%", "{#")
 
 
 class ParameterBuilderFileNotFoundError(KeyError):
-    """A file that parameters are to be read from does not exist."""
+    """A file of parameters does not exist."""
 
 
 def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
-    """The text of a file; as a jinja2 template, if mappings for it are given.
+    """Return the text of a file, filled in as a jinja2 template if mappings are given.
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, it does not exist.
@@ -42,11 +42,11 @@ def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
 
 
 def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> Any:
-    """The content of a YAML file, which may be a jinja2 template.
+    """Return the content of a YAML file, which may be a jinja2 template.
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, it does not exist.
-        LinkwrightError: LAUNCH153, it cannot be read or is no YAML.
+        LinkwrightError: LAUNCH153, it cannot be read or is not YAML.
     """
     import yaml
 
@@ -57,16 +57,16 @@ def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
     try:
         return yaml.safe_load(text)
     except yaml.YAMLError as error:
-        message = phrase("parameter file '{path}' is no YAML: {error}", path=display_path(path), error=foreign(error))
+        message = phrase("parameter file '{path}' is not YAML: {error}", path=display_path(path), error=foreign(error))
         raise error_at(Place.of_caller(), "LAUNCH153", message, ros_error=error) from error
 
 
 def load_xacro(file_path: str | Path, mappings: Mapping[str, Any] | None = None) -> str:
-    """The text of a model file, expanded.
+    """Return the expanded text of a model file.
 
     Raises:
         ParameterBuilderFileNotFoundError: LAUNCH153, it does not exist.
-        DescriptionError: what is wrong with it.
+        DescriptionError: the errors in it.
     """
     path = Path(file_path)
     _check_exists(path)
@@ -76,7 +76,7 @@ def load_xacro(file_path: str | Path, mappings: Mapping[str, Any] | None = None)
 
 
 def get_path(package_name: str, file_path: str | Path) -> str:
-    """The path of a file in the share folder of a package.
+    """Return the path of a file in the share folder of a package.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -146,7 +146,7 @@ class Xacro(Substitution):
         """The class and its arguments, for a path.
 
         Raises:
-            TypeError: there is more than a path.
+            TypeError: there are more arguments than a path.
         """
         if len(data) != 1:
             raise TypeError("xacro substitution expects one argument, the path; use $(command 'xacro ...') for more")
@@ -170,7 +170,7 @@ class Xacro(Substitution):
         """The text.
 
         Raises:
-            DescriptionError: what is wrong with the model.
+            DescriptionError: the errors in the model.
         """
         arguments = {_performed(context, name): _performed(context, value) for name, value in self._mappings.items()}
         try:

@@ -207,7 +207,7 @@ def _path(configs: MoveItConfigs, file: str) -> str:
 
 
 def _virtual_joints(text: Any) -> Iterator[tuple[str, str]]:
-    """Parent frame and child link of the virtual joints in an SRDF that is known already."""
+    """Return the parent frames and child links of the virtual joints in an SRDF that needs no launch context."""
     if not isinstance(text, str):
         return
     for joint in ET.fromstring(text).iter("virtual_joint"):  # noqa: S314 - expanded by us
@@ -219,8 +219,8 @@ class DeclareBooleanLaunchArg(DeclareLaunchArgument):
 
     Args:
         name: the argument's name.
-        default_value: the value where none is given.
-        description: what ``--show-args`` says of it.
+        default_value: the default value.
+        description: the description for ``--show-args``.
     """
 
     def __init__(self, name: str, *, default_value: Any = False, description: str | None = None, **kwargs: Any) -> None:
@@ -237,13 +237,13 @@ def add_debuggable_node(
     extra_debug_args: list[Any] | None = None,
     **kwargs: Any,
 ) -> None:
-    """Add a node that an argument has run inside of gdb.
+    """Add a node that an argument starts in gdb.
 
     Args:
         ld: the description.
         package: the node's package.
         executable: its executable.
-        condition_name: the argument that decides.
+        condition_name: the argument that selects gdb.
         commands_file: commands for gdb.
         extra_debug_args: further arguments for the node in gdb.
         kwargs: see `Node`.

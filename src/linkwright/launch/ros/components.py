@@ -1,4 +1,4 @@
-"""Nodes that are composed in the process of a container (``launch_ros.descriptions``)."""
+"""Nodes that are composed in a container (``launch_ros.descriptions``)."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class ComposableNode(Placed):
         package: the package of its library.
         plugin: the name of its class there, such as ``composition::Talker``.
         name: the name it is given.
-        namespace: where it lives, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
+        namespace: its namespace, inside those of `PushRosNamespace` unless it starts with a slash.
         parameters: as those of a `Node`.
         remappings: pairs of names.
         extra_arguments: parameters for the container, such as ``use_intra_process_comms``.
@@ -73,7 +73,7 @@ class ComposableNode(Placed):
 
     @classmethod
     def parse(cls, parser: Parser, entity: Entity) -> tuple[type[ComposableNode], dict[str, Any]]:
-        """Reads the tag ``composable_node``.
+        """Read the tag ``composable_node``.
 
         Raises:
             RuntimeError: LAUNCH118, it has both ``if`` and ``unless``.
@@ -106,7 +106,7 @@ class ComposableNode(Placed):
 
     @property
     def node_name(self) -> Any:
-        """Its name, as substitutions; None where it keeps the one its code gives it."""
+        """Its name, as substitutions; None to keep the name in its code."""
         return self.__node_name
 
     @property
@@ -130,7 +130,7 @@ class ComposableNode(Placed):
         return self.__extra_arguments
 
     def condition(self) -> Condition | None:
-        """Whether it is loaded."""
+        """Return whether it is loaded."""
         return self.__condition
 
 
@@ -156,19 +156,19 @@ class ComposableLifecycleNode(ComposableNode):
 
     @property
     def node_name(self) -> Any:
-        """Its name as substitutions; once it is loaded its full name."""
+        """Its name as substitutions, or its full name once it is loaded."""
         return super().node_name if self.__full_name is None else self.__full_name
 
     def loaded(self, full_name: str) -> None:
-        """Note its full name."""
+        """Record its full name."""
         self.__full_name = full_name
 
 
 def get_composable_node_load_request(description: ComposableNode, context: LaunchContext) -> Any:
-    """The request to a container for loading a node; None if its condition does not hold.
+    """Return the request to a container for loading a node; None if its condition does not hold.
 
     Raises:
-        LinkwrightError: what is wrong with its parameters.
+        LinkwrightError: the errors in its parameters.
     """
     condition = description.condition()
     if condition is not None and not condition.evaluate(context):
@@ -208,7 +208,7 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
 def to_parameters_list(
     context: LaunchContext, node_name: str, namespace: str | None, evaluated_parameters: Iterable[Any]
 ) -> list[Any]:
-    """Evaluated parameters as ``rclpy.parameter.Parameter`` objects; files are read by the node's full name."""
+    """Return evaluated parameters as ``rclpy.parameter.Parameter`` objects; files are read for the node's full name."""
     full_name = f"{(namespace or '').rstrip('/')}/{node_name.lstrip('/')}"
     full_name = full_name if full_name.startswith("/") else f"/{full_name}"
     return _parameters(context, full_name, own_parameters(tuple(evaluated_parameters), context).sources)
@@ -236,7 +236,7 @@ def _parameters(context: LaunchContext, full_name: str, sources: Iterable[Any]) 
 
 
 def _of_file(source: FileSource, context: LaunchContext, full_name: str) -> dict[str, Any]:
-    """The values of a file for a node: those of patterns first, those under its own name win, as launch_ros has it."""
+    """Return the values of a file for a node: as in launch_ros, those under its own name override those of patterns."""
     try:
         rules = source.file.rules(context)
     except LinkwrightError as error:

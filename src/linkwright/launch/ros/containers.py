@@ -1,4 +1,4 @@
-"""Containers of composed nodes, and loading nodes into them."""
+"""Containers of composed nodes, and the action that loads nodes into them."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _CONFIGURE, _ACTIVATE = 1, 3
 
 @expose_action("load_composable_node")
 class LoadComposableNodes(Action):
-    """Loads nodes into a container, one after another, as soon as that is there.
+    """Loads nodes into a container, one after another, as soon as it is available.
 
     Args:
         composable_node_descriptions: the nodes.
@@ -67,17 +67,17 @@ class LoadComposableNodes(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``target`` and the nodes inside."""
+        """Read ``target`` and the nodes inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["target_container"] = parser.parse_substitution(entity.get_attr("target", data_type=str))
         kwargs["composable_node_descriptions"] = _described(entity, parser)
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Begin to load them.
+        """Start to load the nodes.
 
         Raises:
-            LinkwrightError: what is wrong with their parameters.
+            LinkwrightError: the errors in their parameters.
         """
         requests = []
         for description in self.__composable_node_descriptions:
@@ -147,7 +147,7 @@ class ComposableNodeContainer(Node):
 
     Args:
         name: the container's name.
-        namespace: where it lives.
+        namespace: its namespace.
         composable_node_descriptions: the nodes.
         kwargs: see `Node`.
     """
@@ -168,13 +168,13 @@ class ComposableNodeContainer(Node):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Reads the tag: that of a node, and the nodes inside."""
+        """Read the tag: that of a node, and the nodes inside."""
         _, kwargs = super().parse(entity, parser, ignore)
         kwargs["composable_node_descriptions"] = _described(entity, parser, optional=True)
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
-        """Start it, and load the nodes when it has started.
+        """Start the container, and load the nodes when it has started.
 
         Raises:
             LinkwrightError: see `Node.execute`.
@@ -186,7 +186,7 @@ class ComposableNodeContainer(Node):
             if (condition := description.condition()) is None or condition.evaluate(context)
         ]
         if valid:
-            # What holds in the scope now must hold for the nodes too, so their requests are made at once.
+            # The current scope applies to the nodes too, so their requests are created at once.
             load = LoadComposableNodes(composable_node_descriptions=valid, target_container=self)
             load.place = self.place
             loading = [load]
@@ -194,7 +194,7 @@ class ComposableNodeContainer(Node):
         return [*(following or ()), *loading] or None
 
     def _may_be_hosted(self, context: LaunchContext, package: str | None, executable: str) -> bool:
-        """As any node, unless it is to load what only a real container of this machine can."""
+        """Return whether it may be hosted, as for any node, unless it loads components of others."""
         return super()._may_be_hosted(context, package, executable) and self._real_container(context) is None
 
     def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
@@ -221,7 +221,7 @@ class ComposableNodeContainer(Node):
 
 
 def _is_of_others(finder: PackageFinder, package: str, plugin: str) -> bool:
-    """Whether a component is one that others make and that was not built here, and not one of ours, misspelt."""
+    """Return whether a component is of others and not built here, rather than a misspelt one of ours."""
     from linkwright.nodes.registry import COMPONENTS
 
     share = finder.find(package)
@@ -241,7 +241,7 @@ def _described(entity: Entity, parser: Parser, *, optional: bool = False) -> lis
 
 
 def _manage(context: LaunchContext, description: ComposableLifecycleNode, full_name: str) -> None:
-    """Follow a loaded lifecycle node, and activate it if that is asked for."""
+    """Follow a loaded lifecycle node, and activate it if requested."""
     description.loaded(full_name)
     LifecycleEventManager(description).setup_lifecycle_manager(context)
     if not autostarts(context, description.node_autostart):

@@ -19,11 +19,11 @@ def generate_controllers_spawner_launch_description(
     controller_params_files: Sequence[Any] | None = None,
     extra_spawner_args: Sequence[Any] = (),
 ) -> LaunchDescription:
-    """A spawner of controllers, with arguments for the name of the manager and for what happens at the end.
+    """Return a spawner of controllers, with arguments for the manager's name and for unloading at the end.
 
     Args:
         controller_names: the controllers.
-        controller_params_files: their parameter files; what is empty is left out.
+        controller_params_files: their parameter files; empty ones are skipped.
         extra_spawner_args: further arguments of the spawner.
     """
     files = [word for file in controller_params_files or () if file for word in ("--param-file", file)]
@@ -48,13 +48,13 @@ def generate_controllers_spawner_launch_description(
 def generate_controllers_spawner_launch_description_from_dict(
     controller_info_dict: Mapping[str, Any], extra_spawner_args: Sequence[Any] = ()
 ) -> LaunchDescription:
-    """The same for a mapping: controller -> its parameter file, a list of them, or None.
+    """Return a spawner for a mapping: controller -> its parameter file, a list of them, or None.
 
     Raises:
-        ValueError: it is none, or a file is something else.
+        ValueError: it is not a mapping, or a file has another type.
     """
     if not isinstance(controller_info_dict, Mapping):
-        raise ValueError(f"Invalid controller_info_dict type parsed {controller_info_dict}")  # noqa: TRY004 - as there
+        raise ValueError(f"Invalid controller_info_dict type parsed {controller_info_dict}")  # noqa: TRY004 - as in controller_manager
     files: list[Any] = []
     for given in controller_info_dict.values():
         if given and not isinstance(given, (str, list)):
@@ -69,11 +69,11 @@ def generate_load_controller_launch_description(
     controller_params_file: Any = None,
     extra_spawner_args: Sequence[Any] = (),
 ) -> LaunchDescription:
-    """The same for one controller, with the order of arguments that Humble has.
+    """Return a spawner for one controller, with Humble's order of arguments.
 
     Args:
         controller_name: the controller.
-        controller_type: its plugin, where its parameters do not say.
+        controller_type: its plugin, if its parameters do not set it.
         controller_params_file: its parameter file.
         extra_spawner_args: further arguments of the spawner.
     """

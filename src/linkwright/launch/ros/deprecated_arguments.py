@@ -1,6 +1,6 @@
-"""Keyword arguments by the names that they had up to ROS 2 Foxy: ``node_executable`` for ``executable`` and so on.
+"""Keyword arguments with their names up to ROS 2 Foxy, such as ``node_executable`` for ``executable``.
 
-Launch files of that time are still about, and nothing else in them is out of date.
+Launch files of that time are still in use, and nothing else in them is outdated.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ _Class = TypeVar("_Class", bound=type)
 
 
 def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
-    """Have a class take keyword arguments by former names too, with a warning that tells today's.
+    """Make a class accept former names of keyword arguments, with a warning that gives the current ones.
 
     Args:
-        present: former name -> name of today.
+        present: former name -> current name.
     """
 
     def extend(kind: _Class) -> _Class:
@@ -34,7 +34,7 @@ def with_deprecated_arguments(**present: str) -> Callable[[_Class], _Class]:
                 kwargs[name] = kwargs.pop(former)
             initialize(self, *args, **kwargs)
 
-        kind.__init__ = __init__  # type: ignore[misc]  # that is what is to be done
+        kind.__init__ = __init__  # type: ignore[misc]  # on purpose
         return kind
 
     return extend

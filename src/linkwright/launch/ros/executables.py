@@ -1,4 +1,4 @@
-"""Executables of packages: our own, installed ones, and those of packages that are there in their sources only."""
+"""Executables of packages: our own, installed ones, and those of packages that exist only as sources."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from linkwright.packages.programs.child_python import python_command
 if TYPE_CHECKING:
     from linkwright.packages.readers.entry_points import EntryPoint
 
-# What reads sources and scripts is imported where that is done: a launch of our own nodes does without.
+# The readers of sources and scripts are imported where they are used: a launch of our own nodes does not need them.
 
 BUILT_IN = "built into Linkwright"
 
 
 class Origin(Enum):
-    """Where an executable comes from."""
+    """The origin of an executable."""
 
     OURS = "ours"
     INSTALLED = "installed"
@@ -50,9 +50,9 @@ class Executable:
     Attributes:
         package: the package.
         name: its name there.
-        origin: where it comes from.
-        path: its file; None for one of ours, and for an entry point that no file was made for yet.
-        entry_point: the function that it runs, where it is an entry point of sources.
+        origin: its origin.
+        path: its file; None for one of ours, and for an entry point without a file yet.
+        entry_point: the function of an entry point in sources.
     """
 
     package: str
@@ -63,7 +63,7 @@ class Executable:
 
     @property
     def command(self) -> list[str]:
-        """The words that run it."""
+        """Return the words of its command."""
         from linkwright.packages.programs.interpreters import interpreter_words, needs_our_interpreter
 
         if self.path is None:
@@ -72,7 +72,7 @@ class Executable:
             return python_command([str(self.path)])
         if os.access(self.path, os.X_OK):
             return [str(self.path)]
-        words = interpreter_words(self.path)  # of a script that only its installation would make executable
+        words = interpreter_words(self.path)  # a script that only installation would make executable
         return [*words, str(self.path)] if words else python_command([str(self.path)])
 
     def __str__(self) -> str:
@@ -80,7 +80,7 @@ class Executable:
 
 
 def is_hosted(package: str | None, executable: str) -> bool:
-    """Whether a node is one of ours, which runs in this process."""
+    """Return whether a node is one of ours, which runs in this process."""
     if is_viewer(package, executable):
         return True
     from linkwright.nodes import EXECUTABLES
@@ -89,19 +89,19 @@ def is_hosted(package: str | None, executable: str) -> bool:
 
 
 def hosted_executables() -> list[tuple[str, str]]:
-    """Package and executable of all nodes that run in this process."""
+    """Return the package and executable of all nodes that can run in this process."""
     from linkwright.nodes import EXECUTABLES
 
     return [*EXECUTABLES, VIEWER]
 
 
 def builtin_packages() -> set[str]:
-    """The packages whose executables come with us."""
+    """Return the packages whose executables come with Linkwright."""
     return {package for package, _ in hosted_executables()}
 
 
 def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]:
-    """The programs of a package that can be run, by name: built ones before those of sources, ours before all.
+    """Return the programs of a package by name; ours come first, then built ones, then those of sources.
 
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
@@ -126,7 +126,7 @@ def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]
 
 
 def installed_executable(finder: PackageFinder, package: str, name: str) -> Executable | None:
-    """A program of a package that was built, even if one of ours has its name; None where there is none."""
+    """Return a built program of a package, even if one of ours has its name, or None."""
     share = finder.find(package)
     return (
         None
@@ -136,12 +136,11 @@ def installed_executable(finder: PackageFinder, package: str, name: str) -> Exec
 
 
 def find_executable(finder: PackageFinder, package: str, name: str) -> Executable:
-    """A program of a package, with a file to run unless it is one of ours.
+    """Return a program of a package, with a file to run unless it is one of ours.
 
     Raises:
-        LinkwrightError: LAUNCH131, with what was looked for and the nearest names; PKG101's PackageNotFoundError in a
-            sense, as launch_ros raises that: the error is a LookupError. It is marked as `unavailable` where the
-            program is one that others make.
+        LinkwrightError: LAUNCH131, with the searched paths and similar names; as launch_ros raises PackageNotFoundError
+            (PKG101), the error is a LookupError. It is marked as `unavailable` for a program of others.
     """
     try:
         present = executables_of(finder, package)
@@ -180,16 +179,16 @@ def _script(finder: PackageFinder, executable: Executable) -> Path:
         return script_for(executable.package, executable.name, entry, list(roots))
     except OSError as error:
         message = phrase(
-            "no file can be made for executable '{name}': {strerror}",
+            "cannot create a file for executable '{name}': {strerror}",
             name=executable.name,
             strerror=foreign(error.strerror or error),
         )
-        hint = phrase("set XDG_CACHE_HOME to a folder that you may write to")
+        hint = phrase("set XDG_CACHE_HOME to a writable folder")
         raise LinkwrightError(Diagnostic("LAUNCH131", message, hint=hint)) from error
 
 
 def _check_module(executable: Executable, entry: EntryPoint, root: Path) -> None:
-    """Find out before a process is started that the module of an entry point is not there."""
+    """Check that the module of an entry point exists, before a process is started."""
     from linkwright.packages.programs.source_programs import module_file
 
     top = entry.module.partition(".")[0]
@@ -205,7 +204,9 @@ def _check_module(executable: Executable, entry: EntryPoint, root: Path) -> None
         entry=entry,
         module=entry.module,
     )
-    notes = (Note(phrase("looked for {joinpath}.py", joinpath=display_path(root.joinpath(*entry.module.split("."))))),)
+    notes = (
+        Note(phrase("searched for {joinpath}.py", joinpath=display_path(root.joinpath(*entry.module.split("."))))),
+    )
     raise LinkwrightError(
         Diagnostic("LAUNCH131", message, notes=notes, hint=near or phrase("check entry_points in setup.py"))
     )
@@ -215,7 +216,7 @@ _NO_EXECUTABLES = phrase(
     "it installs no executables: check entry_points in its setup.py, or install(TARGETS ...) in CMakeLists.txt"
 )
 
-# --- what is not there ------------------------------------------------------------------------------------------
+# --- missing executables ----------------------------------------------------------------------------------------
 
 
 def _no_package(finder: PackageFinder, package: str, name: str, error: PackageNotFoundError) -> LinkwrightError:
@@ -243,7 +244,7 @@ def _no_executable(finder: PackageFinder, package: str, name: str, present: dict
         notes = (
             Note(
                 phrase(
-                    "looked for {install_prefix}",
+                    "searched for {install_prefix}",
                     install_prefix=display_path(install_prefix(share) / "lib" / package / name),
                 )
             ),
@@ -284,11 +285,12 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
 
 
 def _not_known_from_sources(package: str, name: str, share: Path) -> LinkwrightError:
-    """A program that the package may have all the same: what is here of it does not tell."""
-    message = phrase("executable '{name}' of package '{package}' is not here", name=name, package=package)
-    note = Note(phrase("what is in {share} does not tell which programs it builds", share=display_path(share)))
+    """Return the error for a program that the package may have, although the files here do not show it."""
+    message = phrase("executable '{name}' of package '{package}' is not available", name=name, package=package)
+    note = Note(phrase("the files in {share} do not show which programs it builds", share=display_path(share)))
     advice = phrase(
-        "build it with 'colcon build --packages-select {package}' where all of its sources are", package=package
+        "build it with 'colcon build --packages-select {package}' in a workspace with all of its sources",
+        package=package,
     )
     return _lookup_error(message, (note,), advice)
 

@@ -1,4 +1,4 @@
-"""The actions of ``ros_gz_sim`` and ``ros_gz_bridge``: a simulation, models put into it, and bridges, as tags too."""
+"""The actions and tags of ``ros_gz_sim`` and ``ros_gz_bridge``: a simulation, spawned models, and bridges."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _CONTAINER = {"container_name": "ros_gz_container", "create_own_container": "Fal
 
 
 class _OneNode(Action, ABC):
-    """An action that starts a node, made of texts.
+    """The base of actions that start a node from texts.
 
     Args:
         kwargs: the texts of `TEXTS`, and those of every action.
@@ -44,7 +44,7 @@ class _OneNode(Action, ABC):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads the tag, whose attributes are the texts."""
+        """Read the tag, whose attributes are the texts."""
         _, kwargs = super().parse(entity, parser)
         for name in cls.TEXTS:
             text = entity.get_attr(name, data_type=str, optional=True)
@@ -53,7 +53,7 @@ class _OneNode(Action, ABC):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> list[Any]:
-        """The node, to be visited next."""
+        """Return the node, to visit next."""
         texts = {name: perform_substitutions(context, text) for name, text in self._texts.items()}
         node = self._node(texts)
         node.place = self.place
@@ -73,7 +73,7 @@ class GzServer(_OneNode):
     """The simulation without a window.
 
     Args:
-        kwargs: ``world_sdf_file`` or ``world_sdf_string``; what concerns containers is without effect.
+        kwargs: ``world_sdf_file`` or ``world_sdf_string``; options for containers have no effect.
     """
 
     TEXTS: ClassVar[Mapping[str, str]] = {"world_sdf_file": "", "world_sdf_string": "", **_CONTAINER}
@@ -85,7 +85,7 @@ class GzServer(_OneNode):
 
 @expose_action("gz_spawn_model")
 class GzSpawnModel(_OneNode):
-    """A model that is put into the world.
+    """A model to spawn in the world.
 
     Args:
         kwargs: ``world``, one of ``file``, ``model_string`` and ``topic``, ``entity_name``, ``allow_renaming``, and the
@@ -112,9 +112,9 @@ class RosGzBridge(_OneNode):
 
     Args:
         bridge_name: the node's name.
-        config_file: which topics it hands over: path of a YAML file.
+        config_file: the path of a YAML file with the topics to bridge.
         extra_bridge_params: further parameters, as those of a `Node`.
-        kwargs: ``namespace`` and ``log_level``; what concerns containers and starting again is without effect.
+        kwargs: ``namespace`` and ``log_level``; options for containers and respawning have no effect.
     """
 
     TEXTS: ClassVar[Mapping[str, str]] = {
@@ -140,7 +140,7 @@ class RosGzBridge(_OneNode):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads the tag, and ``param`` inside."""
+        """Read the tag, and ``param`` inside."""
         _, kwargs = super().parse(entity, parser)
         tags = entity.get_attr("param", data_type=Entities, optional=True)
         if tags:

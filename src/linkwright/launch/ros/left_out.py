@@ -1,4 +1,4 @@
-"""Nodes that a launch leaves out, and who would wait for them for ever: the lifecycle manager of nav2."""
+"""Nodes that a launch skips, and nav2's lifecycle manager, which would wait for them forever."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ _MANAGED = "node_names"
 
 
 def leave_out(context: LaunchContext, name: str) -> None:
-    """Note a node that cannot be had, by its name without its namespace."""
+    """Record a skipped node, by its name without its namespace."""
     context.session.left_out.add(name)
 
 
 def without_left_out(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """The parameters of a node; a lifecycle manager is not told of nodes that were left out before it."""
+    """Return the parameters of a node; those of a lifecycle manager omit the nodes that were skipped before it."""
     if package != _MANAGER or not isinstance(parameters.get(_MANAGED), Iterable):
         return parameters
     return {**parameters, _MANAGED: _present(context, parameters[_MANAGED])}
 
 
 def drop_left_out(context: LaunchContext, request: Any) -> None:
-    """As `without_left_out`, for the request to load a component."""
+    """Omit skipped nodes as `without_left_out` does, in the request to load a component."""
     if request.package_name != _MANAGER:
         return
     for parameter in request.parameters:

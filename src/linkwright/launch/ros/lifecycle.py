@@ -1,4 +1,4 @@
-"""Managing lifecycle nodes from the launcher: asking for transitions, and following them."""
+"""Lifecycle nodes in the launcher, which requests and follows their transitions."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _DEPTH = 10
 
 
 class LifecycleEventManager:
-    """Emits `StateTransition` events for a lifecycle node, and asks it for the transitions of `ChangeState` events.
+    """Emits `StateTransition` events of a lifecycle node, and requests the transitions of `ChangeState` events.
 
     Args:
         lifecycle_node: the action or description of the node; its ``node_name`` is the full name.
@@ -52,7 +52,7 @@ class LifecycleEventManager:
         return str(self._node.node_name)
 
     def setup_lifecycle_manager(self, context: LaunchContext) -> None:
-        """Begin to follow the node."""
+        """Start to follow the node."""
         launcher = context.session.host.launcher_node
         launcher.create_subscription(
             "lifecycle_msgs/msg/TransitionEvent",
@@ -88,7 +88,7 @@ class LifecycleEventManager:
 
 
 async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
-    """A service's response, once the service is there; None when the launch ends before that."""
+    """Wait for a service and return its response, or None if the launch ends first."""
     future = client.call_async(request)
     while not future.done():
         if context.is_shutdown:
@@ -102,7 +102,7 @@ async def answered(context: LaunchContext, client: Any, request: Any) -> Any:
 
 
 async def _done_or_time(future: Any) -> None:
-    """Wait until a future is done, or a moment."""
+    """Wait briefly for a future."""
     loop = asyncio.get_running_loop()
     woken = loop.create_future()
 
@@ -125,7 +125,7 @@ class LifecycleNode(Node):
 
     Args:
         name: the node's name.
-        namespace: where it lives.
+        namespace: its namespace.
         autostart: whether it is configured and activated when it has started.
         kwargs: see `Node`.
     """
@@ -141,7 +141,7 @@ class LifecycleNode(Node):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Reads the tag: that of a node, with ``autostart``."""
+        """Read the tag: that of a node, with ``autostart``."""
         _, kwargs = super().parse(entity, parser, ignore)
         autostart = entity.get_attr("autostart", data_type=bool, optional=True)
         if autostart is not None:
@@ -155,11 +155,11 @@ class LifecycleNode(Node):
 
     @property
     def current_state(self) -> str:
-        """The name of the state that it was last heard to be in."""
+        """The name of its last known state."""
         return self.__manager.current_state
 
     def execute(self, context: LaunchContext) -> list[Any] | None:
-        """Start and follow it.
+        """Start and follow the node.
 
         Raises:
             LinkwrightError: see `Node.execute`.
@@ -175,14 +175,14 @@ class LifecycleNode(Node):
 
 
 def autostarts(context: LaunchContext, value: Any) -> bool:
-    """Whether ``autostart`` of a lifecycle node is true."""
+    """Return whether ``autostart`` of a lifecycle node is true."""
     from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
 
     return bool(perform_typed_substitution(context, normalize_typed_substitution(value, bool), bool))
 
 
 def autostart_actions(action: Any) -> list[Any]:
-    """The handlers that configure a lifecycle node when it has started, and activate it when it is configured."""
+    """Return handlers that configure a lifecycle node when it has started, and activate it when it is configured."""
     change = {
         number: EmitEvent(event=ChangeState(lifecycle_node_matcher=events.matches_action(action), transition_id=number))
         for number in (_CONFIGURE, _ACTIVATE)
@@ -197,6 +197,6 @@ def autostart_actions(action: Any) -> list[Any]:
 
 
 def unknown_transition(place: Any, text: str) -> Exception:
-    """The error about a transition that is no number."""
+    """Return the error about a transition that is not a number."""
     message = phrase("expected integer for lifecycle transition, got {text}", text=text)
     return error_at(place, "LAUNCH138", message, ros_error=ValueError(message))

@@ -1,4 +1,4 @@
-"""Events of lifecycle nodes, and the handler for their changes of state (``launch_ros.events.lifecycle``)."""
+"""Events of lifecycle nodes, and the handler for their transitions (``launch_ros.events.lifecycle``)."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ NodeMatcher = Callable[[Any], bool]
 
 
 class ChangeState(Event):
-    """The lifecycle nodes that the matcher accepts are to make a transition.
+    """A request for a transition of the lifecycle nodes that the matcher accepts.
 
     Args:
         lifecycle_node_matcher: called with the action of each lifecycle node.
@@ -68,7 +68,7 @@ class ChangeState(Event):
                 Place.of_caller(),
                 "LAUNCH138",
                 message,
-                phrase("choose of {listed}", listed=listed),
+                phrase("available: {listed}", listed=listed),
                 ros_error=ros_error,
             )
         self.lifecycle_node_matcher = lifecycle_node_matcher
@@ -92,7 +92,7 @@ class StateTransition(Event):
 
     @property
     def timestamp(self) -> int:
-        """When, nanoseconds by the node's clock."""
+        """The time in nanoseconds on the node's clock."""
         return int(self.msg.timestamp)
 
     @property
@@ -112,10 +112,10 @@ class StateTransition(Event):
 
 
 class OnStateTransition(EventHandler):
-    """Visits entities when a lifecycle node has made a transition; what is not given may be anything.
+    """Visits entities when a lifecycle node has made a transition; omitted arguments match any.
 
     Args:
-        entities: what is visited.
+        entities: the entities to visit.
         target_lifecycle_node: the action of the node.
         transition: name of the transition.
         start_state: name of the state before.
@@ -155,18 +155,18 @@ class OnStateTransition(EventHandler):
 
     @property
     def handler_description(self) -> str:
-        """The reaction in words."""
+        """A text about the reaction."""
         return "<actions>"
 
     @property
     def matcher_description(self) -> str:
-        """The events in words."""
+        """A text about the events."""
         if self._target is None:
             return "event == StateTransition"
         return f"event == StateTransition and event.action == LifecycleNode({hex(id(self._target))})"
 
 
 def matches_node_name(node_name: str) -> NodeMatcher:
-    """A matcher that accepts the action of the node of a full name; a missing first slash is added."""
+    """Return a matcher that accepts the action of the node with a full name; a missing leading slash is added."""
     full_name = node_name if node_name.startswith("/") else f"/{node_name}"
     return lambda action: action.node_name == full_name

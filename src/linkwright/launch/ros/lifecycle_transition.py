@@ -1,4 +1,4 @@
-"""Taking lifecycle nodes through several transitions, one after another."""
+"""The action that leads lifecycle nodes through several transitions."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ _GOALS = {
     6: ("shuttingdown", "finalized"),
     7: ("shuttingdown", "finalized"),
 }
-"""The state in the transition and the one after it, by the transition's number."""
+"""The states during and after a transition, by its number."""
 
 
 class LifecycleTransition(Action):
-    """Asks lifecycle nodes for transitions, one after another; an error ends the sequence.
+    """Requests transitions of lifecycle nodes, one after another; an error ends the sequence.
 
     Args:
         lifecycle_node_names: the nodes' names; a missing first slash is added.
@@ -63,10 +63,10 @@ class LifecycleTransition(Action):
         self._handlers: dict[str, list[BaseEventHandler]] = {}
 
     def execute(self, context: LaunchContext) -> list[Action]:
-        """Ask for the first ones; the handlers for the others come before.
+        """Register the handlers for the later transitions, and request the first ones.
 
         Raises:
-            LinkwrightError: LAUNCH138, a transition is no number, or none that ends in a state.
+            LinkwrightError: LAUNCH138, a transition is not a number, or does not end in a state.
         """
         names = [perform_substitutions(context, name) for name in self._names]
         numbers = [self._number(perform_substitutions(context, each)) for each in self._ids]
@@ -95,7 +95,7 @@ class LifecycleTransition(Action):
         except ValueError:
             raise unknown_transition(self.place, text) from None
         if number not in _GOALS:
-            message = phrase("transition {number} leads to no state that could be waited for", number=number)
+            message = phrase("transition {number} does not end in a state to wait for", number=number)
             raise error_at(self.place, "LAUNCH138", message, ros_error=KeyError(number))
         return number
 
@@ -105,7 +105,7 @@ class LifecycleTransition(Action):
                 text = f"Stopping transitions for {name} because '{reason}'"
                 context.session.log.say("launch_ros.actions.lifecycle_transition", text)
             for handler in self._handlers.pop(name, ()):
-                with suppress(ValueError):  # it has handled its event and is gone
+                with suppress(ValueError):  # it has handled its event and is unregistered
                     context.unregister_event_handler(handler)
 
         return OpaqueFunction(function=end)

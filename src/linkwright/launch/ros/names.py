@@ -1,4 +1,4 @@
-"""Names of nodes and namespaces, rules that remap names, and how many nodes of a name a launch has started."""
+"""Names of nodes, namespaces, remapping rules, and the number of started nodes with a name."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ _COUNTS = "unique_ros_node_names"
 
 
 def is_root_namespace(ns: str) -> bool:
-    """Whether a namespace is ``/``."""
+    """Return whether a namespace is ``/``."""
     return ns == "/"
 
 
 def is_namespace_absolute(ns: str) -> bool:
-    """Whether a namespace begins with a slash."""
+    """Return whether a namespace begins with a slash."""
     return ns.startswith("/")
 
 
 def make_namespace_absolute(ns: str | None) -> str | None:
-    """A namespace with a slash before it; None stays None."""
+    """Return a namespace with a leading slash; None stays None."""
     return ns if ns is None or is_namespace_absolute(ns) else f"/{ns}"
 
 
 def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns: bool = False) -> str | None:
-    """A namespace inside another. An absolute one stands for itself; None stands for one that nobody gave.
+    """Return a namespace inside another; an absolute one stays as it is, and None means not given.
 
     Args:
         base_ns: the outer one.
         ns: the inner one.
-        return_absolute_ns: whether a slash is put before the result.
+        return_absolute_ns: whether to add a leading slash.
     """
     if ns is None:
         combined = base_ns
@@ -55,17 +55,17 @@ def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns:
 
 
 def add_node_name(context: Any, node_name: str) -> None:
-    """Note that a node of this full name was started."""
+    """Record the start of a node with a full name."""
     _counts(context)[node_name] += 1
 
 
 def get_node_name_count(context: Any, node_name: str) -> int:
-    """How many nodes of this full name were started in the launch."""
+    """Return the number of nodes with a full name that were started in the launch."""
     return _counts(context).get(node_name, 0)
 
 
 def repeated_name(context: Any, node_name: str) -> str | None:
-    """Note a node, and what to say if there is another of its name; None if not."""
+    """Record a node, and return a warning if there is another with its name, or None."""
     add_node_name(context, node_name)
     count = get_node_name_count(context, node_name)
     if count < 2:
@@ -83,7 +83,7 @@ def _counts(context: Any) -> defaultdict[str, int]:
 
 
 def check_name(name: str) -> str:
-    """A node name, once it is checked.
+    """Check and return a node name.
 
     Raises:
         LinkwrightError: LAUNCH134, it is not valid.
@@ -93,13 +93,13 @@ def check_name(name: str) -> str:
     try:
         check_node_name(name)
     except InvalidNameError as error:
-        message = phrase("the name '{name}' of a node is malformed: {reason}", name=name, reason=error.error_msg)
+        message = phrase("node name '{name}' is malformed: {reason}", name=name, reason=error.error_msg)
         raise error_at(None, "LAUNCH134", message, ros_error=error) from error
     return name
 
 
 def check_namespace(namespace: str) -> str:
-    """An absolute namespace, once it is checked.
+    """Check a namespace, and return it as an absolute one.
 
     Raises:
         LinkwrightError: LAUNCH134, it is not valid.
@@ -118,10 +118,10 @@ RemapRule = tuple[tuple[Substitution, ...], tuple[Substitution, ...]]
 
 
 def normalize_remap_rule(remap_rule: Any) -> RemapRule:
-    """A pair of names as tuples of substitutions.
+    """Return a pair of names as tuples of substitutions.
 
     Raises:
-        TypeError: LAUNCH135, it is no pair of names.
+        TypeError: LAUNCH135, it is not a pair of names.
     """
     if not isinstance(remap_rule, tuple) or len(remap_rule) != 2:
         hint = phrase("write a pair: remappings=[('from', 'to')]")
@@ -133,10 +133,10 @@ def normalize_remap_rule(remap_rule: Any) -> RemapRule:
 
 
 def normalize_remap_rules(remap_rules: Iterable[Any]) -> Iterable[RemapRule]:
-    """Several pairs of names as tuples of substitutions.
+    """Return several pairs of names as tuples of substitutions.
 
     Raises:
-        TypeError: LAUNCH135, they are no pairs of names.
+        TypeError: LAUNCH135, they are not pairs of names.
     """
     if isinstance(remap_rules, (str, dict)) or not isinstance(remap_rules, Iterable):
         message = phrase("'remappings' must be a list of pairs of names, not {name}", name=type(remap_rules).__name__)
@@ -146,7 +146,7 @@ def normalize_remap_rules(remap_rules: Iterable[Any]) -> Iterable[RemapRule]:
 
 
 def evaluated_rules(context: LaunchContext, rules: Iterable[RemapRule]) -> list[tuple[str, str]]:
-    """The names of the pairs."""
+    """Evaluate the names of the pairs."""
     return [
         (perform_substitutions(context, source), perform_substitutions(context, target)) for source, target in rules
     ]

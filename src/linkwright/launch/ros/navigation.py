@@ -1,4 +1,4 @@
-"""The common parts of nav2_bringup's launch files: servers, alone or composed, and their lifecycle manager."""
+"""The common parts of nav2_bringup's launch files: servers, separate or composed, and their lifecycle manager."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ARGUMENTS: Mapping[str, tuple[str, str]] = {
     "use_respawn": ("False", "Whether a server that dies is started again, where it is not composed"),
     "log_level": ("info", "The log level"),
 }
-"""Arguments of launch files that start servers: name -> default, description."""
+"""The arguments of launch files that start servers: name -> default, description."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class Server:
 
     Attributes:
         package: the package.
-        executable: its program there, by which it also is known.
-        plugin: its class, where it is composed.
-        name: the node's name, if that is another one than the executable's.
+        executable: its program, which is also its default name.
+        plugin: its class when it is composed.
+        name: the node's name, if it differs from the executable's.
         remappings: pairs of names.
     """
 
@@ -54,7 +54,7 @@ class Server:
 
     @property
     def is_here(self) -> bool:
-        """Whether we have it."""
+        """Return whether it comes with Linkwright."""
         from linkwright.nodes import EXECUTABLES
 
         return (self.package, self.executable) in EXECUTABLES
@@ -64,12 +64,12 @@ _MANAGER = Server("nav2_lifecycle_manager", "lifecycle_manager", "nav2_lifecycle
 
 
 def is_true(context: LaunchContext, name: str) -> bool:
-    """Whether a launch configuration says so, in any of the ways in which people write it."""
+    """Return whether a launch configuration is true, in any common spelling."""
     return str(context.launch_configurations.get(name, "")).strip().lower() in _TRUE
 
 
 def configured_parameters(context: LaunchContext) -> ParameterFile:
-    """The file of ``params_file``, with the launch's ``use_sim_time``, for nodes in the launch's ``namespace``."""
+    """Return the file of ``params_file`` with the launch's ``use_sim_time``, for nodes in its ``namespace``."""
     configurations = context.launch_configurations
     rewrites = {"use_sim_time": str(is_true(context, "use_sim_time"))}
     rewritten = RewrittenYaml(
@@ -84,16 +84,16 @@ def managed(
     servers: Sequence[Server],
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> list[Any]:
-    """Actions that start servers and what activates them, in their order.
+    """Return the actions that start servers and their lifecycle manager.
 
-    Servers that we do not have are started all the same, so that the launch tells that they are left out; the manager
-    does not wait for them.
+    Servers that Linkwright lacks are started too, so that the launch reports them as skipped; the manager does not wait
+    for them.
 
     Args:
-        context: its launch configurations are those of `ARGUMENTS`, and ``params_file``.
+        context: a context with the launch configurations of `ARGUMENTS` and ``params_file``.
         manager: the name of the lifecycle manager.
-        servers: what is managed.
-        parameters: name of a node -> parameters besides those of the file.
+        servers: the managed servers.
+        parameters: name of a node -> parameters in addition to the file's.
     """
     sim_time = {"use_sim_time": is_true(context, "use_sim_time")}
     file = configured_parameters(context)

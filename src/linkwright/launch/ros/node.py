@@ -1,4 +1,4 @@
-"""Starting ROS nodes."""
+"""The action that starts a ROS node."""
 
 from __future__ import annotations
 
@@ -49,24 +49,25 @@ if TYPE_CHECKING:
     from linkwright.viewer import RvizConfig
 
 _CONTAINERS = "rclcpp_components"
-"""The package whose executables run other nodes besides, which files given to them may be for."""
+"""The package whose executables run other nodes too, to which parameter files may apply."""
 
 _OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|ZENOH|LINKWRIGHT)_")
-"""Environment variables that change what a node does, so that one that has its own cannot run in the launcher."""
+"""Environment variables that change a node's behaviour; a node with its own values cannot run in the launcher."""
 
 
 @expose_action("node")
 @with_deprecated_arguments(node_executable="executable", node_name="name", node_namespace="namespace")
 class Node(ExecuteProcess):
-    """Starts a node: one of ours in the launcher's process, any other as a process of its own.
+    """Starts a node: one of ours in the launcher's process, any other in its own process.
 
     Args:
-        executable: its executable in the package, or a program where no package is named.
+        executable: its executable in the package, or a program if no package is given.
         package: the package.
         name: the name it is given.
-        namespace: where it lives, inside the namespaces of `PushRosNamespace` unless it starts with a slash.
+        namespace: its namespace, inside those of `PushRosNamespace` unless it starts with a slash.
         exec_name: its name in the log.
-        parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later ones win.
+        parameters: dictionaries, paths of YAML files, `ParameterFile` and `Parameter` objects; later ones take
+            precedence.
         remappings: pairs of names.
         ros_arguments: further arguments after ``--ros-args``.
         arguments: its command line.
@@ -76,7 +77,7 @@ class Node(ExecuteProcess):
     UNSPECIFIED_NODE_NAME = "<node_name_unspecified>"
     UNSPECIFIED_NODE_NAMESPACE = "<node_namespace_unspecified>"
 
-    # What is known once it is started. Programs that look into launch_ros know these attributes by their names.
+    # Set once it is started. Programs that use the internals of launch_ros expect these names.
     __substitutions_performed: bool
     __expanded_node_name: str
     __expanded_node_namespace: str
@@ -126,7 +127,7 @@ class Node(ExecuteProcess):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Reads the tag: that of a process, with ``pkg``, ``exec``, ``param``, ``remap`` and so on."""
+        """Read the tag: that of a process, with ``pkg``, ``exec``, ``param``, ``remap`` and so on."""
         _, kwargs = super().parse(entity, parser, ignore=["cmd", *(ignore or ())])
         return cls, parse_node(entity, parser, kwargs, cls)
 
@@ -137,16 +138,16 @@ class Node(ExecuteProcess):
 
         return parse_parameters(params, parser)
 
-    # --- what others read of it -----------------------------------------------------------------------------
+    # --- properties -----------------------------------------------------------------------------------------
 
     @property
     def node_package(self) -> Any:
-        """The package, as it was given."""
+        """The package, as given."""
         return self.__package
 
     @property
     def node_executable(self) -> Any:
-        """The executable, as it was given."""
+        """The executable, as given."""
         return self.__node_executable
 
     @property
@@ -162,16 +163,16 @@ class Node(ExecuteProcess):
 
     @property
     def expanded_node_namespace(self) -> str:
-        """The namespace, or `UNSPECIFIED_NODE_NAMESPACE` where nobody gave one."""
+        """The namespace, or `UNSPECIFIED_NODE_NAMESPACE` if none is given."""
         return self.__expanded_node_namespace
 
     @property
     def expanded_remapping_rules(self) -> list[tuple[str, str]] | None:
-        """The remappings, those of the scope first; None without any."""
+        """The remappings, those of the scope first; None if there are none."""
         return self.__expanded_remappings
 
     def is_node_name_fully_specified(self) -> bool:
-        """Whether name and namespace were both given."""
+        """Return whether both name and namespace are given."""
         unspecified = (self.UNSPECIFIED_NODE_NAME, self.UNSPECIFIED_NODE_NAMESPACE)
         return all(each not in self.node_name for each in unspecified)
 
@@ -181,8 +182,8 @@ class Node(ExecuteProcess):
         """Start it.
 
         Raises:
-            DescriptionError: a parameter is a model that is wrong.
-            LinkwrightError: what else is wrong with it.
+            DescriptionError: a parameter is a model with errors.
+            LinkwrightError: other errors.
         """
         if context.is_shutdown:
             return None
@@ -205,7 +206,7 @@ class Node(ExecuteProcess):
         return None
 
     def __extended(self, context: LaunchContext) -> list[Any]:
-        """Have the extensions change name and namespace; returns what they add to the command line."""
+        """Let the extensions change name and namespace, and return their additions to the command line."""
         added: list[Any] = []
         given: dict[str, Any] = {}
         if self.__node_name is not None:
@@ -220,11 +221,11 @@ class Node(ExecuteProcess):
         return added
 
     def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:
-        """What makes the configuration of a viewer; None has its command line say which."""
+        """Return the factory of a viewer's configuration; None to use its command line."""
         return None
 
     def _perform_substitutions(self, context: LaunchContext) -> None:
-        """Work out name, namespace, parameters and remappings, and with them the rest of the command."""
+        """Evaluate name, namespace, parameters and remappings, and the rest of the command."""
         if self.__substitutions_performed:
             return
         try:
@@ -250,7 +251,7 @@ class Node(ExecuteProcess):
         self.__substitutions_performed = True
 
     def __forget(self) -> None:
-        """Begin anew: an action may be visited again, when a model that it needs was repaired."""
+        """Reset the state: an action may be visited again after the repair of a model that it needs."""
         del self.cmd[self.__fixed_words :]
         self.__substitutions_performed = False
         self.__expanded_node_name = self.UNSPECIFIED_NODE_NAME
@@ -263,7 +264,7 @@ class Node(ExecuteProcess):
         self.__expanded_remappings = None
 
     def _expand_names(self, context: LaunchContext) -> None:
-        """Work out name and namespace."""
+        """Evaluate name and namespace."""
         if self.__node_name is not None:
             self.__expanded_node_name = check_name(_text(context, self.__node_name))
         own = None if self.__node_namespace is None else _text(context, self.__node_namespace)
@@ -273,9 +274,9 @@ class Node(ExecuteProcess):
         self.__final_node_name = f"{self.__expanded_node_namespace.rstrip('/')}/{self.__expanded_node_name}"
 
     def __name_in_files(self, context: LaunchContext) -> str | None:
-        """The full name by which parameter files know the node; None where only the program knows it.
+        """Return the full name in parameter files; None if only the program knows it.
 
-        The process of a container has other nodes too, for which the files that it is given may be.
+        A container also runs other nodes, to which its files may apply.
         """
         package = None if self.__package is None else _text(context, self.__package)
         if self.__node_name is None or package == _CONTAINERS:
@@ -286,9 +287,9 @@ class Node(ExecuteProcess):
 
     @property
     def __expanded_parameter_arguments(self) -> list[tuple[str, bool]]:
-        """The parameter arguments of the command line, each with whether it is a file; files are written on demand.
+        """Return the parameter arguments of the command line, each with whether it is a file, written on demand.
 
-        Of the scope's parameters only files count here, as in launch_ros.
+        As in launch_ros, only the files among the scope's parameters count here.
         """
         if self.__parameter_words is None:
             folder = self.__scratch_folder if self.__scratch_folder and self.__scratch_folder.is_dir() else None
@@ -311,7 +312,7 @@ class Node(ExecuteProcess):
     # --- in the launcher's process ----------------------------------------------------------------------------
 
     def _may_be_hosted(self, context: LaunchContext, package: str | None, executable: str) -> bool:
-        """Whether nothing is asked for that only a process of its own can have."""
+        """Return whether the node needs no separate process."""
         if is_viewer(package, executable):
             return True
         if context.session.isolates_nodes or self.__own_environment[0] is not None:
@@ -335,7 +336,9 @@ class Node(ExecuteProcess):
         base_name = self.process_description.base_name(context, [executable])
         own_name = name or default_name(package, executable)
         full_name = f"{namespace.rstrip('/')}/{own_name or executable}"
-        if name is None and own_name is not None and package != _CONTAINERS:  # else it has been checked, or nobody can
+        if (
+            name is None and own_name is not None and package != _CONTAINERS
+        ):  # otherwise it has been checked, or cannot be checked
             self.__node_parameters.check(context, full_name, self.place)
         plan = HostedPlan(
             self,
@@ -381,7 +384,7 @@ class Node(ExecuteProcess):
         plan = super()._plan(context, command)
         if self.process_description.name is not None:
             return plan
-        # By its executable, also where that is run by an interpreter or is one of ours.
+        # Named after its executable, even if an interpreter runs it or it is one of ours.
         return replace(plan, name=Path(_text(context, self.__node_executable)).name)
 
     def _environment(self, context: LaunchContext) -> dict[str, str]:
@@ -389,11 +392,11 @@ class Node(ExecuteProcess):
 
 
 class _Assigned(Substitution):
-    """A word of the command line that the action fills in when it starts the node.
+    """A word of the command line that the action sets when it starts the node.
 
     Args:
-        what: which one, for listings.
-        word: gives it.
+        what: its name for listings.
+        word: returns it.
     """
 
     def __init__(self, what: str, word: Callable[[], str]) -> None:
@@ -401,7 +404,7 @@ class _Assigned(Substitution):
         self._word = word
 
     def describe(self) -> str:
-        """Which word it is."""
+        """Return its name."""
         return f"LocalVar('ros_specific_arguments['{self._what}']')"
 
     def perform(self, context: LaunchContext) -> str:
@@ -410,7 +413,7 @@ class _Assigned(Substitution):
 
 
 def _listed(values: Any) -> list[Any]:
-    """Words, or a single one, as a list."""
+    """Return one or more words as a list."""
     if values is None:
         return []
     return [values] if isinstance(values, (str, Substitution)) or not isinstance(values, Iterable) else list(values)
@@ -423,5 +426,5 @@ def _text(context: LaunchContext, value: Any) -> str:
 def _scratch_folder(context: LaunchContext) -> Path | None:
     try:
         return context.session.scratch_folder
-    except (AttributeError, RuntimeError):  # nothing runs in this context
+    except (AttributeError, RuntimeError):  # no launch runs in this context
         return None

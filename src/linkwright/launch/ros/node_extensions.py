@@ -1,4 +1,4 @@
-"""Extensions of the node action, which users' packages bring: what is done before a node is started."""
+"""Extensions of the node action in users' packages, which run before a node is started."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
 
 GROUP = "launch_ros.node_action"
-"""The group of entry points, that of launch_ros."""
+"""The entry point group of launch_ros."""
 
 
 class NodeActionExtension:
     """The base of extensions of `Node`.
 
     Attributes:
-        NAME: that of its entry point, when it was found by one.
-        EXTENSION_POINT_VERSION: the version of this interface that the extension was written for.
+        NAME: the name of its entry point, if it has one.
+        EXTENSION_POINT_VERSION: the version of the interface that it implements.
     """
 
     NAME: str | None = None
@@ -31,15 +31,15 @@ class NodeActionExtension:
     def prepare_for_execute(
         self, context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Action
     ) -> tuple[Sequence[Any], dict[str, Any]]:
-        """Have a say before a node is started.
+        """Change a node before it is started.
 
         Args:
-            context: that of the launch.
-            ros_specific_arguments: ``name`` and ``ns``, where the node is given them, as ``__node:=talker``.
+            context: the context of the launch.
+            ros_specific_arguments: the given ``name`` and ``ns``, such as ``__node:=talker``.
             node_action: the action.
 
         Returns:
-            Substitutions that go to the end of the command line; and the arguments, which may be changed.
+            Substitutions to append to the command line, and the arguments, which may be changed.
         """
         del context, node_action
         return [], ros_specific_arguments
@@ -47,7 +47,7 @@ class NodeActionExtension:
 
 @cache
 def node_extensions() -> tuple[NodeActionExtension, ...]:
-    """An object of each extension that is installed.
+    """Return an object of each installed extension.
 
     Raises:
         LinkwrightError: LAUNCH155, one of them cannot be loaded.

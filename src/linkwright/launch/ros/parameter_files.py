@@ -43,7 +43,7 @@ class ParameterFile(Placed):
 
     Args:
         param_file: its path.
-        allow_substs: whether ``$(var NAME)`` and the like in it are replaced.
+        allow_substs: whether substitutions in it, such as ``$(var NAME)``, are evaluated.
     """
 
     def __init__(
@@ -68,20 +68,19 @@ class ParameterFile(Placed):
 
     @property
     def param_file(self) -> list[Substitution] | Path:
-        """The path as substitutions; once it was evaluated, the path of the file with substitutions made."""
+        """The path as substitutions, or after evaluation the path of the evaluated file."""
         return self._param_file if self._evaluated is None else self._evaluated
 
     @property
     def allow_substs(self) -> Any:
-        """Whether substitutions are made."""
+        """Whether substitutions in it are evaluated."""
         return self._allow_substs if self._allowed is None else self._allowed
 
     def evaluate(self, context: LaunchContext) -> Path:
-        """The path of the file; where substitutions are made, that of a temporary file.
+        """Return the path of the file, or of a temporary file with evaluated substitutions.
 
         Raises:
-            LinkwrightError: LAUNCH133, what is wrong with the file, where substitutions are made in it; a
-                SubstitutionFailure too.
+            LinkwrightError: LAUNCH133, the errors in a file with substitutions; also a SubstitutionFailure.
         """
         if self._evaluated is None:
             path = Path(perform_substitutions(context, self._param_file))
@@ -90,10 +89,10 @@ class ParameterFile(Placed):
         return self._evaluated
 
     def rules(self, context: LaunchContext) -> ParameterRules:
-        """The parameter rules of the file.
+        """Return the parameter rules of the file.
 
         Raises:
-            LinkwrightError: LAUNCH133, what is wrong with the file.
+            LinkwrightError: LAUNCH133, the errors in the file.
         """
         from linkwright.graph.parameters.files import parse_parameters
 
@@ -108,7 +107,7 @@ class ParameterFile(Placed):
         return self._rules
 
     def cleanup(self) -> None:
-        """Delete the temporary file, if one was made."""
+        """Delete the temporary file, if there is one."""
         if self._is_temporary and self._evaluated is not None:
             with suppress(OSError):
                 self._evaluated.unlink()
@@ -148,7 +147,7 @@ class ParameterFile(Placed):
             problem = getattr(error, "problem", None) or str(error)
             span = source.span(source.offset(mark.line + 1, mark.column + 1)) if mark else None
             message = phrase(
-                "parameter file is not YAML once substitutions are made in it: {problem}", problem=foreign(problem)
+                "parameter file is not YAML after its substitutions are evaluated: {problem}", problem=foreign(problem)
             )
             failure = SubstitutionFailure("The substituted parameter file is not a valid yaml file")
             found = error_at(None, "LAUNCH133", message, ros_error=failure)
@@ -179,10 +178,10 @@ _QUOTED = re.compile(r"\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\n]|'')*'")
 
 
 def substitute_text(source: SourceText, context: LaunchContext) -> str:
-    """The text of a YAML file with its substitutions made; comments are left alone.
+    """Return the text of a YAML file with substitutions evaluated, except in comments.
 
     Raises:
-        LinkwrightError: LAUNCH119 and others, for one that is unknown, or that has no value; with its place.
+        LinkwrightError: LAUNCH119 and others, a substitution is unknown or has no value; with its location.
     """
     Parser.load_launch_extensions()
     text = source.text
@@ -205,7 +204,7 @@ def substitute_text(source: SourceText, context: LaunchContext) -> str:
 
 
 def _end_of(text: str, start: int) -> int:
-    """Where the substitution that starts at an offset ends; the end of its line if it is never closed."""
+    """Return the end of the substitution at an offset, or the end of its line if it is not closed."""
     depth = 0
     for offset in range(start, len(text)):
         if text[offset] == "(":

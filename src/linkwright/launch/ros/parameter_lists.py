@@ -1,8 +1,8 @@
-"""The ``parameters`` of a node in one form, and evaluated (``launch_ros.utilities``).
+"""Normalization and evaluation of the ``parameters`` of a node (``launch_ros.utilities``).
 
-What a launch file gives is normalized when the node is made, so that its form is checked there: paths become
-`ParameterFile`, and dictionaries become flat, with tuples of substitutions for names and either plain values or tuples
-of substitutions for values. Evaluation gives for each item a path, a dictionary of values by name, or a `Parameter`.
+They are normalized, and thus checked, when the node is created: paths become `ParameterFile`, and dictionaries become
+    flat, with tuples of substitutions for names and either plain values or tuples of substitutions for values.
+    Evaluation gives for each item a path, a dictionary of values by name, or a `Parameter`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ NormalizedDict = dict[Name, Any]
 
 
 class PlainItem(TextSubstitution):
-    """A value among substitutions that keeps its type, as a text that is no YAML does.
+    """A value among substitutions that keeps its type; a string is not read as YAML.
 
     Attributes:
         value: the value.
@@ -40,10 +40,10 @@ class PlainItem(TextSubstitution):
 
 
 def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
-    """The ``parameters`` of a node, normalized.
+    """Normalize the ``parameters`` of a node.
 
     Raises:
-        LinkwrightError: LAUNCH132, they are no list, or an item can be no parameters; a TypeError too.
+        LinkwrightError: LAUNCH132, they are not a list, or an item is invalid; also a TypeError.
     """
     place = Place.of_caller()
     if isinstance(parameters, (str, Mapping)) or not isinstance(parameters, Sequence):
@@ -56,10 +56,10 @@ def normalize_parameters(parameters: Any) -> tuple[Any, ...]:
 def normalize_parameter_dict(
     parameters: Mapping[Any, Any], *, _prefix: Sequence[Substitution] | None = None
 ) -> NormalizedDict:
-    """A dictionary of parameters, normalized; nested ones give names with dots.
+    """Normalize a dictionary of parameters; nested ones give names with dots.
 
     Raises:
-        LinkwrightError: LAUNCH132, a name or value is none that a parameter can have; a TypeError too.
+        LinkwrightError: LAUNCH132, a name or value is invalid for a parameter; also a TypeError.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError("expected dict")
@@ -79,7 +79,7 @@ def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> tu
     """Evaluate normalized parameters: for each item a path, a dictionary, or a `Parameter`.
 
     Raises:
-        LinkwrightError: LAUNCH132 or LAUNCH133, what is wrong with a value or a file.
+        LinkwrightError: LAUNCH132 or LAUNCH133, the errors in a value or a file.
     """
     return tuple(_evaluated_item(context, item) for item in parameters)
 
@@ -88,7 +88,7 @@ def evaluate_parameter_dict(context: LaunchContext, parameters: NormalizedDict) 
     """Evaluate a normalized dictionary: values by name, lists as tuples.
 
     Raises:
-        LinkwrightError: LAUNCH132, what is wrong with a value; a TypeError too.
+        LinkwrightError: LAUNCH132, the errors in a value; also a TypeError.
     """
     if not isinstance(parameters, Mapping):
         raise TypeError("expected dict")
@@ -120,7 +120,7 @@ def _normalized_name(key: Any) -> Name:
     try:
         return tuple(normalize_to_list_of_substitutions(key))
     except TypeError as error:
-        message = phrase("the name of a parameter must be text, not {key}", key=repr(key))
+        message = phrase("the name of a parameter must be a string, not {key}", key=repr(key))
         raise error_at(Place.of_caller(), "LAUNCH132", message, ros_error=error) from error
 
 
@@ -137,10 +137,14 @@ def _normalized_value(value: Any, key: Any) -> Any:
     if isinstance(value, Path):
         message = phrase("parameter '{shown}' is a Path", shown=shown)
         raise error_at(
-            Place.of_caller(), "LAUNCH132", message, phrase("give it as text: str(PATH)"), ros_error=TypeError(message)
+            Place.of_caller(),
+            "LAUNCH132",
+            message,
+            phrase("pass it as a string: str(PATH)"),
+            ros_error=TypeError(message),
         )
     message = phrase(
-        "parameter '{shown}' is of type {name}, which no parameter can be", shown=shown, name=type(value).__name__
+        "parameter '{shown}' is of type {name}, which is not a parameter type", shown=shown, name=type(value).__name__
     )
     ros_error = TypeError(f"Unexpected type for parameter value {value!r}")
     raise error_at(Place.of_caller(), "LAUNCH132", message, ros_error=ros_error)
@@ -156,7 +160,7 @@ def _normalized_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
         return tuple(items)
     if Substitution in kinds and kinds <= {str, Substitution}:
         return tuple(normalize_to_list_of_substitutions(items))
-    # Items of their own: texts and other values stand for themselves, substitutions are read as YAML one by one.
+    # Separate items: strings and other values are literal, substitutions are read as YAML one by one.
     return tuple(
         tuple(normalize_to_list_of_substitutions(item))
         if isinstance(item, (Substitution, list, tuple))

@@ -1,7 +1,7 @@
-"""Values of node parameters, which may be known only when the launch runs (``launch_ros.parameter_descriptions``).
+"""Values of node parameters, which may contain substitutions (``launch_ros.parameter_descriptions``).
 
-A substitution is text; which type the parameter gets is decided by ``value_type``, or by YAML's rules where that is not
-given, as in launch_ros.
+A substitution is text; ``value_type`` sets the type of the parameter, or YAML's rules if it is not given, as in
+launch_ros.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ from linkwright.launch.model.substitution import (
 )
 
 SCALARS = (bool, int, float, str)
-AS_TEXT = phrase("say that it is text: ParameterValue(VALUE, value_type=str), from launch_ros.parameter_descriptions")
+AS_TEXT = phrase(
+    "declare it as a string: ParameterValue(VALUE, value_type=str), from launch_ros.parameter_descriptions"
+)
 
 _UNIFORM = (
     "Expected a non-empty sequence, with items of uniform type. Allowed sequence item types are bool, int, float, str."
@@ -33,7 +35,7 @@ _ALLOWED = (
 
 
 class ParameterValue(Placed):
-    """A value with the type that it is to have.
+    """A value with a type.
 
     Args:
         value: the value, or substitutions that give it as text.
@@ -58,23 +60,23 @@ class ParameterValue(Placed):
 
     @property
     def value(self) -> Any:
-        """The value as it was given, with substitutions as lists; once it was evaluated, what came out."""
+        """The value as given, with substitutions as lists, or after evaluation the result."""
         return self._value if self._evaluated is None else self._evaluated
 
     @property
     def value_type(self) -> Any:
-        """The type it is to have."""
+        """The type of the value."""
         return self._value_type
 
     def evaluate(self, context: LaunchContext, name: str | None = None) -> Any:
-        """The value in its type.
+        """Evaluate the value in its type.
 
         Args:
-            context: where substitutions are performed.
-            name: of the parameter, for messages.
+            context: the context of the substitutions.
+            name: the parameter's name, for messages.
 
         Raises:
-            LinkwrightError: LAUNCH132, if the text is no such value; ValueError or TypeError too, as launch_ros has it.
+            LinkwrightError: LAUNCH132, the text is not such a value; also a ValueError or TypeError, as in launch_ros.
         """
         called = phrase("parameter '{name}'", name=name) if name else phrase("the value of a parameter")
         try:
@@ -85,13 +87,13 @@ class ParameterValue(Placed):
             expected = getattr(self._value_type, "__name__", None) or str(self._value_type)
             if self._value_type is None:
                 message = phrase(
-                    "{called} is read as YAML, because its type is not said: {error}",
+                    "{called} has no type and is read as YAML: {error}",
                     called=called,
                     error=foreign(error),
                 )
                 raise error_at(self.place, "LAUNCH132", message, AS_TEXT, ros_error=error) from error
             message = phrase(
-                "{called} is not the {expected} that is asked for: {error}",
+                "{called} is not of the requested type {expected}: {error}",
                 called=called,
                 expected=expected,
                 error=foreign(error),
@@ -116,12 +118,12 @@ class Parameter:
 
     @property
     def place(self) -> Place | None:
-        """Where it was written."""
+        """The location."""
         return self._parameter_value.place
 
     @property
     def name(self) -> list[Substitution] | str:
-        """The name as substitutions; once it was evaluated, as text."""
+        """The name as substitutions, or after evaluation as text."""
         return self._name if self._rule is None else self._rule[0]
 
     @property
@@ -131,11 +133,11 @@ class Parameter:
 
     @property
     def value_type(self) -> Any:
-        """The type it is to have."""
+        """The type of the value."""
         return self._parameter_value.value_type
 
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
-        """Name and value.
+        """Evaluate name and value.
 
         Raises:
             LinkwrightError: LAUNCH132, if the text is no such value.
@@ -147,25 +149,24 @@ class Parameter:
 
 
 def yaml_value(text: str, name: str, place: Place | None) -> Any:
-    """A text by YAML's rules, as launch_ros reads parameters whose type is not said; lists become tuples.
+    """Read a text as YAML, as launch_ros does for parameters without a type; lists become tuples.
 
     Raises:
-        LinkwrightError: LAUNCH132, it is not YAML, or gives something that no parameter can be; a TypeError too, as
-            launch_ros has it.
+        LinkwrightError: LAUNCH132, it is not YAML, or its value is invalid for a parameter; also a TypeError, as in
+            launch_ros.
     """
     value = _loaded(text, name, place)
     if value is None:
         return ""
     if isinstance(value, str):
-        # YAML folds the lines of a text. XML means the same either way, and positions in it stay right like this.
+        # YAML would fold lines. XML means the same either way, and unfolded lines keep its locations right.
         return text if text.lstrip().startswith("<") else value
     if isinstance(value, (*SCALARS, bytes)):
         return value
     if isinstance(value, list):
         return uniform(value, name, place)
     message = phrase(
-        "parameter '{name}' is read as YAML, because its type is not said, and becomes {kind},"
-        " which no parameter can be",
+        "parameter '{name}' has no type, is read as YAML and becomes {kind}, which is not a parameter type",
         name=name,
         kind=_kind(value),
     )
@@ -174,21 +175,21 @@ def yaml_value(text: str, name: str, place: Place | None) -> Any:
 
 
 def uniform(items: Sequence[Any], name: str, place: Place | None) -> tuple[Any, ...]:
-    """Items of one type, of those that lists of parameters may have.
+    """Return items of one type that is valid for lists of parameters.
 
     Raises:
-        LinkwrightError: LAUNCH132, they are not, or there is none; a TypeError too, as launch_ros has it.
+        LinkwrightError: LAUNCH132, their types differ, or there are none; also a TypeError, as in launch_ros.
     """
     kinds = {type(item) for item in items}
     if len(kinds) == 1 and kinds <= set(SCALARS):
         return tuple(items)
     if not items:
-        found = phrase("an empty list, whose type nobody can tell")
+        found = phrase("an empty list, whose type is unknown")
     elif len(kinds) > 1:
         found = phrase("a list of mixed items ({kinds})", kinds=joined(sorted(kind.__name__ for kind in kinds)))
     else:
         found = phrase("a list of items of type {kind}", kind=next(iter(kinds)).__name__)
-    message = phrase("parameter '{name}' becomes {found}, which no parameter can be", name=name, found=found)
+    message = phrase("parameter '{name}' becomes {found}, which is not a parameter type", name=name, found=found)
     raise error_at(
         place,
         "LAUNCH132",
@@ -202,7 +203,7 @@ def _loaded(text: str, name: str, place: Place | None) -> Any:
     import yaml
 
     try:
-        return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506 - the safe one, in C
+        return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506 - the safe loader, in C
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or str(error).splitlines()[0]
@@ -215,7 +216,7 @@ def _loaded(text: str, name: str, place: Place | None) -> Any:
                 column=mark.column + 1,
             )
         message = phrase(
-            "parameter '{name}' is read as YAML, because its type is not said, and is none: {problem}",
+            "parameter '{name}' has no type and is not YAML: {problem}",
             name=name,
             problem=problem,
         )

@@ -1,4 +1,4 @@
-"""The parameters of one node as they reach it: from its scope, from files, and its own, in the order that counts."""
+"""The parameters of one node from its scope, from files and its own, in order of precedence."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ ANY_NODE = "/**"
 
 @dataclass(frozen=True)
 class FileSource:
-    """A parameter file; `file` reads it, and `path` is what another process reads."""
+    """A parameter file; `file` reads it, and `path` is for other processes."""
 
     file: ParameterFile
     path: Path
@@ -41,17 +41,17 @@ class NodeParameters:
     """The parameters of a node.
 
     Attributes:
-        sources: in order, later ones win: a file, a dictionary of values, or a single `(name, value)`.
+        sources: files, dictionaries of values, and pairs `(name, value)`; later ones take precedence.
     """
 
     sources: list[FileSource | dict[str, Any] | tuple[str, Any]] = field(default_factory=list)
 
     def without_missing_files(self, context: LaunchContext, place: Place | None) -> NodeParameters:
-        """These without the files that are not there, which launch_ros passes over too; each is told of.
+        """Return the parameters without missing files, which launch_ros ignores too; each is reported.
 
         Args:
-            context: of the launch, for the warnings (LAUNCH133).
-            place: where the node was written.
+            context: the context of the launch, for the warnings (LAUNCH133).
+            place: the location of the node.
         """
         found = NodeParameters()
         for source in self.sources:
@@ -63,16 +63,16 @@ class NodeParameters:
         return found
 
     def check(self, context: LaunchContext, node: str | None, place: Place | None) -> None:
-        """Read the files before the node does.
+        """Check the files before the node reads them.
 
         Args:
-            context: of the launch; it is told (LAUNCH149) of files that have nothing for the node, and (GRAPH212) of
-                parameters that are left out.
-            node: the node's full name; None where that is not known.
-            place: where the node was written.
+            context: the context of the launch, for warnings about files without parameters for the node (LAUNCH149) and
+                about skipped parameters (GRAPH212).
+            node: the node's full name; None if it is not known.
+            place: the location of the node.
 
         Raises:
-            LinkwrightError: LAUNCH133 and GRAPH212, what is wrong with a file.
+            LinkwrightError: LAUNCH133 and GRAPH212, the errors in a file.
         """
         for source in self.sources:
             if not isinstance(source, FileSource):
@@ -88,14 +88,14 @@ class NodeParameters:
             _warn(context, "LAUNCH149", message, hint, place)
 
     def values(self, context: LaunchContext, node: str) -> dict[str, Any]:
-        """Values by name, as a node of this process takes them.
+        """Return the values by name, for a node of this process.
 
         Args:
-            context: where the files were evaluated.
+            context: the context in which the files were evaluated.
             node: the node's full name, by which files are read.
 
         Raises:
-            LinkwrightError: LAUNCH133 and GRAPH212, what is wrong with a file.
+            LinkwrightError: LAUNCH133 and GRAPH212, the errors in a file.
         """
         found: dict[str, Any] = {}
         for source in self.sources:
@@ -108,13 +108,13 @@ class NodeParameters:
         return {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
 
     def rules(self, context: LaunchContext) -> ParameterRules:
-        """What the files say, of other nodes of the process too.
+        """Return the rules of the files, including those for other nodes of the process.
 
         Args:
-            context: where the files were evaluated.
+            context: the context in which the files were evaluated.
 
         Raises:
-            LinkwrightError: LAUNCH133 and GRAPH212, what is wrong with a file.
+            LinkwrightError: LAUNCH133 and GRAPH212, the errors in a file.
         """
         found = ParameterRules()
         for source in self.sources:
@@ -123,11 +123,11 @@ class NodeParameters:
         return found
 
     def arguments(self, node: str | None, folder: Path | None) -> list[tuple[str, bool]]:
-        """What a node of another process is told, each a file's path (True) or a rule ``name:=value`` (False).
+        """Return the arguments for another process, each a file's path (True) or a rule ``name:=value`` (False).
 
         Args:
-            node: the node's full name; None where it is not known.
-            folder: where files for dictionaries are written; None for the system's folder of temporary files.
+            node: the node's full name; None if it is not known.
+            folder: the folder for files with dictionaries; None for the system's temporary folder.
         """
         told: list[tuple[str, bool]] = []
         for source in self.sources:
@@ -147,7 +147,7 @@ def _warn(context: LaunchContext, code: str, message: Phrase, hint: Phrase | Non
 
 
 def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParameters:
-    """The parameters that the scope of a node gives it, of what `SetParameter` and `SetParametersFromFile` left."""
+    """Return the parameters of a node's scope, from `SetParameter` and `SetParametersFromFile`."""
     found = NodeParameters()
     for item in given:
         if isinstance(item, tuple):
@@ -159,10 +159,10 @@ def scope_parameters(given: Iterable[Any], context: LaunchContext) -> NodeParame
 
 
 def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodeParameters:
-    """The parameters of a node itself, of what `normalize_parameters` gave.
+    """Evaluate a node's own parameters, the result of `normalize_parameters`.
 
     Raises:
-        LinkwrightError: LAUNCH132 or LAUNCH133, what is wrong with a value or a file.
+        LinkwrightError: LAUNCH132 or LAUNCH133, the errors in a value or a file.
     """
     found = NodeParameters()
     for item, evaluated in zip(normalized, evaluate_parameters(context, normalized), strict=True):
@@ -177,7 +177,7 @@ def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodePar
 
 
 def rule(name: str, value: Any) -> str:
-    """A parameter as the command line has it: ``name:=value``, the value in YAML."""
+    """Return a parameter for the command line: ``name:=value``, with the value in YAML."""
     import yaml
 
     value = list(value) if isinstance(value, tuple) else value
@@ -186,7 +186,7 @@ def rule(name: str, value: Any) -> str:
 
 
 def written(parameters: dict[str, Any], node: str | None, folder: Path | None) -> str:
-    """The path of a new file with these values for a node; for any node where its name is not known."""
+    """Write a new file with values for a node, or for any node if its name is not known, and return its path."""
     import tempfile
 
     import yaml
@@ -194,6 +194,6 @@ def written(parameters: dict[str, Any], node: str | None, folder: Path | None) -
     plain = {str(name): str(value) if isinstance(value, str) else value for name, value in parameters.items()}
     descriptor, path = tempfile.mkstemp(prefix="launch_params_", suffix=".yaml", dir=folder)
     with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-        # With tuples as tuples, as launch_ros writes them; readers of parameter files pass over such tags.
+        # Tuples stay tuples, as in launch_ros; readers of parameter files ignore the tags.
         yaml.dump({node or ANY_NODE: {"ros__parameters": plain}}, file, default_flow_style=False)
     return path

@@ -22,14 +22,14 @@ def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any)
     Args:
         entity: the tag.
         parser: makes substitutions.
-        kwargs: what was read of it so far.
+        kwargs: the keyword arguments read so far.
         cls: the action's class, which reads command lines and parameters.
     """
     for attribute, keyword in (("args", "arguments"), ("ros_args", "ros_arguments")):
         words = entity.get_attr(attribute, optional=True)
         if words is not None:
             kwargs[keyword] = cls._parse_cmdline(words, parser)
-    kwargs.pop("name", None)  # that of the process, read from the same attribute
+    kwargs.pop("name", None)  # the process's name, read from the same attribute
     kwargs.update(parse_texts(entity, parser, name="name", exec_name="exec_name", package="pkg", namespace="namespace"))
     kwargs["executable"] = parser.parse_substitution(entity.get_attr("exec"))
     kwargs.update(parse_remappings(entity, parser))
@@ -40,7 +40,7 @@ def parse_node(entity: Entity, parser: Parser, kwargs: dict[str, Any], cls: Any)
 
 
 def parse_remappings(entity: Entity, parser: Parser) -> dict[str, Any]:
-    """The keyword argument ``remappings`` of the ``remap`` tags inside; nothing without any."""
+    """Return the keyword argument ``remappings`` of the ``remap`` tags inside, if there are any."""
     tags = entity.get_attr("remap", data_type=Entities, optional=True)
     if tags is None:
         return {}
@@ -53,10 +53,10 @@ def parse_remappings(entity: Entity, parser: Parser) -> dict[str, Any]:
 
 
 def parse_parameters(tags: list[Entity], parser: Parser) -> list[Any]:
-    """The parameters in ``param`` tags, as ``parameters`` of a node.
+    """Return the parameters in ``param`` tags, as ``parameters`` of a node.
 
     Raises:
-        RuntimeError: LAUNCH118, a tag says too much or too little.
+        RuntimeError: LAUNCH118, a tag has conflicting or missing attributes.
     """
     parameters: list[Any] = []
     for tag in tags:
@@ -107,14 +107,16 @@ def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
 
 
 def _not_of_type(tag: Entity, value: Any, identifier: str | None, error: Exception) -> Exception:
-    """The error about the value of a ``param`` tag; one that has its place already stays as it is."""
+    """Return the error about the value of a ``param`` tag; an error with a location stays as it is."""
     if isinstance(error, LinkwrightError) and error.diagnostics[0].code != "LAUNCH132":
         return error
     name, value = tag.get_attr("name"), repr(value)
     message = (
-        phrase("parameter '{name}' is {value}, whose items are of several types", name=name, value=value)
+        phrase("parameter '{name}' is {value}, whose items have different types", name=name, value=value)
         if identifier is None
-        else phrase("parameter '{name}' is {value}, which is no '{type}'", name=name, value=value, type=identifier)
+        else phrase(
+            "parameter '{name}' is {value}, which is not of type '{type}'", name=name, value=value, type=identifier
+        )
     )
     return error_at(tag.place, "LAUNCH132", message, ros_error=error)
 

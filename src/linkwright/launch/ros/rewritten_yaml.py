@@ -1,6 +1,6 @@
-"""Substitutions of ``nav2_common.launch``: parameter files made from others, and what is asked of them.
+"""Substitutions of ``nav2_common.launch`` that rewrite and query parameter files.
 
-They live in the Navigation2 project; launch files of many robots use them.
+They are part of the Navigation2 project; launch files of many robots use them.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _PARAMETERS = "ros__parameters"
 
 
 class _OfFile(Substitution):
-    """A substitution that is made from a YAML file."""
+    """The base of substitutions on a YAML file."""
 
     def __init__(self, source_file: SomeSubstitutionsType) -> None:
         self._source_file = normalize_to_list_of_substitutions(source_file)
@@ -65,7 +65,7 @@ class _OfFile(Substitution):
             return yaml.safe_load(text)
         except yaml.YAMLError as error:
             message = phrase(
-                "{name}: file '{path}' is no YAML: {error}",
+                "{name}: file '{path}' is not YAML: {error}",
                 name=type(self).__name__,
                 path=path,
                 error=foreign(error),
@@ -74,13 +74,13 @@ class _OfFile(Substitution):
 
 
 class RewrittenYaml(_OfFile):
-    """The path of a new parameter file: another with values put in place of its own.
+    """The path of a new parameter file: a copy with replaced values.
 
     Args:
         source_file: the file.
         param_rewrites: name -> value for each parameter of that name, or path with dots -> value for one of them; a
-            path with ``ros__parameters`` in it is added where the file has no such parameter.
-        root_key: the name that all of it is put under.
+            path with ``ros__parameters`` in it is added if the file has no such parameter.
+        root_key: a root key to nest all of it under.
         key_rewrites: name -> new name of keys.
         value_rewrites: text -> new text of values.
         convert_types: whether values that look like numbers become numbers; ``true`` and ``false`` always count.
@@ -135,7 +135,7 @@ class RewrittenYaml(_OfFile):
 
 
 def _leaves(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
-    """The paths of all values."""
+    """Yield the paths of all values."""
     if isinstance(content, dict):
         items: Any = content.items()
     elif isinstance(content, list):
@@ -148,7 +148,7 @@ def _leaves(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...
 
 
 def _with_values(content: Any, values: Mapping[str, Any], path: tuple[str, ...]) -> Any:
-    """The content with values by the name of their key, or by their whole path."""
+    """Return the content with values replaced by key or by full path."""
     if isinstance(content, list):
         return [_with_values(item, values, (*path, str(number))) for number, item in enumerate(content)]
     if isinstance(content, dict):
@@ -183,12 +183,12 @@ def _add(content: Any, path: list[str], value: Any) -> None:
 
 
 class ReplaceString(_OfFile):
-    """The path of a new file: another with texts replaced in it.
+    """The path of a new file: a copy with replaced texts.
 
     Args:
         source_file: the file.
-        replacements: text -> what is put in its place.
-        condition: where it does not hold, the path of the file itself is given.
+        replacements: text -> replacement.
+        condition: if it does not hold, the result is the path of the file itself.
     """
 
     def __init__(
@@ -258,8 +258,8 @@ class ParseMultiRobotPose(Substitution):
     """Robots and their poses, written as ``robot1={x: 1.0, yaw: 0.5}; robot2={...}``.
 
     Args:
-        robots_argument: a substitution that gives the text; or the name of a launch argument, whose value `value`
-            takes from the command line.
+        robots_argument: a substitution for the text, or the name of a launch argument that `value` reads from the
+            command line.
     """
 
     def __init__(self, robots_argument: Any) -> None:
@@ -271,12 +271,12 @@ class ParseMultiRobotPose(Substitution):
         return f"ParseMultiRobotPose({words})"
 
     def value(self) -> dict[str, dict[str, float]]:
-        """Name -> pose of the robots of the argument as it stands on the command line."""
+        """Return name -> pose of the robots in the argument on the command line."""
         start = f"{self._argument}:="
         return self._parsed(next((word[len(start) :] for word in sys.argv if word.startswith(start)), ""))
 
     def perform(self, context: LaunchContext) -> Any:
-        """Name -> pose of the robots (no text, unlike what other substitutions give)."""
+        """Return name -> pose of the robots (not a text, unlike other substitutions)."""
         if isinstance(self._argument, str):
             return self._parsed(str(context.launch_configurations.get(self._argument, "")))
         return self._parsed(self._argument.perform(context))
@@ -295,7 +295,7 @@ class ParseMultiRobotPose(Substitution):
                 given = None
             if not isinstance(given, dict):
                 message = phrase(
-                    "pose '{pose}' of robot '{name}' is no mapping such as {{x: 1.0, yaw: 0.5}}",
+                    "pose '{pose}' of robot '{name}' is not a mapping such as {{x: 1.0, yaw: 0.5}}",
                     pose=pose.strip(),
                     name=name.strip(),
                 )
@@ -317,7 +317,7 @@ def _performed(context: LaunchContext, rewrites: Mapping[str, list[Substitution]
 
 
 def _written(context: LaunchContext, text: str, suffix: str) -> str:
-    """The path of a new file, which goes with the launch where one runs."""
+    """Return the path of a new file, which is deleted after a running launch."""
     folder = context.session.scratch_folder if context.is_running else None
     with tempfile.NamedTemporaryFile("w", suffix=suffix, dir=folder, delete=False, encoding="utf-8") as file:
         file.write(text)

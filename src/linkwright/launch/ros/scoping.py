@@ -1,4 +1,4 @@
-"""Actions that hold for all nodes after them in the scope: namespace, parameters, remappings.
+"""Actions that apply to all later nodes in the scope: namespace, parameters, remappings.
 
 They are kept in launch configurations, as in launch_ros, so that groups end them.
 """
@@ -37,7 +37,7 @@ Parsed = tuple[type[Action], dict[str, Any]]
 @expose_action("push_ros_namespace")
 @expose_action("push-ros-namespace")
 class PushRosNamespace(Action):
-    """Puts a namespace before those of the nodes that follow."""
+    """Prefixes the namespaces of all later nodes."""
 
     def __init__(self, namespace: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -45,7 +45,7 @@ class PushRosNamespace(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Reads ``namespace``."""
+        """Read ``namespace``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["namespace"] = parser.parse_substitution(entity.get_attr("namespace"))
         return cls, kwargs
@@ -56,10 +56,10 @@ class PushRosNamespace(Action):
         return self._namespace
 
     def execute(self, context: LaunchContext) -> None:
-        """Put it.
+        """Push the namespace.
 
         Raises:
-            LinkwrightError: LAUNCH134, it is no valid namespace.
+            LinkwrightError: LAUNCH134, it is not a valid namespace.
         """
         inner = perform_substitutions(context, self._namespace)
         outer = context.launch_configurations.get(NAMESPACE)
@@ -70,7 +70,7 @@ class PushRosNamespace(Action):
 
 @expose_action("set_parameter")
 class SetParameter(Action):
-    """Gives a parameter to all nodes that follow; one of the node's own wins."""
+    """Sets a parameter for all later nodes; a node's own value takes precedence."""
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -79,11 +79,11 @@ class SetParameter(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Reads ``name`` and ``value``."""
+        """Read ``name`` and ``value``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
         value = entity.get_attr("value", data_type=None)
-        # A text is read by YAML's rules, also where a YAML file has it in quotes.
+        # A string is read by YAML's rules, even if it is quoted in a YAML file.
         kwargs["value"] = parser.parse_substitution(entity.get_attr("value")) if isinstance(value, str) else value
         return cls, kwargs
 
@@ -98,10 +98,10 @@ class SetParameter(Action):
         return next(iter(self._parameters.values()))
 
     def execute(self, context: LaunchContext) -> None:
-        """Give it.
+        """Set it.
 
         Raises:
-            LinkwrightError: LAUNCH132, what is wrong with the value.
+            LinkwrightError: LAUNCH132, the errors in the value.
         """
         for rule in evaluate_parameter_dict(context, self._parameters).items():
             _append(context, PARAMETERS, rule)
@@ -109,7 +109,7 @@ class SetParameter(Action):
 
 @expose_action("set_parameters_from_file")
 class SetParametersFromFile(Action):
-    """Gives the parameters of a file to all nodes that follow that it names."""
+    """Sets the parameters of a file for all later nodes that it names."""
 
     def __init__(self, filename: Path | SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -117,7 +117,7 @@ class SetParametersFromFile(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Reads ``filename``."""
+        """Read ``filename``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["filename"] = parser.parse_substitution(entity.get_attr("filename"))
         return cls, kwargs
@@ -128,13 +128,13 @@ class SetParametersFromFile(Action):
         return self._filename
 
     def execute(self, context: LaunchContext) -> None:
-        """Give them."""
+        """Set them."""
         _append(context, PARAMETERS, perform_substitutions(context, self._filename))
 
 
 @expose_action("set_remap")
 class SetRemap(Action):
-    """Gives a remapping to all nodes that follow."""
+    """Adds a remapping to all later nodes."""
 
     def __init__(self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -143,7 +143,7 @@ class SetRemap(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Reads ``from`` and ``to``."""
+        """Read ``from`` and ``to``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["src"] = parser.parse_substitution(entity.get_attr("from"))
         kwargs["dst"] = parser.parse_substitution(entity.get_attr("to"))
@@ -160,21 +160,21 @@ class SetRemap(Action):
         return self._destination
 
     def execute(self, context: LaunchContext) -> None:
-        """Give it."""
+        """Add it."""
         rule = perform_substitutions(context, self._source), perform_substitutions(context, self._destination)
         _append(context, REMAPPINGS, rule)
 
 
 @expose_action("set_use_sim_time")
 class SetUseSimTime(SetParameter):
-    """Sets ``use_sim_time`` for all nodes that follow."""
+    """Sets ``use_sim_time`` for all later nodes."""
 
     def __init__(self, value: bool | SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__("use_sim_time", value, **kwargs)
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Reads ``value``."""
+        """Read ``value``."""
         _, kwargs = Action.parse.__func__(cls, entity, parser)  # type: ignore[attr-defined]  # past SetParameter's
         kwargs["value"] = parser.parse_if_substitutions(entity.get_attr("value", data_type=bool, can_be_str=True))
         return cls, kwargs
@@ -196,10 +196,10 @@ class SetUseSimTime(SetParameter):
 
 @expose_action("set_ros_log_dir")
 class SetROSLogDir(Action):
-    """Changes the folder that the processes started from here on write their logs to.
+    """Changes the log folder of processes started from here on.
 
     Args:
-        new_log_dir: the folder; a relative one lies in the folder that held so far.
+        new_log_dir: the folder; a relative one is inside the previous folder.
     """
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
@@ -208,7 +208,7 @@ class SetROSLogDir(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> Parsed:
-        """Reads ``new_log_dir``."""
+        """Read ``new_log_dir``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["new_log_dir"] = parser.parse_substitution(entity.get_attr("new_log_dir"))
         return cls, kwargs
@@ -222,11 +222,11 @@ class SetROSLogDir(Action):
         """Change it.
 
         Raises:
-            LinkwrightError: LAUNCH136, the folder that held so far is relative itself.
+            LinkwrightError: LAUNCH136, the previous folder is also relative.
         """
         folder = Path(log_base(context.environment), perform_substitutions(context, self._log_dir))
         if not folder.is_absolute():
-            message = phrase("the log folder '{folder}' is no absolute path", folder=folder)
+            message = phrase("the log folder '{folder}' is not an absolute path", folder=folder)
             raise error_at(
                 self.place, "LAUNCH136", message, phrase("make ROS_LOG_DIR absolute"), ros_error=AssertionError(message)
             )
@@ -234,5 +234,5 @@ class SetROSLogDir(Action):
 
 
 def _append(context: LaunchContext, name: str, item: Any) -> None:
-    # A new list, so that what a scope has kept of the old one stays as it was.
+    # A new list, so that a scope's copy of the old one stays unchanged.
     context.launch_configurations[name] = [*context.launch_configurations.get(name, ()), item]

@@ -1,4 +1,4 @@
-"""Substitutions that ask where packages are, and for parameters of the scope."""
+"""Substitutions for the folders of packages and for parameters of the scope."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ class _OfLaunchRos(DeclaredSubstitution):
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:
-        """An AttributeError, as ROS has it here."""
+        """Return an AttributeError, as ROS does."""
         return AttributeError(f"{cls.__name__} substitution expects {expected}, and it is given {given}")
 
 
 class FindPackage(_OfLaunchRos, shown="{kind}(pkg={package})"):
-    """The base of substitutions that give a folder of a package; with ``/`` they give a path below it."""
+    """The base of substitutions for a folder of a package; ``/`` appends a path."""
 
     package: Texts = Texts()
 
@@ -51,7 +51,7 @@ class FindPackage(_OfLaunchRos, shown="{kind}(pkg={package})"):
         """The path.
 
         Raises:
-            PackageNotFoundError: PKG101, if there is no such package.
+            PackageNotFoundError: PKG101, there is no such package.
         """
         return self.find(perform_substitutions(context, self.package))
 
@@ -82,8 +82,8 @@ class ExecutableInPackage(_OfLaunchRos, tag="exec-in-pkg", shown="ExecInPkg(pkg=
         """The path.
 
         Raises:
-            LinkwrightError: LAUNCH131, if there is no such package or executable; a SubstitutionFailure or the like of
-                launch_ros too.
+            LinkwrightError: LAUNCH131, there is no such package or executable; also a SubstitutionFailure or similar
+                class, as in launch_ros.
         """
         package = perform_substitutions(context, self.package)
         executable = perform_substitutions(context, self.executable)
@@ -94,7 +94,7 @@ class ExecutableInPackage(_OfLaunchRos, tag="exec-in-pkg", shown="ExecInPkg(pkg=
 
 
 class ParameterSubstitution(_OfLaunchRos, tag="param", shown="Parameter(name={name})"):
-    """The value of a parameter that `SetParameter` gave in the scope."""
+    """The value of a parameter that `SetParameter` set in the scope."""
 
     name: Texts = Texts()
     default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=default_texts)
@@ -114,7 +114,7 @@ class ParameterSubstitution(_OfLaunchRos, tag="param", shown="Parameter(name={na
         if name not in known:
             if self.default is not None:
                 return perform_substitutions(context, self.default)
-            message = phrase("no SetParameter in the scope gives a parameter '{name}'", name=name)
+            message = phrase("no SetParameter in the scope sets parameter '{name}'", name=name)
             failure = SubstitutionFailure(f"parameter '{name}' not found")
             raise error_at(self.place, "LAUNCH137", message, did_you_mean(name, known), ros_error=failure)
         return str(known[name])

@@ -1,4 +1,4 @@
-"""Actions after a while of ROS time, which may be simulated."""
+"""Actions after a period of ROS time, which may be simulated."""
 
 from __future__ import annotations
 
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 class RosTimer(TimerAction):
     """Visits actions once, after a period of ROS time.
 
-    The time is that of the launcher's node. It goes by ``/clock`` from where `SetUseSimTime` says so, even if that
-    comes after the timer.
+    The time is that of the launcher's node, which uses ``/clock`` once `SetUseSimTime` sets it, even after the timer.
     """
 
     def _schedule(self, context: LaunchContext) -> Schedule:
@@ -40,7 +39,7 @@ class _OneShot:
         self._timer: Timer | None = node.create_timer(seconds, self._fire)
 
     def cancel(self) -> None:
-        """Do not fire."""
+        """Cancel the timer."""
         if self._timer is not None:
             self._node.destroy_timer(self._timer)
             self._timer = None

@@ -108,7 +108,7 @@ def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[F],
 
 
 def _has_passed(test: Any) -> bool:
-    """Whether no subtest of a test has failed; unittest keeps that to itself."""
+    """Return whether no subtest of a test has failed; unittest keeps that to itself."""
     outcome = test._outcome
     return outcome is None or bool(outcome.success)
 

@@ -108,7 +108,7 @@ class Context:
         shut_down_on_signal(self)
 
     def ok(self) -> bool:
-        """Whether it was initialised and not shut down since."""
+        """Return whether it was initialised and not shut down since."""
         return self._ok
 
     def get_domain_id(self) -> int:

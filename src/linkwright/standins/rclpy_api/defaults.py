@@ -42,12 +42,12 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 
 def has_default_context() -> bool:
-    """Whether somebody has asked for the default context and it was not shut down since."""
+    """Return whether somebody has asked for the default context and it was not shut down since."""
     return _Default.context is not None
 
 
 def is_default(context: Context | None) -> bool:
-    """Whether a context is the default one, which None stands for too."""
+    """Return whether a context is the default one, which None stands for too."""
     return context is None or context is _Default.context
 
 

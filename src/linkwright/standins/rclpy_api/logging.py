@@ -30,7 +30,7 @@ def write_to(sink: LogSink) -> None:
 
 
 def is_configured() -> bool:
-    """Whether they are redirected from the console."""
+    """Return whether they are redirected from the console."""
     return len(_sinks) > 1
 
 

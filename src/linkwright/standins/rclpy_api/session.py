@@ -74,7 +74,7 @@ def init(
 
 
 def ok(*, context: Context | None = None) -> bool:
-    """Whether a context is initialised and not shut down."""
+    """Return whether a context is initialised and not shut down."""
     return (get_default_context() if context is None else context).ok()
 
 

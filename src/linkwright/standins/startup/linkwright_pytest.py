@@ -76,6 +76,6 @@ def _is_ours(module: ModuleType | None) -> bool:
 
 
 def _is_real(package: str) -> bool:
-    """Whether a package is installed, so that ours is not used."""
+    """Return whether a package is installed, so that ours is not used."""
     found = PathFinder.find_spec(package)
     return found is not None and found.origin is not None and not found.origin.endswith(".txt")

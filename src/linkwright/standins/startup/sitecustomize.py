@@ -71,7 +71,7 @@ class StandIns:
             self._searching = False
 
     def has(self, name: str) -> bool:
-        """Whether there is a stand-in of this name."""
+        """Return whether there is a stand-in of this name."""
         if self._names is None:
             try:
                 self._names = frozenset(name.removesuffix(".txt") for name in os.listdir(_TABLES))
@@ -80,7 +80,7 @@ class StandIns:
         return name in self._names
 
     def has_real_ros(self) -> bool:
-        """Whether there is an rclpy besides ours."""
+        """Return whether there is an rclpy besides ours."""
         if self._real_ros is None:
             found = PathFinder.find_spec("rclpy", [entry for entry in sys.path if entry != _TABLES])
             self._real_ros = found is not None and found.origin is not None
@@ -106,7 +106,7 @@ class SourceFolders:
         return None if getattr(sys.modules[package], "__file__", None) else self._stand_ins.interface(name)
 
     def _is_hidden(self, name: str) -> bool:
-        """Whether a stand-in has the name of a folder that is no package."""
+        """Return whether a stand-in has the name of a folder that is no package."""
         if not self._stand_ins.has(name):
             return False
         found = PathFinder.find_spec(name)
@@ -114,7 +114,7 @@ class SourceFolders:
 
 
 def _may_hold_interfaces(package: str) -> bool:
-    """Whether it is worth loading Linkwright to see if a name is that of a package with interface files."""
+    """Return whether it is worth loading Linkwright to see if a name is that of a package with interface files."""
     if _is_loaded("linkwright.messages") or package.endswith(_INTERFACE_ENDINGS) or package in _OTHER_INTERFACES:
         return True
     shares = [os.path.join(prefix, "share") for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
@@ -196,7 +196,7 @@ def _tell_how_to_get(kind: type[BaseException], error: BaseException, traceback:
 
 
 def _is_between_messages(traceback: object) -> bool:
-    """Whether a traceback ends in code of ours and what that calls, or in a module that is being imported."""
+    """Return whether a traceback ends in code of ours and what that calls, or in a module that is being imported."""
     is_ours, modules = False, 0
     while traceback is not None:
         code = traceback.tb_frame.f_code  # type: ignore[attr-defined]  # as above

@@ -109,7 +109,7 @@ class BufferClient(BufferInterface):
         )
 
     def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = NO_TIME) -> bool:
-        """Whether `lookup_transform` gives a transform."""
+        """Return whether `lookup_transform` gives a transform."""
         try:
             self.lookup_transform(target_frame, source_frame, time, timeout)
         except TransformException:
@@ -125,7 +125,7 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration = NO_TIME,
     ) -> bool:
-        """Whether `lookup_transform_full` gives a transform."""
+        """Return whether `lookup_transform_full` gives a transform."""
         try:
             self.lookup_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         except TransformException:

@@ -70,9 +70,9 @@ class BufferInterface:
         raise NotImplementedException
 
     def can_transform(self, *_question: Any, **_options: Any) -> Any:
-        """Whether `lookup_transform` would give a transform."""
+        """Return whether `lookup_transform` would give a transform."""
         raise NotImplementedException
 
     def can_transform_full(self, *_question: Any, **_options: Any) -> Any:
-        """Whether `lookup_transform_full` would give a transform."""
+        """Return whether `lookup_transform_full` would give a transform."""
         raise NotImplementedException

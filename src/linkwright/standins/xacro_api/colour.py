@@ -9,7 +9,7 @@ _CODES = {"red": 91, "yellow": 93}
 
 
 def is_tty(stream: object) -> bool:
-    """Whether a stream is a terminal."""
+    """Return whether a stream is a terminal."""
     isatty = getattr(stream, "isatty", None)
     return isatty is not None and bool(isatty())
 

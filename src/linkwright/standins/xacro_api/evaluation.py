@@ -96,7 +96,7 @@ def get_boolean_value(value: Any, condition: object = None) -> bool:
 
 
 def is_valid_name(name: str) -> bool:
-    """Whether a name can be that of a property or macro: a Python identifier that is no keyword."""
+    """Return whether a name can be that of a property or macro: a Python identifier that is no keyword."""
     return name.isidentifier() and not keyword.iskeyword(name)
 
 

@@ -259,5 +259,5 @@ def _tell(diagnostics: Sequence[Diagnostic]) -> None:
 
 
 def _is_said(diagnostic: Diagnostic) -> bool:
-    """Whether the description itself says it, with ``xacro.message`` or its like."""
+    """Return whether the description itself says it, with ``xacro.message`` or its like."""
     return diagnostic.code.startswith("XAC7")

@@ -1,4 +1,4 @@
-"""Declaring the arguments of a launch file."""
+"""The actions that declare arguments of a launch file."""
 
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ _TRUTHS = ("true", "false", "True", "False", "TRUE", "FALSE")
 
 
 def _listed_choices(entity: Entity) -> list[str] | None:
-    """The list ``choices`` of YAML.
+    """Return the list ``choices`` of YAML.
 
     Raises:
-        TypeError: LAUNCH118, it is no list of texts.
+        TypeError: LAUNCH118, it is not a list of strings.
     """
     try:
         listed: list[str] | None = entity.get_attr("choices", data_type=list[str], optional=True)
     except TypeError as error:
         ros_error = TypeError("Attribute 'choices' of Entity 'arg' expected to be a list of strings")
-        message = phrase("key 'choices' of '{type_name}' must be a list of texts", type_name=entity.type_name)
+        message = phrase("key 'choices' of '{type_name}' must be a list of strings", type_name=entity.type_name)
         raise error_at(entity.place, "LAUNCH118", message, ros_error=ros_error) from error
     return listed
 
 
 @expose_action("arg")
 class DeclareLaunchArgument(Action):
-    """Declares an argument and sets the launch configuration of its name, to the value given or the default.
+    """Declares an argument and sets the launch configuration with its name to the given or default value.
 
     Args:
         name: the argument's name.
-        default_value: the value where none is given; without one the argument is required.
-        description: what ``--show-args`` says of it.
-        choices: the values it may have.
+        default_value: the default; None makes the argument required.
+        description: the description for ``--show-args``.
+        choices: the allowed values.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class DeclareLaunchArgument(Action):
         if isinstance(default_value, str) and default_value not in self._choices:
             text = f'Provided default_value "{default_value}" is not in provided choices "{self._choices}".'
             message = phrase(
-                "the default '{default_value}' of argument '{name}' is none of its choices",
+                "the default '{default_value}' of argument '{name}' is not one of its choices",
                 default_value=default_value,
                 name=name,
             )
@@ -84,7 +84,7 @@ class DeclareLaunchArgument(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``name``, ``default``, ``description`` and the ``choice`` inside, or the list ``choices`` of YAML."""
+        """Read ``name``, ``default``, ``description`` and the ``choice`` inside, or the list ``choices`` of YAML."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.escape_characters(entity.get_attr("name"))
         kwargs.update(parse_texts(entity, parser, default_value="default"))
@@ -114,7 +114,7 @@ class DeclareLaunchArgument(Action):
 
     @property
     def description(self) -> str:
-        """What ``--show-args`` says of it, the choices included."""
+        """The description for ``--show-args``, with the choices."""
         if self._description is None:
             return "no description given" if self._choices is None else f"One of: {self._choices}"
         if self._choices is None:
@@ -124,16 +124,16 @@ class DeclareLaunchArgument(Action):
 
     @property
     def choices(self) -> list[str] | None:
-        """The values it may have, None for any."""
+        """The allowed values, or None for any."""
         return self._choices
 
     @property
     def _conditionally_included(self) -> bool:
-        """`conditionally_included`, by its name in ROS."""
+        """ROS's name for `conditionally_included`."""
         return self.conditionally_included
 
     def describe(self) -> str:
-        """Name, default and description."""
+        """Return its name, default and description."""
         default = "" if self._default is None else f", default_value={describe(self._default)}"
         return f"{type(self).__name__}('{self._name}'{default}, description='{self.description}')"
 
@@ -141,7 +141,7 @@ class DeclareLaunchArgument(Action):
         """Set the launch configuration if it is not set, and check its value.
 
         Raises:
-            RuntimeError: LAUNCH112, a value that is no choice; LAUNCH114, a required argument not given.
+            RuntimeError: LAUNCH112, the value is not one of the choices; LAUNCH114, a required argument is missing.
         """
         configurations = context.launch_configurations
         if self._name not in configurations:
@@ -164,7 +164,9 @@ class DeclareLaunchArgument(Action):
         if self._choices is not None and value not in self._choices:
             text = f'Argument "{self._name}" provided value "{value}" is not valid. Valid options are: {self._choices}'
             message = phrase(
-                "argument '{name}' has the value '{value}', which is none of its choices", name=self._name, value=value
+                "argument '{name}' has the value '{value}', which is not one of its choices",
+                name=self._name,
+                value=value,
             )
             hint = self._hint(str(value))
             raise error_at(self.place, "LAUNCH112", message, hint, ros_error=RuntimeError(text))
@@ -182,7 +184,7 @@ class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
 
     Args:
         name: the argument's name.
-        default_value: the value where none is given.
+        default_value: the default value.
     """
 
     def __init__(self, name: str, *, default_value: SomeSubstitutionsType | bool | None = None, **kwargs: Any) -> None:
@@ -191,7 +193,7 @@ class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads what ``arg`` has, without choices."""
+        """Read the same as ``arg``, without choices."""
         _, kwargs = super().parse(entity, parser)
         if "choices" in kwargs:
             raise ValueError("Cannot specify choices for bool_arg")

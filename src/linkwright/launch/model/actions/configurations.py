@@ -39,7 +39,7 @@ class UnsetLaunchConfiguration(NamedAction):
 
 
 class PushLaunchConfigurations(Action):
-    """Opens a scope: what is set from here on ends with `PopLaunchConfigurations`."""
+    """Opens a scope: what is set from here on is reset by `PopLaunchConfigurations`."""
 
     def execute(self, context: LaunchContext) -> None:
         """Open it."""
@@ -47,7 +47,7 @@ class PushLaunchConfigurations(Action):
 
 
 class PopLaunchConfigurations(Action):
-    """Closes a scope: the launch configurations are again what they were."""
+    """Closes a scope and restores the launch configurations."""
 
     def execute(self, context: LaunchContext) -> None:
         """Close it."""
@@ -56,10 +56,10 @@ class PopLaunchConfigurations(Action):
 
 @expose_action("reset")
 class ResetLaunchConfigurations(Action):
-    """Forgets all launch configurations but those given.
+    """Removes all launch configurations except the given ones.
 
     Args:
-        launch_configurations: name -> value of what is set afterwards, worked out before the others are forgotten.
+        launch_configurations: name -> value to set afterwards, evaluated before the others are removed.
     """
 
     def __init__(self, launch_configurations: Mapping[Any, Any] | None = None, **kwargs: Any) -> None:
@@ -68,7 +68,7 @@ class ResetLaunchConfigurations(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads the ``keep`` inside."""
+        """Read the ``keep`` inside."""
         _, kwargs = super().parse(entity, parser)
         kept = parse_pairs(entity, parser, "keep")
         if kept is not None:
@@ -76,7 +76,7 @@ class ResetLaunchConfigurations(Action):
         return cls, kwargs
 
     def execute(self, context: LaunchContext) -> None:
-        """Forget the others."""
+        """Remove the other configurations."""
         kept = perform_pairs(context, self._kept)
         context.launch_configurations.clear()
         context.launch_configurations.update(kept)

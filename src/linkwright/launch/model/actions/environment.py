@@ -54,8 +54,8 @@ class AppendEnvironmentVariable(AssigningAction):
     Args:
         name: the variable.
         value: what is added.
-        prepend: whether it goes before what is there.
-        separator: what stands between; the system's path separator by default.
+        prepend: whether to insert it before the existing value.
+        separator: the separator; the system's path separator by default.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``prepend`` and ``separator`` besides."""
+        """Also reads ``prepend`` and ``separator``."""
         _, kwargs = super().parse(entity, parser)
         prepend = entity.get_attr("prepend", optional=True, data_type=bool, can_be_str=True)
         if prepend is not None:
@@ -81,7 +81,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
     @property
     def prepend(self) -> Any:
-        """Whether it goes before what is there: a truth value, or substitutions."""
+        """Whether it is inserted before the existing value: a boolean or substitutions."""
         return self._prepend
 
     @property
@@ -99,7 +99,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
 @expose_action("rep_env")
 class ReplaceEnvironmentVariables(Action):
-    """Makes the environment the variables given and no others.
+    """Replaces the environment by the given variables.
 
     Args:
         environment: name -> value.
@@ -111,7 +111,7 @@ class ReplaceEnvironmentVariables(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads the ``env`` inside."""
+        """Read the ``env`` inside."""
         _, kwargs = super().parse(entity, parser)
         environment = parse_pairs(entity, parser, "env")
         if environment is not None:
@@ -130,7 +130,7 @@ class ReplaceEnvironmentVariables(Action):
 
 @expose_action("push_env")
 class PushEnvironment(Action):
-    """Opens a scope: what is set from here on ends with `PopEnvironment`."""
+    """Opens a scope: what is set from here on is reset by `PopEnvironment`."""
 
     def execute(self, context: LaunchContext) -> None:
         """Open it."""
@@ -139,7 +139,7 @@ class PushEnvironment(Action):
 
 @expose_action("pop_env")
 class PopEnvironment(Action):
-    """Closes a scope: the environment is again what it was."""
+    """Closes a scope and restores the environment."""
 
     def execute(self, context: LaunchContext) -> None:
         """Close it."""
@@ -148,7 +148,7 @@ class PopEnvironment(Action):
 
 @expose_action("reset_env")
 class ResetEnvironment(Action):
-    """Restores the environment that the launch was started with."""
+    """Restores the environment from the start of the launch."""
 
     def execute(self, context: LaunchContext) -> None:
         """Restore it."""

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class _HandlerAction(Action):
-    """Does something with an event handler."""
+    """The base of actions on an event handler."""
 
     def __init__(self, event_handler: BaseEventHandler, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -45,16 +45,16 @@ class RegisterEventHandler(_HandlerAction):
         context.register_event_handler(self._event_handler)
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """What the handler visits, as far as it is known."""
+        """Return the entities that the handler visits, as far as known."""
         known = self.get_sub_entities()
         return [(f"{self._event_handler} handles an event", known)] if known else []
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Nothing: what the handler visits, it visits when an event comes."""
+        """Return nothing: the handler visits its entities only on an event."""
         return []
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """What the handler visits, as far as it is known."""
+        """Return the entities that the handler visits, as far as known."""
         return self._event_handler.describe()[1]
 
 
@@ -67,7 +67,7 @@ class UnregisterEventHandler(_HandlerAction):
 
 
 class EmitEvent(Action):
-    """Emits an event: puts it into the queue of the launch."""
+    """Emits an event into the queue of the launch."""
 
     def __init__(self, *, event: events.Event, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -100,7 +100,7 @@ class Shutdown(EmitEvent):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``reason``."""
+        """Read ``reason``."""
         _, kwargs = super().parse(entity, parser)
         reason = entity.get_attr("reason", optional=True)
         if reason:

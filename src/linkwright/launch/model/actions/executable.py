@@ -1,4 +1,4 @@
-"""What is executed as a process: command, environment, folder and name (``launch.descriptions.Executable``)."""
+"""The program of a process: command, environment, folder and name (``launch.descriptions.Executable``)."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ class Executable:
     """A program to be run as a process.
 
     Args:
-        cmd: program and arguments, each a text, a substitution, or a list of these to be joined.
-        prefix: a command to put before it, such as ``gdb -ex run --args``; by default the launch configuration
-            ``launch-prefix``, where the program's name matches the pattern ``launch-prefix-filter``.
+        cmd: program and arguments, each a string, a substitution, or a list of these to join.
+        prefix: a command to prefix it with, such as ``gdb -ex run --args``; by default the launch configuration
+            ``launch-prefix``, if the program's name matches the pattern ``launch-prefix-filter``.
         name: its name in the log, the program's by default; a number is appended.
         cwd: the folder it runs in.
-        env: its whole environment; that of the launcher by default.
-        additional_env: variables set besides.
+        env: its entire environment; that of the launcher by default.
+        additional_env: additional variables.
         arguments: further arguments.
 
     Attributes:
-        final_name: the name in the log once it is to run, such as ``talker-1``.
-        final_cmd: the words of the command then.
-        final_cwd: the folder then.
-        final_env: the environment then.
+        final_name: the evaluated name in the log, such as ``talker-1``.
+        final_cmd: the evaluated words of the command.
+        final_cwd: the evaluated folder.
+        final_env: the evaluated environment.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Executable:
         self.final_env: dict[str, str] | None = None
 
     def prepare(self, context: LaunchContext, action: Any = None) -> None:
-        """Work out the final command, environment, folder and name."""
+        """Evaluate the command, environment, folder and name."""
         command = [perform_substitutions(context, part) for part in self.cmd]
         self.final_cmd = [*self.prefix_words(context, command), *command]
         self.final_name = f"{self.base_name(context, self.final_cmd)}-{next(_numbers)}"
@@ -76,7 +76,7 @@ class Executable:
     apply_context = prepare
 
     def prefix_words(self, context: LaunchContext, command: list[str]) -> list[str]:
-        """The words that go before a command."""
+        """Return the words of the prefix."""
         if self.prefix is not None:
             return shlex.split(perform_substitutions(context, self.prefix))
         wanted = context.launch_configurations.get("launch-prefix", "")
@@ -85,11 +85,11 @@ class Executable:
         return shlex.split(wanted) if wanted and applies else []
 
     def base_name(self, context: LaunchContext, command: list[str]) -> str:
-        """The name in the log, without its number."""
+        """Return the name in the log, without its number."""
         return Path(command[0]).name if self.name is None else perform_substitutions(context, self.name)
 
     def environment(self, context: LaunchContext) -> dict[str, str]:
-        """The environment that the process is to have."""
+        """Return the environment for the process."""
         environment = dict(context.environment) if self.env is None else perform_pairs(context, self.env)
         environment.update(perform_pairs(context, self.additional_env or []))
         return environment

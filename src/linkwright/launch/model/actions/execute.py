@@ -1,4 +1,4 @@
-"""Starting processes."""
+"""The actions that start processes."""
 
 from __future__ import annotations
 
@@ -41,24 +41,24 @@ class ExecuteLocal(Action):
     """Starts a process and follows it to its end.
 
     Args:
-        process_description: what is run.
+        process_description: the program to run.
         shell: whether a shell runs it.
         sigterm_timeout: seconds between SIGINT and SIGTERM when it is to end; by default the launch configuration
             of this name, else 5.
         sigkill_timeout: seconds between SIGTERM and SIGKILL; by default the launch configuration of this name, else 5.
-        emulate_tty: whether it is given a pseudo-terminal; the launch configuration of this name takes precedence.
-        output: where what it writes goes: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping of
-            ``stdout``, ``stderr`` and ``both`` to sets of ``screen``, ``log`` and ``own_log``. The environment
-            variable ``OVERRIDE_LAUNCH_PROCESS_OUTPUT`` wins.
-        output_format: how a line is shown; ``{line}`` and ``{this}`` (the action) can be used.
-        cached_output: whether `get_stdout` and `get_stderr` give what it wrote.
+        emulate_tty: whether it gets a pseudo-terminal; the launch configuration of this name takes precedence.
+        output: the destination of its output: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping of
+            ``stdout``, ``stderr`` and ``both`` to sets of ``screen``, ``log`` and ``own_log``. The environment variable
+            ``OVERRIDE_LAUNCH_PROCESS_OUTPUT`` takes precedence.
+        output_format: the format of a line, which may contain ``{line}`` and ``{this}`` (the action).
+        cached_output: whether `get_stdout` and `get_stderr` return the output.
         log_cmd: whether the command is shown before it runs.
-        on_exit: what is visited when it has ended, or a function of event and context that returns that.
-        respawn: whether it is started again when it ends before the launch does.
-        respawn_delay: seconds to wait before that.
-        respawn_max_retries: how often at most; any number if negative.
-        split_arguments: whether each word of the command is divided as a shell would do; for substitutions that give
-            several words.
+        on_exit: the entities to visit when it has ended, or a function of event and context that returns them.
+        respawn: whether it is restarted if it ends before the launch.
+        respawn_delay: seconds to wait before a restart.
+        respawn_max_retries: the maximum number of restarts; unlimited if negative.
+        split_arguments: whether each word of the command is split as in a shell, for substitutions that give several
+            words.
         kwargs: see `Action`.
 
     Attributes:
@@ -109,7 +109,7 @@ class ExecuteLocal(Action):
         self.process_details: dict[str, Any] | None = None
         self.return_code: int | None = None
 
-    # --- what others read of it -----------------------------------------------------------------------------
+    # --- properties -----------------------------------------------------------------------------------------
 
     @property
     def process_description(self) -> Executable:
@@ -123,7 +123,7 @@ class ExecuteLocal(Action):
 
     @property
     def emulate_tty(self) -> Any:
-        """Whether it is given a pseudo-terminal, as it was asked for."""
+        """Whether it gets a pseudo-terminal, as given."""
         return self._emulate_tty
 
     @property
@@ -138,23 +138,23 @@ class ExecuteLocal(Action):
 
     @property
     def output(self) -> Any:
-        """Where its output goes: a mapping, or substitutions."""
+        """The destination of its output: a mapping or substitutions."""
         return self._output
 
     def get_stdout(self) -> str:
-        """What it wrote to stdout; needs ``cached_output``."""
+        """Return its output to stdout; needs ``cached_output``."""
         return self._cached_text(1)
 
     def get_stderr(self) -> str:
-        """What it wrote to stderr; needs ``cached_output``."""
+        """Return its output to stderr; needs ``cached_output``."""
         return self._cached_text(2)
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """The entities that are visited when it has ended."""
+        """Return the entities to visit when it has ended."""
         return self._on_exit
 
     def describe(self) -> str:
-        """Command, folder, environment and whether a shell runs it."""
+        """Return its command, folder and environment, and whether a shell runs it."""
         about = self._description
         command = ", ".join(describe(part) for part in about.cmd)
         folder = None if about.cwd is None else describe(about.cwd)
@@ -165,7 +165,7 @@ class ExecuteLocal(Action):
     # --- the run --------------------------------------------------------------------------------------------
 
     def prepare(self, context: LaunchContext) -> None:
-        """Work out the final name, command, folder and environment, for those who look at them before it runs."""
+        """Evaluate the name, command, folder and environment, for users that read them before it runs."""
         self._description.prepare(context, self)
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
@@ -173,32 +173,32 @@ class ExecuteLocal(Action):
 
         Raises:
             RuntimeError: LAUNCH141, it was started before.
-            LinkwrightError: LAUNCH141, what cannot be understood of how it is to run.
+            LinkwrightError: LAUNCH141, an invalid option of the process.
         """
         if not context.is_shutdown:
             self._start(context, [perform_substitutions(context, part) for part in self._description.cmd])
         return None
 
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """The entities to be visited now that the process has ended."""
+        """Return the entities to visit when the process has ended."""
         self.return_code = event.returncode
         if self._after_exit is None:
             return self._on_exit
         return as_entities(self._after_exit(event, context))
 
     def wrote(self, stream: int, text: bytes) -> None:
-        """Note what the process wrote to stdout (1) or stderr (2)."""
+        """Store output of the process to stdout (1) or stderr (2)."""
         if self._cached is not None:
             self._cached[stream].append(text)
 
     def _start(self, context: LaunchContext, command: list[str]) -> str:
-        """Start the process of a command; returns its name in the log."""
+        """Start the process of a command, and return its name in the log."""
         if self._started:
             text = f"ExecuteLocal action '{self._description.final_name}': executed more than once: {self.describe()}"
             message = phrase(
                 "the action of process '{final_name}' is visited a second time", final_name=self._description.final_name
             )
-            hint = phrase("make an action for each start, for example in a function")
+            hint = phrase("create an action for each start, for example in a function")
             raise error_at(self.place, "LAUNCH141", message, hint, ros_error=RuntimeError(text))
         plan = self._plan(context, command)
         name = context.session.number_process(plan.name)
@@ -238,7 +238,7 @@ class ExecuteLocal(Action):
         try:
             return shlex.split(text)
         except ValueError as error:
-            message = phrase("'{text}' cannot be divided into words: {error}", text=text, error=str(error).lower())
+            message = phrase("'{text}' cannot be split into words: {error}", text=text, error=str(error).lower())
             raise error_at(self.place, "LAUNCH118", message, ros_error=error) from error
 
     def _environment(self, context: LaunchContext) -> dict[str, str]:
@@ -282,7 +282,7 @@ class ExecuteLocal(Action):
         try:
             return float(text)
         except ValueError as error:
-            message = phrase("'{name}' is '{text}', which is no number", name=name, text=text)
+            message = phrase("'{name}' is '{text}', which is not a number", name=name, text=text)
             raise error_at(self.place, "LAUNCH141", message, ros_error=error) from error
 
     def _cached_text(self, stream: int) -> str:
@@ -323,12 +323,12 @@ class ExecuteProcess(ExecuteLocal):
     def parse(
         cls, entity: Entity, parser: Parser, ignore: Sequence[str] | None = None
     ) -> tuple[type[Action], dict[str, Any]]:
-        """Reads the tag of a process.
+        """Read the tag of a process.
 
         Args:
             entity: the tag.
             parser: for the substitutions in it.
-            ignore: names of arguments that are not read.
+            ignore: names of arguments to skip.
         """
         from linkwright.launch.model.actions.process_tag import parse_process
 
@@ -338,17 +338,17 @@ class ExecuteProcess(ExecuteLocal):
 
     @classmethod
     def _parse_cmdline(cls, cmd: str, parser: Parser) -> list[list[Substitution]]:
-        """The words of a command line, by the name that this has in ROS."""
+        """Return the words of a command line; the name is ROS's."""
         from linkwright.launch.model.markup.command_line import parse_command_line
 
         return parse_command_line(cmd, parser)
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Start the process; for Gazebo's programs, where they are not installed, our simulation.
+        """Start the process, or our simulation for a program of Gazebo that is not installed.
 
         Raises:
             RuntimeError: LAUNCH141, it was started before.
-            LinkwrightError: LAUNCH141, what cannot be understood of how it is to run.
+            LinkwrightError: LAUNCH141, an invalid option of the process.
         """
         if not context.is_shutdown:
             command = [perform_substitutions(context, part) for part in self._description.cmd]
@@ -357,7 +357,7 @@ class ExecuteProcess(ExecuteLocal):
         return None
 
     def _is_simulated(self, context: LaunchContext, command: list[str]) -> bool:
-        """Start our simulation where the command is one of Gazebo's; whether it was."""
+        """Start our simulation if the command is one of Gazebo's, and return whether it is."""
         from linkwright.launch.model.simulators import simulator_of
 
         try:
@@ -391,22 +391,22 @@ class ExecuteProcess(ExecuteLocal):
 
     @property
     def name(self) -> Any:
-        """The process's name in the log once it runs, such as ``talker-1``; before that, as substitutions."""
+        """The process's name in the log, such as ``talker-1``; as substitutions before it runs."""
         return self._description.final_name or self._description.name
 
     @property
     def cwd(self) -> Any:
-        """The folder it runs in, once it runs; before that, as substitutions."""
+        """The folder it runs in; as substitutions before it runs."""
         return self._description.final_cwd or self._description.cwd
 
     @property
     def env(self) -> Any:
-        """The environment it has, once it runs; before that, as substitutions."""
+        """The environment; as substitutions before it runs."""
         return self._description.final_env or self._description.env
 
     @property
     def additional_env(self) -> Pairs | None:
-        """Variables that it has besides, as substitutions."""
+        """The additional variables, as substitutions."""
         return self._description.additional_env
 
     @property

@@ -1,4 +1,4 @@
-"""Actions that call a function or begin a coroutine."""
+"""Actions that call a function or start a coroutine."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.launch.model.context import LaunchContext
 
 
 class OpaqueFunction(Action):
-    """Calls a function with the launch context when it is visited; what it returns is visited next.
+    """Calls a function with the launch context when it is visited, and visits the entities that it returns.
 
     Args:
         function: called as ``function(context, *args, **kwargs)``.
@@ -75,7 +75,7 @@ class OpaqueCoroutine(Action):
         self._task: asyncio.Task[Any] | None = None
 
     def execute(self, context: LaunchContext) -> None:
-        """Begin it."""
+        """Start the coroutine."""
         from linkwright.launch.model.event_handlers import OnShutdown
 
         loop = context.asyncio_loop
@@ -92,5 +92,5 @@ class OpaqueCoroutine(Action):
             task.cancel()
 
     def get_asyncio_future(self) -> asyncio.Future[Any] | None:
-        """The coroutine's task, once it has begun."""
+        """Return the coroutine's task, once it is started."""
         return self._task

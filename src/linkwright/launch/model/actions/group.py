@@ -1,4 +1,4 @@
-"""Groups of actions with a scope of their own."""
+"""Groups of actions with their own scope."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class GroupAction(Action):
     Args:
         actions: the actions.
         scoped: whether launch configurations and environment variables set inside end with the group.
-        forwarding: whether those from outside are seen inside, in a group with a scope.
-        launch_configurations: name -> value of configurations that are set for the group.
+        forwarding: whether a scoped group sees those from outside.
+        launch_configurations: name -> value to set in the group.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class GroupAction(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``scoped``, ``forwarding``, the ``keep`` and the actions inside."""
+        """Read ``scoped``, ``forwarding``, the ``keep`` and the actions inside."""
         _, kwargs = super().parse(entity, parser)
         for name in ("scoped", "forwarding"):
             value = entity.get_attr(name, data_type=bool, optional=True, can_be_str=False)
@@ -66,8 +66,8 @@ class GroupAction(Action):
         return cls, kwargs
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """The actions of the group, with what opens and closes its scope."""
-        # Classes of users set '_GroupAction__actions' in their 'execute', by which name ROS has it.
+        """Return the actions of the group, with those that open and close its scope."""
+        # Users' classes set '_GroupAction__actions', its name in ROS, in their 'execute'.
         if self.__following is None or self.__following[0] is not self.__actions:
             self.__following = self.__actions, self._with_scope()
         return self.__following[1]

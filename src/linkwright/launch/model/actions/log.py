@@ -1,4 +1,4 @@
-"""Actions that write a line into the log of the launch."""
+"""Actions that write a line to the log of the launch."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Log(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``message`` and ``level``."""
+        """Read ``message`` and ``level``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["msg"] = parser.parse_substitution(entity.get_attr("message"))
         level = entity.get_attr("level", optional=True)
@@ -68,7 +68,7 @@ class Log(Action):
                     warnings.warn(problem, stacklevel=2)
                 else:
                     warnings.warn_explicit(problem, UserWarning, place.file, place.span().line)
-                return LogInfo, kwargs  # which the tag was in Jazzy and before
+                return LogInfo, kwargs  # the tag's level in Jazzy and before
             level = "INFO"
         kwargs["level"] = parser.parse_substitution(level)
         return cls, kwargs
@@ -144,6 +144,6 @@ class LogWarning(_LogOfLevel):
 
 @expose_action("log_error")
 class LogError(_LogOfLevel):
-    """Writes an error; the launch goes on."""
+    """Writes an error; the launch continues."""
 
     _LEVEL = "ERROR"

@@ -1,4 +1,4 @@
-"""Actions that are repeated, each time with other values."""
+"""Actions that are repeated with different values."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class ForEach(Action):
     """Calls a function for each of several sets of values, and visits what it returns.
 
     Args:
-        input_values: the sets, each a YAML mapping in braces, with semicolons between them.
+        input_values: the sets, each a YAML mapping in braces, separated by semicolons.
         function: called with the values of a set by name; returns entities.
     """
 
@@ -44,7 +44,7 @@ class ForEach(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``values`` and the actions inside."""
+        """Read ``values`` and the actions inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["input_values"] = parser.parse_substitution(entity.get_attr("values"))
         children = [parser.parse_action(child) for child in entity.children]
@@ -66,10 +66,10 @@ class ForEach(Action):
         return f"{type(self).__name__}(input_values={describe(self._input_values)}, function={_name(self._function)})"
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """What the function returns for all sets, to be visited next.
+        """Return the entities for all sets, to visit next.
 
         Raises:
-            LinkwrightError: LAUNCH151, a set is no mapping.
+            LinkwrightError: LAUNCH151, a set is not a mapping.
         """
         import yaml
 
@@ -83,11 +83,11 @@ class ForEach(Action):
                 raise error_at(
                     self.place,
                     "LAUNCH151",
-                    phrase("values '{text}' are no YAML: {error}", text=text.strip(), error=foreign(error)),
+                    phrase("values '{text}' are not YAML: {error}", text=text.strip(), error=foreign(error)),
                 ) from error
             if not isinstance(values, dict):
                 hint = phrase("write each set of values as {name: value, ...}, and ';' between them")
-                message = phrase("values '{text}' of the loop are no mapping", text=text.strip())
+                message = phrase("values '{text}' of the loop are not a mapping", text=text.strip())
                 raise error_at(self.place, "LAUNCH151", message, hint)
             entities += as_entities(self._function(**values))
         return entities
@@ -100,7 +100,7 @@ class ForLoop(Action):
     Args:
         length: the number of iterations.
         function: called with the number as ``i``; returns entities.
-        name: the name by which ``$(index NAME)`` gives the number.
+        name: the name for ``$(index NAME)``, which returns the number.
     """
 
     def __init__(
@@ -113,7 +113,7 @@ class ForLoop(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``len``, ``name`` and the actions inside."""
+        """Read ``len``, ``name`` and the actions inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["length"] = parser.parse_substitution(entity.get_attr("len"))
         name = kwargs["name"] = entity.get_attr("name")
@@ -142,16 +142,16 @@ class ForLoop(Action):
         return f"{type(self).__name__}(length={length}, name='{self._name}', function={function})"
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
-        """A `ForEach` over the numbers, to be visited next.
+        """Return a `ForEach` over the numbers, to visit next.
 
         Raises:
-            ValueError: LAUNCH151, the length is no whole number.
+            ValueError: LAUNCH151, the length is not an integer.
         """
         text = perform_substitutions(context, self._length)
         try:
             length = int(text)
         except ValueError as error:
-            message = phrase("the length '{text}' of a loop is no whole number", text=text)
+            message = phrase("the length '{text}' of a loop is not an integer", text=text)
             raise error_at(self.place, "LAUNCH151", message, ros_error=error) from error
         values = ForEach.SEPARATOR.join(f"{{i: {number}}}" for number in range(length))
         return [ForEach(values, function=self._function)]
@@ -162,7 +162,7 @@ def _name(function: Callable[..., Any]) -> str:
 
 
 def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, Any]) -> list[LaunchDescriptionEntity]:
-    """The actions of a loop for one set of values, which ``$(for-var NAME)`` and ``$(index NAME)`` give in them."""
+    """Return the actions of one iteration, in which ``$(for-var NAME)`` and ``$(index NAME)`` return its values."""
 
     def begin(context: LaunchContext) -> None:
         context.push_locals()
@@ -173,7 +173,7 @@ def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, 
     def leave(context: LaunchContext) -> None:
         context.pop_locals()
 
-    # Three functions, as in ROS, whose users count what a loop makes. The children are copies, because an action such
-    # as a node keeps what it was started as.
+    # Three functions, as in ROS, whose users count the entities of a loop. The children are copies, because an action
+    # such as a node keeps its state.
     around = [OpaqueFunction(function=each) for each in (begin, enter, leave)]
     return [*around[:2], *deepcopy(list(children)), around[2]]

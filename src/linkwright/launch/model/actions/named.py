@@ -1,4 +1,4 @@
-"""The base of actions on launch configurations and environment variables: a name, and perhaps a value."""
+"""The base of actions on launch configurations and environment variables: a name and an optional value."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class NamedAction(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``name``."""
+        """Read ``name``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["name"] = parser.parse_substitution(entity.get_attr("name"))
         return cls, kwargs
@@ -61,7 +61,7 @@ class AssigningAction(NamedAction):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``name`` and ``value``."""
+        """Read ``name`` and ``value``."""
         _, kwargs = super().parse(entity, parser)
         kwargs["value"] = parser.parse_substitution(entity.get_attr("value"))
         return cls, kwargs
@@ -81,7 +81,7 @@ class AssigningAction(NamedAction):
 
 
 def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | None:
-    """Names and values of the entities of one tag inside of another, such as ``<env name= value=/>``."""
+    """Return the names and values of the child entities with a tag, such as ``<env name= value=/>``."""
     inside = entity.get_attr(tag, data_type=list[Entity], optional=True)
     if inside is None:
         return None
@@ -95,7 +95,7 @@ def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | No
 
 
 def normalize_pairs(values: Any) -> Pairs:
-    """A mapping, or pairs, of names and values in one form."""
+    """Return a mapping, or pairs, of names and values in one form."""
     pairs: Iterable[Any] = values.items() if hasattr(values, "items") else values
     return [
         (normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value)) for name, value in pairs
@@ -103,5 +103,5 @@ def normalize_pairs(values: Any) -> Pairs:
 
 
 def perform_pairs(context: LaunchContext, pairs: Pairs) -> dict[str, str]:
-    """Names and values as they are now."""
+    """Evaluate names and values."""
     return {perform_substitutions(context, name): perform_substitutions(context, value) for name, value in pairs}

@@ -1,4 +1,4 @@
-"""The tag of a process: what ``executable`` and ``node`` have in common."""
+"""The common attributes of the tags ``executable`` and ``node``."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Entity, Parser
 
 _TEXTS = {"cwd": "cwd", "name": "name", "prefix": "launch-prefix", "output": "output", "respawn": "respawn"}
-"""Argument -> attribute, of those that may have substitutions in them."""
+"""Argument -> attribute, for those that may contain substitutions."""
 
 _TRUTHS = ("shell", "emulate_tty", "log_cmd", "cached_output", "split_arguments")
 _SECONDS = ("sigkill_timeout", "sigterm_timeout")
 
 
 def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> dict[str, Any]:
-    """The keyword arguments of an `ExecuteProcess`.
+    """Return the keyword arguments of an `ExecuteProcess`.
 
     Args:
         entity: the tag.
         parser: for the substitutions in it.
-        ignored: names of arguments that are not read.
+        ignored: names of arguments to skip.
 
     Raises:
         AttributeError: LAUNCH117, it has no ``cmd``.
         TypeError: LAUNCH118, an attribute has another type.
-        ValueError: LAUNCH118, a value cannot be.
+        ValueError: LAUNCH118, a value is invalid.
     """
     kwargs: dict[str, Any] = {}
     if "cmd" not in ignored:
@@ -67,7 +67,7 @@ def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> di
 
 
 def _as_text(argument: str) -> dict[str, Any]:
-    """How an argument is read: a respawn of YAML may be a truth value, all others are text."""
+    """Return how to read an argument: ``respawn`` in YAML may be a boolean, all others are text."""
     return {"data_type": bool, "can_be_str": True} if argument == "respawn" else {}
 
 

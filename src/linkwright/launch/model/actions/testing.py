@@ -1,6 +1,6 @@
-"""Actions of ``launch_testing`` that launch files of tests have in them.
+"""Actions of ``launch_testing`` in launch files of tests.
 
-Such a launch file can be launched as any other. Its tests are run by ``launch_test``; see
+Such a launch file can be launched as any other. ``launch_test`` runs its tests; see
 `linkwright.standins.launch_testing_api`.
 """
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 
 @expose_action("ready_to_test")
 class ReadyToTest(Action):
-    """Says that tests may begin; has no effect outside of tests."""
+    """Signals that tests may start; has no effect outside tests."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self._callbacks: list[Callable[[], object]] = []
 
     def _add_callback(self, callback: Callable[[], object]) -> None:
-        """Have a function called when it is executed."""
+        """Register a function to call when the action is executed."""
         self._callbacks.append(callback)
 
     def execute(self, context: LaunchContext) -> None:
@@ -42,7 +42,7 @@ class ReadyToTest(Action):
 
 
 def ready_actions(entities: Iterable[LaunchDescriptionEntity]) -> Iterator[ReadyToTest]:
-    """The `ReadyToTest` actions among entities and all that is inside them."""
+    """Return the `ReadyToTest` actions in entities and their descendants."""
     for entity in entities:
         if isinstance(entity, ReadyToTest):
             yield entity
@@ -56,11 +56,11 @@ class Test(ExecuteProcess):
 
     Args:
         timeout: seconds after which it is ended.
-        kill_timeout: accepted for ROS's sake, which does not use it either.
+        kill_timeout: accepted for compatibility with ROS; without effect there, too.
         kwargs: see `ExecuteProcess`.
     """
 
-    __test__ = False  # pytest would take it for tests
+    __test__ = False  # pytest would collect it as tests
 
     def __init__(
         self,
@@ -75,11 +75,11 @@ class Test(ExecuteProcess):
 
     @property
     def timeout(self) -> Any:
-        """Seconds after which it is ended, as they were given."""
+        """The timeout in seconds, as given."""
         return self._timeout
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Start it, and the time that it has."""
+        """Start the test and its timeout."""
         entities = list(super().execute(context) or ())
         if self._timeout is not None:
             end = EmitEvent(event=events.ShutdownProcess(process_matcher=events.matches_action(self)))
@@ -88,7 +88,7 @@ class Test(ExecuteProcess):
         return entities
 
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """The entities to be visited now that it has ended; its time no longer counts."""
+        """Stop the timeout, and return the entities to visit when the test has ended."""
         if self._timer is not None:
             self._timer.cancel()
         return super().exited(event, context)

@@ -25,9 +25,9 @@ class TimerAction(Action):
     """Visits actions once, after a period.
 
     Args:
-        period: seconds, a number or substitutions that give one.
-        actions: what is visited then.
-        cancel_on_shutdown: whether the end of the launch before that cancels it; otherwise the launch waits for it.
+        period: the seconds, as a number or substitutions.
+        actions: the actions to visit.
+        cancel_on_shutdown: whether a shutdown cancels it; otherwise the launch waits for it.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class TimerAction(Action):
 
     @classmethod
     def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
-        """Reads ``period``, ``cancel_on_shutdown`` and the actions inside."""
+        """Read ``period``, ``cancel_on_shutdown`` and the actions inside."""
         _, kwargs = super().parse(entity, parser)
         kwargs["period"] = parser.parse_if_substitutions(entity.get_attr("period", data_type=float, can_be_str=True))
         cancel = entity.get_attr("cancel_on_shutdown", optional=True, data_type=bool, can_be_str=True)
@@ -58,7 +58,7 @@ class TimerAction(Action):
 
     @property
     def period(self) -> Any:
-        """Seconds, or substitutions that give them."""
+        """The seconds, or substitutions for them."""
         return self._period
 
     @property
@@ -71,7 +71,7 @@ class TimerAction(Action):
         return f"{type(self).__name__}(period={self._period}, actions=<actions>)"
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
-        """Nothing: the actions are visited only if nothing cancels it."""
+        """Return nothing: the actions are conditional on the timer."""
         return []
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
@@ -83,7 +83,7 @@ class TimerAction(Action):
         return self._actions
 
     def cancel(self) -> None:
-        """Cancel it: unless the period has passed already, nothing is visited."""
+        """Cancel the timer, unless the period has passed."""
         self._canceled = True
         if self._cancel is not None:
             self._cancel()
@@ -92,14 +92,14 @@ class TimerAction(Action):
         """Start the timer.
 
         Raises:
-            LinkwrightError: LAUNCH127, if the period is no number.
+            LinkwrightError: LAUNCH127, the period is not a number.
         """
         try:
             seconds = float(perform_typed_substitution(context, self._period, float))
             cancels = bool(perform_typed_substitution(context, self._cancel_on_shutdown, bool))
         except ValueError as error:
             text = perform_substitutions(context, self._period) if isinstance(self._period, list) else self._period
-            message = phrase("the period '{text}' of a timer is no number", text=text)
+            message = phrase("the period '{text}' of a timer is not a number", text=text)
             raise error_at(self.place, "LAUNCH127", message, ros_error=error) from error
         if not self._canceled:
             event = events.TimerEvent(timer_action=self, context=context)
@@ -108,12 +108,12 @@ class TimerAction(Action):
             )
 
     def _schedule(self, context: LaunchContext) -> Schedule | None:
-        """What counts the time; None for the launch's own loop."""
+        """Return the scheduler; None for the launch's event loop."""
         return None
 
 
 def _number(period: Any, timer: TimerAction) -> Any:
-    """The period as a number, where it is written as one."""
+    """Return the period as a number, if it is a literal."""
     if isinstance(period, (bool, int)):
         return float(period)
     if isinstance(period, (list, tuple)) and all(isinstance(part, str) for part in period):
@@ -123,5 +123,5 @@ def _number(period: Any, timer: TimerAction) -> Any:
     try:
         return float(period)
     except ValueError as error:
-        message = phrase("the period '{period}' of a timer is no number", period=period)
+        message = phrase("the period '{period}' of a timer is not a number", period=period)
         raise error_at(timer.place, "LAUNCH127", message, ros_error=error) from error

@@ -1,4 +1,4 @@
-"""Command lines of XML and YAML launch files, divided into words with substitutions in them."""
+"""Command lines of XML and YAML launch files, split into words with substitutions."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ _ESCAPED_IN_DOUBLE_QUOTES = '"\\'
 
 
 def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
-    """The words of a command, each a list of substitutions to be joined.
+    """Return the words of a command, each a list of substitutions to join.
 
-    Blanks, quotes and backslashes count as in a shell where they are written, not where a substitution gives them.
-    A quote may be opened before a substitution and closed after it.
+    Literal spaces, quotes and backslashes have their meaning in a shell; those from a substitution do not. A quote may
+    be opened before a substitution and closed after it.
 
     Raises:
         ValueError: LAUNCH118, a quote is never closed.
@@ -31,7 +31,7 @@ def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
     if divided.quote:
         ros_error = ValueError("No closing quotation")
         message = phrase(
-            "command '{text}' cannot be divided into words: the quote {quote} is never closed",
+            "command '{text}' cannot be split into words: the quote {quote} is not closed",
             text=text,
             quote=divided.quote,
         )
@@ -41,7 +41,7 @@ def parse_command_line(text: str, parser: Any) -> list[list[Substitution]]:
 
 
 class _Words:
-    """Words that grow by a character or a substitution at a time."""
+    """Words that are built from characters and substitutions."""
 
     def __init__(self) -> None:
         self.words: list[list[Substitution]] = []
@@ -57,7 +57,7 @@ class _Words:
         self._began = True
 
     def take(self, text: str) -> None:
-        """Add what is written."""
+        """Add literal text."""
         characters = iter(text)
         for character in characters:
             if self.quote == character:
@@ -76,7 +76,7 @@ class _Words:
         self._end_text()
 
     def end_word(self) -> None:
-        """Begin another word, if there is one."""
+        """End the current word, if there is one."""
         self._end_text()
         if self._began:
             self.words.append(self._word or [TextSubstitution(text="")])

@@ -1,4 +1,4 @@
-"""The interfaces of functions that read tags: the entity (an XML tag or YAML mapping), and the parser of its file."""
+"""The interfaces for functions that read tags: the entity (an XML tag or YAML mapping) and its file's parser."""
 
 from __future__ import annotations
 
@@ -30,29 +30,29 @@ class Entity:
 
     @property
     def place(self) -> Place | None:
-        """Where it stands; None for one that was made by a program."""
+        """The location; None for an entity that a program created."""
         return None
 
     def assert_entity_completely_parsed(self) -> None:
-        """Check that all that is written in it has been read.
+        """Check that all of its parts have been read.
 
         Raises:
-            ValueError: LAUNCH116, attributes or entities inside that nobody asked for.
+            ValueError: LAUNCH116, unread attributes or child entities.
         """
         raise NotImplementedError
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
-        """An attribute, or the entities inside of one name.
+        """Return an attribute, or the child entities with a name.
 
         Args:
             name: the attribute.
-            data_type: the type of its value (see `linkwright.launch.model.markup.values`); None goes by YAML, and a
-                list of `Entity` asks for the entities of that name.
-            optional: whether None is given where it is not there.
-            can_be_str: whether text is given where it cannot be of the type: a substitution may be in it.
+            data_type: the type of its value (see `linkwright.launch.model.markup.values`); None uses YAML's rules, and
+                a list of `Entity` requests the child entities with that name.
+            optional: whether to return None if it is missing.
+            can_be_str: whether to return a string that is not of the type, which may contain a substitution.
 
         Raises:
-            AttributeError: LAUNCH117, it is not there and not optional.
+            AttributeError: LAUNCH117, it is missing and not optional.
             TypeError: LAUNCH118, it has another type.
             ValueError: LAUNCH118, it has another type.
         """
@@ -60,7 +60,7 @@ class Entity:
 
 
 def is_list_of_entities(data_type: Any) -> bool:
-    """Whether a type asks for entities: ``List[Entity]`` or ``list[Entity]``, also of a class derived from it."""
+    """Return whether a type requests entities: ``List[Entity]`` or ``list[Entity]``, also of a subclass."""
     arguments = typing.get_args(data_type)
     return (
         typing.get_origin(data_type) is list
@@ -71,26 +71,26 @@ def is_list_of_entities(data_type: Any) -> bool:
 
 
 class PlacedText(str):
-    """A text of a launch file that knows where it stands."""
+    """A string of a launch file that records its location."""
 
     __slots__ = ("place",)
 
     place: Place | None
 
     def __new__(cls, text: str, place: Place | None) -> PlacedText:  # noqa: PYI034 - Self needs Python 3.11
-        """The text, with its place."""
+        """Create the string with its place."""
         made = super().__new__(cls, text)
         made.place = place
         return made
 
 
 def place_of(text: object) -> Place | None:
-    """Where a text stands, if it knows."""
+    """Return the location of a string, if it has one."""
     return text.place if isinstance(text, PlacedText) else None
 
 
 class Parser(Protocol):
-    """Makes actions and substitutions out of entities; `linkwright.launch.frontend.parser.Parser` is one."""
+    """Creates actions and substitutions from entities; `linkwright.launch.frontend.parser.Parser` is one."""
 
     def parse_action(self, entity: Entity) -> LaunchDescriptionEntity:
         """The action of an entity."""
@@ -106,7 +106,7 @@ class Parser(Protocol):
 
 
 def parse_texts(entity: Entity, parser: Parser, **attributes: str) -> dict[str, list[Substitution]]:
-    """The keyword arguments that are texts with substitutions in them, those whose attribute the tag has.
+    """Return the keyword arguments with substitutions for the attributes that the tag has.
 
     Args:
         entity: the tag.

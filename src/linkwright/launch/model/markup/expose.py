@@ -1,6 +1,6 @@
-"""Which function makes an action from a tag, and a substitution from ``$(name ...)``.
+"""The functions that create actions from tags and substitutions from ``$(name ...)``.
 
-Packages add their own with the decorators, as in ``launch.frontend``.
+Packages register their own with the decorators, as in ``launch.frontend``.
 """
 
 from __future__ import annotations
@@ -16,27 +16,28 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 action_parse_methods: dict[str, Any] = {}
-"""Tag -> function of entity and parser that returns what makes the action, and its keyword arguments."""
+"""Tag -> function of entity and parser that returns the action's class or factory, and its keyword arguments."""
 
 substitution_parse_methods: dict[str, Any] = {}
-"""Name -> function of a list of arguments that returns what makes the substitution, and its keyword arguments."""
+"""Name -> function of a list of arguments that returns the substitution's class or factory, and its keyword
+arguments."""
 
 
 def expose_action(name: str) -> Callable[[T], T]:
-    """Decorates a class with a class method ``parse(entity, parser)``, or such a function: it reads the tag `name`."""
+    """Register a class with a class method ``parse(entity, parser)``, or such a function, for the tag `name`."""
     return expose_impl(name, action_parse_methods, "action")
 
 
 def expose_substitution(name: str) -> Callable[[T], T]:
-    """Decorates a class with a class method ``parse(data)``, or such a function: it reads ``$(name ...)``."""
+    """Register a class with a class method ``parse(data)``, or such a function, for ``$(name ...)``."""
     return expose_impl(name, substitution_parse_methods, "substitution")
 
 
 def expose_impl(name: str, parse_methods_map: dict[str, Any], exposed_type: str) -> Callable[[T], T]:
-    """The decorator that enters a class or function into a table.
+    """Return the decorator that adds a class or function to a table.
 
     Raises:
-        RuntimeError: by the decorator: what is decorated cannot read, or the name is taken.
+        RuntimeError: by the decorator: the object has no parse method, or the name is taken.
     """
 
     def decorate(exposed: T) -> T:
@@ -51,7 +52,7 @@ def expose_impl(name: str, parse_methods_map: dict[str, Any], exposed_type: str)
 
 
 def _is_same(one: Any, other: Any) -> bool:
-    """Whether two functions are one and the same, or one is the other after its module was imported anew."""
+    """Return whether two functions are the same, or the same after a second import of their module."""
     return bool(one == other) or (
         (one.__module__, one.__qualname__) == (other.__module__, other.__qualname__)
         and one.__code__.co_filename == other.__code__.co_filename
@@ -72,7 +73,7 @@ def _parse_method(exposed: Any, name: str, exposed_type: str) -> Any:
 
 
 def _reading_all(method: Any) -> Any:
-    """The function, followed by a check that it has read all that is written in the tag."""
+    """Return a function that calls a parse function and then checks that it has read the entire tag."""
 
     @functools.wraps(method)
     def parse(entity: Entity, parser: Parser) -> Any:

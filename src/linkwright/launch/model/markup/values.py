@@ -1,7 +1,7 @@
-"""Values of a type, out of text and substitutions (``launch.utilities.type_utils``).
+"""Typed values from text and substitutions (``launch.utilities.type_utils``).
 
 The types are ``int``, ``float``, ``bool``, ``str`` and uniform lists of these, written ``List[int]`` or ``list[int]``;
-None stands for "whatever YAML makes of it".
+None means the type that YAML's rules give.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ _TRUE_BY_NUMBER = {"1": "true", "0": "false"}
 
 
 def is_typing_list(data_type: Any) -> bool:
-    """Whether a type is ``List``, ``List[...]`` or ``list[...]``; ``list`` alone is not."""
-    return data_type is typing.List or typing.get_origin(data_type) is list  # noqa: UP006 - what users may pass
+    """Return whether a type is ``List``, ``List[...]`` or ``list[...]``; ``list`` alone is not."""
+    return data_type is typing.List or typing.get_origin(data_type) is list  # noqa: UP006 - users may pass it
 
 
 def is_valid_scalar_type(data_type: Any) -> bool:
-    """Whether a type is one of the four scalar ones."""
+    """Return whether a type is one of the four scalar types."""
     return data_type in ScalarTypesTuple
 
 
 def extract_type(data_type: Any) -> tuple[Any, bool]:
-    """The scalar type, and whether a list of it is meant.
+    """Return the scalar type, and whether the type is a list of it.
 
     Raises:
         ValueError: for any other type.
@@ -65,7 +65,7 @@ def extract_type(data_type: Any) -> tuple[Any, bool]:
 
 
 def is_instance_of_valid_type(value: Any, can_be_str: bool = False) -> bool:
-    """Whether a value has one of the types; with `can_be_str`, lists may have texts among other items."""
+    """Return whether a value has one of the types; with `can_be_str`, lists may contain strings among other items."""
     if not isinstance(value, list):
         return isinstance(value, ScalarTypesTuple)
     kinds = {_scalar_type(item) for item in value}
@@ -79,7 +79,7 @@ def _scalar_type(value: Any) -> type | None:
 
 
 def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) -> bool:
-    """Whether a value has a type; None accepts all of them, `can_be_str` also texts in its place.
+    """Return whether a value has a type; None accepts all types, `can_be_str` also strings.
 
     Raises:
         ValueError: the type is none of those allowed.
@@ -94,16 +94,16 @@ def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) 
 
 
 def coerce_to_type(value: str, data_type: Any = None, can_be_str: bool = False) -> Any:
-    """A text as a value of a type.
+    """Convert a string to a value of a type.
 
     Args:
-        value: the text.
-        data_type: the type; None goes by YAML.
-        can_be_str: whether a text that is not of the type is given as it is (a substitution may be in it).
+        value: the string.
+        data_type: the type; None uses YAML's rules.
+        can_be_str: whether to return a string that is not of the type unchanged (it may contain a substitution).
 
     Raises:
-        TypeError: the value is no text.
-        ValueError: the text is not of the type, or the type is none of those allowed.
+        TypeError: the value is not a string.
+        ValueError: the string is not of the type, or the type is not allowed.
     """
     if not isinstance(value, str):
         raise TypeError(f"expected 'value' to be of type '{str}', but got {value!r} of type {type(value)}")
@@ -155,7 +155,7 @@ def _by_yaml(value: str, problem: str, can_be_str: bool) -> Any:
 
 
 def coerce_list(value: list[str], data_type: Any = None, can_be_str: bool = False) -> list[Any]:
-    """A list of texts as a uniform list of values of a scalar type; see `coerce_to_type`."""
+    """Convert a list of strings to a uniform list of a scalar type; see `coerce_to_type`."""
     if not isinstance(value, list):
         raise TypeError(f"expected 'value' to be of type '{list}', but got {value!r} of type {type(value)}")
     made = [coerce_to_type(item, data_type, can_be_str=can_be_str) for item in value]
@@ -165,10 +165,11 @@ def coerce_list(value: list[str], data_type: Any = None, can_be_str: bool = Fals
 
 
 def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: bool = False) -> Any:
-    """A text or a list of texts as a value of a type; see `coerce_to_type`.
+    """Convert a string or a list of strings to a value of a type; see `coerce_to_type`.
 
     Raises:
-        TypeError: a list is given and the type is no list; or it is neither a text nor a list of texts.
+        TypeError: a list is given for a type that is not a list, or the value is neither a string nor a list of
+            strings.
         ValueError: it is not of the type.
     """
     if not isinstance(value, list):
@@ -184,7 +185,7 @@ def get_typed_value(value: str | list[str], data_type: Any = None, can_be_str: b
 
 
 def is_substitution(value: Any) -> bool:
-    """Whether something is a substitution, or a list of substitutions and texts with a substitution in it."""
+    """Return whether a value is a substitution, or a list of strings with at least one substitution."""
     if isinstance(value, Substitution):
         return True
     if isinstance(value, str) or not isinstance(value, Iterable):
@@ -196,27 +197,27 @@ def is_substitution(value: Any) -> bool:
 
 
 def is_normalized_substitution(value: Any) -> bool:
-    """Whether something is a list of substitutions and nothing else."""
+    """Return whether a value is a list of only substitutions."""
     return isinstance(value, list) and bool(value) and all(isinstance(item, Substitution) for item in value)
 
 
 def read_boolean(value: Any) -> Any:
-    """The boolean that a text stands for; what is no text, such as substitutions, as it is.
+    """Convert a string to a boolean; other values, such as substitutions, stay unchanged.
 
     Raises:
-        ValueError: the text is no boolean.
+        ValueError: the string is not a boolean.
     """
     return coerce_to_type(value, bool) if isinstance(value, str) else value
 
 
 def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
-    """A value, or what will be one, in one form: substitutions as lists of them, lists item by item.
+    """Normalize a value: substitutions become lists of substitutions, lists are normalized item by item.
 
-    A list that can be read as one substitution is: ``['a', TextSubstitution(text='b')]`` stands for ``'ab'``.
+    A list that can be one substitution is: ``['a', TextSubstitution(text='b')]`` means ``'ab'``.
 
     Raises:
         TypeError: it can never be of the type.
-        ValueError: the type is none of those allowed.
+        ValueError: the type is not allowed.
     """
     if is_substitution(value):
         return normalize_to_list_of_substitutions(value)
@@ -237,11 +238,11 @@ def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
 
 
 def perform_typed_substitution(context: Any, value: Any, data_type: Any = None) -> Any:
-    """The value of what `normalize_typed_substitution` gave.
+    """Evaluate a result of `normalize_typed_substitution`.
 
     Raises:
         TypeError: a plain value is of another type.
-        ValueError: what substitutions gave is not of the type.
+        ValueError: the evaluated text is not of the type.
     """
     if is_normalized_substitution(value):
         return coerce_to_type(perform_substitutions(context, value), data_type)
@@ -267,7 +268,7 @@ _TYPE_NAMES: dict[str, Any] = {
 
 
 def get_data_type_from_identifier(type_identifier: str) -> Any:
-    """The type of a name such as ``int``, ``list[int]`` or ``list_of_int``.
+    """Return the type of a name such as ``int``, ``list[int]`` or ``list_of_int``.
 
     Raises:
         ValueError: there is no such type.

@@ -1,4 +1,4 @@
-"""The substitution that runs a command. xacro is expanded inside this process, so that positions are kept."""
+"""The substitution that runs a command; xacro is expanded in this process, to keep locations."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
 
     Args:
         command: program and arguments, as in a shell.
-        on_stderr: what it means that the command writes to stderr: ``fail`` (the default), ``warn``, ``ignore`` or
-            ``capture`` (the text is given after that of stdout).
+        on_stderr: the reaction to output on stderr: ``fail`` (the default), ``warn``, ``ignore`` or ``capture`` (append
+            it to stdout's).
     """
 
     command: Texts = Texts()
@@ -42,15 +42,15 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:
-        """A ValueError, as ROS has it here."""
+        """Return a ValueError, as ROS does."""
         return ValueError(*super().wrong_count(expected, given).args)
 
     def perform(self, context: LaunchContext) -> str:
         """The output.
 
         Raises:
-            DescriptionError: if it is xacro, and the model is wrong.
-            LinkwrightError: LAUNCH128 or LAUNCH129, if the command cannot be run or fails.
+            DescriptionError: the command is xacro, and the model has errors.
+            LinkwrightError: LAUNCH128 or LAUNCH129, the command cannot be run or fails.
         """
         text = perform_substitutions(context, self.command)
         try:
@@ -88,7 +88,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             )
             raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error)
         try:
-            done = subprocess.run(  # noqa: S603 - running what the launch file says is the task
+            done = subprocess.run(  # noqa: S603 - the launch file's command
                 words, check=False, capture_output=True, text=True, errors="replace", env=dict(context.environment)
             )
         except OSError as error:
@@ -111,7 +111,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             raise error_at(self.place, "LAUNCH129", message, ros_error=ros_error)
         if done.stderr and rule == "fail":
             message = _with_output(phrase("command '{text}' wrote to stderr", text=text), done.stderr)
-            hint = phrase("if that is no error, give Command the argument on_stderr='warn'")
+            hint = phrase("if that is not an error, pass on_stderr='warn' to Command")
             ros_error = SubstitutionFailure(
                 f"executed command showed stderr output. Command: {text}\nCaptured stderr output:\n{done.stderr}"
             )
@@ -128,7 +128,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
 
 
 def _words_of_xacro(words: list[str]) -> list[str] | None:
-    """The arguments of ``xacro`` if the command runs it, else None."""
+    """Return the arguments of ``xacro`` if the command runs it, else None."""
     if words[:3] == ["ros2", "run", "xacro"] and words[3:4] == ["xacro"]:
         return words[4:]
     if Path(words[0]).name == "xacro":

@@ -31,7 +31,7 @@ _NOT_IN_NAMES = str.maketrans(".-:", "___")
 
 
 def default_texts(given: Any) -> list[Substitution]:
-    """A default, whose parts may be numbers and truth values too."""
+    """Return a default, whose parts may also be numbers and booleans."""
     parts = given if isinstance(given, (list, tuple)) else [given]
     return normalize_to_list_of_substitutions([part if isinstance(part, Substitution) else str(part) for part in parts])
 
@@ -41,7 +41,7 @@ class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({
 
     Args:
         variable_name: its name.
-        default: the text where it is not set; None makes that an error.
+        default: the text if it is not set; None makes that an error.
     """
 
     variable_name: Texts = Texts()
@@ -51,7 +51,7 @@ class LaunchConfiguration(DeclaredSubstitution, tag="var", shown="LaunchConfig({
         """The value.
 
         Raises:
-            SubstitutionFailure: LAUNCH121, if it is not set and has no default.
+            SubstitutionFailure: LAUNCH121, it is not set and has no default.
         """
         name = perform_substitutions(context, self.variable_name)
         known = context.launch_configurations
@@ -77,7 +77,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
 
     Args:
         name: its name.
-        default_value: the text where it is not set; None makes that an error.
+        default_value: the text if it is not set; None makes that an error.
     """
 
     name: Texts = Texts()
@@ -87,7 +87,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
         """The value.
 
         Raises:
-            SubstitutionFailure: LAUNCH122, if it is not set and has no default.
+            SubstitutionFailure: LAUNCH122, it is not set and has no default.
         """
         name = perform_substitutions(context, self.name)
         if name in context.environment:
@@ -120,7 +120,7 @@ class LocalSubstitution(Substitution):
         """The value.
 
         Raises:
-            SubstitutionFailure: LAUNCH123, if there is no such local now.
+            SubstitutionFailure: LAUNCH123, there is no such local now.
         """
         known = context.get_locals_as_dict()
         first, *rest = self.expression.split(".")
@@ -156,7 +156,7 @@ class ThisLaunchFile(DeclaredSubstitution, tag="filename"):
         if path is None:
             ros_error = SubstitutionFailure(f"{type(self).__name__} used outside of a launch file (in a script)")
             raise error_at(
-                self.place, "LAUNCH123", phrase("the launch description comes from no file"), ros_error=ros_error
+                self.place, "LAUNCH123", phrase("the launch description does not come from a file"), ros_error=ros_error
             )
         return str(path)
 

@@ -34,10 +34,10 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:
-        """The class and its arguments, for an expression and perhaps modules with commas between them.
+        """Return the class and its arguments, for an expression and optional modules, separated by commas.
 
         Raises:
-            TypeError: there are none, or more.
+            TypeError: the number of arguments is wrong.
         """
         if len(data) not in (1, 2):
             raise TypeError("eval substitution expects 1 or 2 arguments")
@@ -57,10 +57,10 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
     def perform(self, context: LaunchContext) -> str:
         """The value.
 
-        The expression runs with all the rights of the launch file it is written in: that is a program anyway.
+        The expression runs with all the rights of its launch file, which is a program anyway.
 
         Raises:
-            Exception: LAUNCH126, with the class and text of what Python raises.
+            Exception: LAUNCH126, with the class and text of Python's exception.
         """
         expression = perform_substitutions(context, self.expression)
         names: dict[str, Any] = {}
@@ -84,6 +84,6 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
             hint = None
             if isinstance(error, NameError):
                 hint = phrase(
-                    "put quotes around the parts that are text: [\"'\", LaunchConfiguration('x'), \"' == 'y'\"]"
+                    "put quotes around the parts that are strings: [\"'\", LaunchConfiguration('x'), \"' == 'y'\"]"
                 )
             raise error_at(self.place, "LAUNCH126", message, hint, ros_error=error) from error

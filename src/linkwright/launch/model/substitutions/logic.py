@@ -1,4 +1,4 @@
-"""Substitutions that compare and combine truth values."""
+"""Substitutions that compare and combine booleans."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _WORDS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def _operand(value: Any) -> list[Substitution]:
-    """A side of a comparison, which may be a number, a truth value or None too."""
+    """Return an operand of a comparison, which may also be a number, a boolean or None."""
     if value is None:
         value = ""
     if isinstance(value, (bool, int, float)):
@@ -38,7 +38,7 @@ def _operand(value: Any) -> list[Substitution]:
 
 
 class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
-    """``true`` if two texts are equal; two numbers, or two truth values, are compared as such."""
+    """``true`` if two texts are equal; two numbers, or two booleans, are compared as such."""
 
     left: AnyTexts = AnyTexts(read=_operand)
     right: AnyTexts = AnyTexts(read=_operand)
@@ -68,7 +68,7 @@ class NotEqualsSubstitution(EqualsSubstitution, tag="not-equals"):
 
 
 class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({value})"):
-    """The opposite of a truth value."""
+    """The negation of a boolean."""
 
     value: Texts = Texts()
 
@@ -149,12 +149,12 @@ class AllSubstitution(_Several):
 class IfElseSubstitution(
     DeclaredSubstitution, tag="if", shown="IfElseSubstitution({condition}, {if_value}, {else_value})"
 ):
-    """One text or another, by a truth value.
+    """One of two texts, selected by a boolean.
 
     Args:
-        condition: the truth value.
-        if_value: the text where it is true.
-        else_value: the text where it is false.
+        condition: the boolean.
+        if_value: the text if it is true.
+        else_value: the text if it is false.
     """
 
     condition: Texts = Texts()
@@ -178,7 +178,7 @@ class IfElseSubstitution(
         self.condition, self.if_value, self.else_value = condition, if_value, else_value
 
     def perform(self, context: LaunchContext) -> str:
-        """The text chosen."""
+        """Return the selected text."""
         chosen = self.if_value if _boolean(self, context, self.condition) else self.else_value
         return perform_substitutions(context, chosen)
 

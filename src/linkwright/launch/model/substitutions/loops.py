@@ -1,4 +1,4 @@
-"""Substitutions that give the values of loops, see `linkwright.launch.model.actions.loops`."""
+"""Substitutions for the values of loops, see `linkwright.launch.model.actions.loops`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
     Args:
         name: the value's name.
-        default_value: the text where the iteration has no such value; None makes that an error.
+        default_value: the text if the iteration has no such value; None makes that an error.
     """
 
     name: Texts = Texts()
@@ -38,7 +38,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:  # noqa: ARG003 - the interface
-        """A ValueError, as ROS has it here."""
+        """Return a ValueError, as ROS does."""
         return ValueError(f"{cls.__name__} substitution expects {expected}")
 
     @staticmethod
@@ -50,7 +50,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
         """The value.
 
         Raises:
-            RuntimeError: LAUNCH123, if there is no such value and no default.
+            RuntimeError: LAUNCH123, there is no such value and no default.
         """
         name = perform_substitutions(context, self.name)
         values = context.get_locals_as_dict()
@@ -61,7 +61,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
         known = [value.removeprefix(_PREFIX) for value in values if value.startswith(_PREFIX)]
         hint = did_you_mean(name, known)
         if hint is None:
-            hint = phrase("it has {names}", names=quoted_names(known)) if known else phrase("use it inside of a loop")
+            hint = phrase("it has {names}", names=quoted_names(known)) if known else phrase("use it inside a loop")
         ros_error = RuntimeError(f"No value available for {type(self).__name__} '{name}' and no default value provided")
         raise error_at(
             self.place, "LAUNCH123", phrase("the loop has no value '{name}'", name=name), hint, ros_error=ros_error

@@ -1,4 +1,4 @@
-"""Substitutions that give paths, and the contents of files."""
+"""Substitutions for paths and for the contents of files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from linkwright.launch.model.substitution import (
 )
 
 IN_PROCESS_PROGRAMS = frozenset({"xacro"})
-"""Programs that `Command` runs inside this process, so that they need not be installed."""
+"""Programs that `Command` runs in this process and that need not be installed."""
 
 _LAUNCH_STEMS = ("", ".launch", "_launch")
 _LAUNCH_SUFFIXES = (".py", ".xml", ".yaml")
@@ -77,8 +77,8 @@ class PathJoinSubstitution(DeclaredSubstitution, tag="path-join", shown="PathJoi
 class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({name})"):
     """The path of a program on ``PATH``.
 
-    A program that `Command` runs inside this process, or that our simulation stands in for, is found even where it
-    is not installed: then its bare name is given.
+    A program that `Command` runs in this process, or that our simulation replaces, is found even if it is not
+    installed; the result is its bare name then.
     """
 
     name: Texts = Texts(kw_only=True)
@@ -87,7 +87,7 @@ class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({nam
         """The path.
 
         Raises:
-            SubstitutionFailure: LAUNCH124, if there is no such program.
+            SubstitutionFailure: LAUNCH124, there is no such program.
         """
         name = perform_substitutions(context, self.name)
         path = shutil.which(name, path=context.environment.get("PATH"))
@@ -112,7 +112,7 @@ class FileContent(DeclaredSubstitution, tag="file-content"):
         """The text.
 
         Raises:
-            SubstitutionFailure: LAUNCH125, if the file cannot be read.
+            SubstitutionFailure: LAUNCH125, the file cannot be read.
         """
         path = perform_substitutions(context, self.path)
         try:
@@ -129,10 +129,10 @@ class FileContent(DeclaredSubstitution, tag="file-content"):
 
 
 class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLaunchfile(name={name}, path={path})"):
-    """The path of the launch file of a name in a folder, whatever its kind.
+    """The path of the launch file with a name in a folder, of any kind.
 
     Args:
-        name: the name of the file, or its beginning, without ``.launch``, ``_launch`` and the ending.
+        name: the name of the file, or its stem without ``.launch``, ``_launch`` and the extension.
         path: the folder.
     """
 
@@ -143,12 +143,12 @@ class FindLaunchfile(DeclaredSubstitution, tag="find-launchfile", shown="FindLau
         """The path.
 
         Raises:
-            SubstitutionFailure: LAUNCH125, if there is no such file, or more than one.
+            SubstitutionFailure: LAUNCH125, there is no such file, or more than one.
         """
         name = perform_substitutions(context, self.name)
         folder = Path(perform_substitutions(context, self.path))
         if not folder.is_dir():
-            raise self._failure(phrase("'{folder}' is no folder", folder=folder))
+            raise self._failure(phrase("'{folder}' is not a folder", folder=folder))
         files = sorted(file for file in folder.iterdir() if file.is_file() and file.suffix in _LAUNCH_SUFFIXES)
         found = [
             file for file in files if file.name == name or file.stem in [name + ending for ending in _LAUNCH_STEMS]

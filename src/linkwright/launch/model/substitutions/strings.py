@@ -1,4 +1,4 @@
-"""Substitutions that work on texts."""
+"""Substitutions on strings."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
 
     Args:
         substitutions: the texts; each may be made of several.
-        delimiter: what stands between.
+        delimiter: the delimiter.
     """
 
     substitutions: TextLists = TextLists()
@@ -32,7 +32,7 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
         """The class and its arguments, for a delimiter and texts.
 
         Raises:
-            ValueError: there are not enough.
+            ValueError: there are not enough arguments.
         """
         if len(data) < 2:
             raise ValueError("string-join substitution expects a delimiter and at least 1 more argument")
@@ -51,7 +51,7 @@ class _OfOneText(DeclaredSubstitution):
 
 
 class StringStripSubstitution(_OfOneText, tag="string-strip"):
-    """A text without blanks at its ends."""
+    """A text without leading and trailing whitespace."""
 
     def perform(self, context: LaunchContext) -> str:
         """The text."""
