@@ -31,9 +31,9 @@ def test_the_models_are_listed(capsys):
     assert main(["models", "list"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == ["vosk-en", "vosk-zh", "efficientdet-lite0", "efficientdet-lite2"]
-    assert all("Apache-2.0  not fetched: " in line for line in lines)
+    assert all("Apache-2.0  not downloaded: " in line for line in lines)
     assert main(["--lang", "zh", "models", "list"]) == 0
-    assert "未获取: 中文语音命令" in capsys.readouterr().out
+    assert "未下载: 中文语音命令" in capsys.readouterr().out
     assert main(["models", "list", "--json"]) == 0
     first = json.loads(capsys.readouterr().out)[0]
     assert (first["name"], first["path"]) == ("vosk-en", None)

@@ -128,7 +128,7 @@ def test_what_is_not_there_ends_the_build(tmp_path: Path) -> None:
     package(tmp_path, "arm", "install(DIRECTORY meshes DESTINATION share/arm)")
     result = in_shell(tmp_path, "colcon build")
     assert result.returncode == 1
-    assert "'arm' installs 'meshes', which is not there" in result.stderr
+    assert "'arm' installs 'meshes', which does not exist" in result.stderr
     assert "Traceback" not in result.stderr
 
 

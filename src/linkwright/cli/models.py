@@ -47,7 +47,7 @@ def run_list(arguments: argparse.Namespace) -> int:
         return FINE
     width = max(map(len, model_table()))
     for entry in model_table().values():
-        state = phrase("fetched") if is_installed(entry) else phrase("not fetched")
+        state = phrase("downloaded") if is_installed(entry) else phrase("not downloaded")
         size = f"{entry.megabytes} MB"
         print(
             f"{entry.name:{width}}  {entry.kind:6}  {size:>6}  {entry.licence}  {localized(state)}: "

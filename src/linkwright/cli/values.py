@@ -137,7 +137,7 @@ def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Ca
     """Set the fields of a message.
 
     ``header: auto`` and ``stamp: now`` (of a std_msgs/Header and a builtin_interfaces/Time) insert the time of
-        publishing, as in ``ros2 topic pub``.
+    publishing, as in ``ros2 topic pub``.
 
     Returns:
         Functions that set those stamps, to call with a Time message.

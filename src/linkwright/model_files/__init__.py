@@ -1,4 +1,4 @@
-"""Models that others trained, fetched when a user asks for them: which there are, where they lie, their sums."""
+"""Trained models of others, downloaded on request: the table, their locations, their checksums."""
 
 from linkwright.model_files.installed import checked, find_model, is_installed, models_folder, remove
 from linkwright.model_files.installing import install

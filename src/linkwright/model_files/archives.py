@@ -1,4 +1,4 @@
-"""Taking a model out of an archive: the files that the table names, and nothing else that may be in it."""
+"""Unpack a model from an archive: only the files that the table names."""
 
 from __future__ import annotations
 
@@ -14,22 +14,23 @@ from linkwright.model_files.installed import by_hand
 from linkwright.model_files.table import ModelEntry
 
 _MOST_BYTES = 1 << 29
-"""Of a model that is unpacked. Those of the table have a tenth of it."""
+"""The maximum size of an unpacked model; those in the table have a tenth of it."""
 
 _AT_ONCE = 1 << 20
 
 
 def unpack(entry: ModelEntry, archive: Path, target: Path, origin: str | None = None) -> None:
-    """Write the files of a model that a ZIP archive has; no path of the archive is ever used for writing.
+    """Extract the files of a model from a ZIP archive; paths in the archive are never used for writing.
 
     Args:
         entry: the model.
         archive: the file.
-        target: the folder to write them to; it is made.
-        origin: where the file was fetched from, for who never saw its path.
+        target: the folder to create and write them to.
+        origin: the source of the download, for messages to users that do not know its path.
 
     Raises:
-        LinkwrightError: MODEL105 it is no such archive, lacks a file or holds too much; MODEL106 it cannot be written.
+        LinkwrightError: MODEL105 it is not such an archive, lacks a file or is too large; MODEL106 it cannot be
+            written.
     """
     shown = origin or str(archive)
     try:
@@ -55,13 +56,13 @@ def _blocks(opened: zipfile.ZipFile, name: str) -> Generator[bytes, None, None]:
 
 
 def _write(path: Path, blocks: Iterator[bytes], most: int, entry: ModelEntry, shown: str) -> int:
-    """Write a file; how long it is."""
+    """Write a file and return its size."""
     size = 0
     _append(path, b"")
     for block in blocks:
         size += len(block)
         if size > most:
-            raise _unusable(entry, shown, phrase("what is in it is too large"))
+            raise _unusable(entry, shown, phrase("its contents are too large"))
         _append(path, block)
     return size
 
@@ -77,6 +78,6 @@ def _append(path: Path, block: bytes) -> None:
 
 def _unusable(entry: ModelEntry, shown: str, problem: Phrase) -> LinkwrightError:
     message = phrase(
-        "'{path}' is no archive of the model '{name}': {problem}", path=shown, name=entry.name, problem=problem
+        "'{path}' is not an archive of the model '{name}': {problem}", path=shown, name=entry.name, problem=problem
     )
     return LinkwrightError(Diagnostic("MODEL105", message, hint=by_hand(entry)))

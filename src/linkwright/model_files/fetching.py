@@ -1,4 +1,4 @@
-"""Fetching a file over HTTP so that what broke goes on where it was: what came so far lies in a ``.part`` file."""
+"""Resumable downloads over HTTP: the received part is stored in a ``.part`` file."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from linkwright.model_files.installed import by_hand
 from linkwright.model_files.table import ModelEntry
 
 Progress = Callable[[int, int | None], None]
-"""Takes how many bytes are there, and how many there will be, where the server says so."""
+"""Called with the number of received bytes, and the total if the server reports it."""
 
 _AT_ONCE = 1 << 16
 _SILENCE_SECONDS = 60.0
 _VAIN_TRIES = 3
-"""So often in a row a connection may break without a byte more before we give up."""
+"""The maximum number of consecutive broken connections without a new byte."""
 
 _PARTIAL, _NOT_SATISFIABLE = 206, 416
 
 
 def fetch(entry: ModelEntry, address: str, part: Path, progress: Progress) -> None:
-    """Fetch a file; whatever of it is there already is not fetched again, if the server can begin in its middle.
+    """Download a file; an existing part is resumed if the server supports it.
 
-    The system's settings for proxies hold (``https_proxy``).
+    The system's proxy settings apply (``https_proxy``).
 
     Args:
-        entry: the model that it is, for what is said and how much may come.
-        address: http or https.
-        part: where it is written; it stays when fetching breaks, and the next call goes on with it.
-        progress: is told how far it has come.
+        entry: the model, for messages and the size limit.
+        address: an http or https URL.
+        part: the file to write; it stays after an error, and the next call resumes it.
+        progress: receives the progress.
 
     Raises:
-        LinkwrightError: MODEL103 it cannot be fetched, MODEL106 it cannot be written.
+        LinkwrightError: MODEL103 it cannot be downloaded, MODEL106 it cannot be written.
     """
     vain = 0
     while True:
@@ -46,16 +46,18 @@ def fetch(entry: ModelEntry, address: str, part: Path, progress: Progress) -> No
         try:
             if _fetch_rest(entry, address, part, progress):
                 return
-            problem = phrase("the connection broke off")
+            problem = phrase("the connection was lost")
         except urllib.error.HTTPError as error:
             with error:
                 if error.code != _NOT_SATISFIABLE or not before:
-                    answer = phrase("the server answers {status} {reason}", status=error.code, reason=error.reason)
+                    answer = phrase(
+                        "the server responds with {status} {reason}", status=error.code, reason=error.reason
+                    )
                     raise _failed(entry, address, answer) from None
                 if error.headers.get("Content-Range") == f"bytes */{before}":
-                    return  # it was whole, and only not put in its place
+                    return  # it was complete, but not yet installed
             part.unlink()
-            problem = phrase("what was there was of another file")
+            problem = phrase("the partial download belongs to another file")
         except (urllib.error.URLError, OSError, http.client.HTTPException, ValueError) as error:
             if not isinstance(error, _BrokenError) and _size(part) == before:
                 raise _failed(entry, address, foreign(_reason(error))) from None
@@ -66,11 +68,11 @@ def fetch(entry: ModelEntry, address: str, part: Path, progress: Progress) -> No
 
 
 class _BrokenError(OSError):
-    """A connection that was there broke."""
+    """An established connection broke."""
 
 
 def _fetch_rest(entry: ModelEntry, address: str, part: Path, progress: Progress) -> bool:
-    """One try from where the part ends; whether it is whole then."""
+    """Try once from the end of the part, and return whether the file is complete."""
     done = _size(part)
     request = urllib.request.Request(address, headers={"User-Agent": f"linkwright/{__version__}"})  # noqa: S310 - http and https only, see `installing`
     if done:
@@ -92,7 +94,7 @@ def _fetch_rest(entry: ModelEntry, address: str, part: Path, progress: Progress)
                     file.write(block)
                     file.flush()
                 except OSError as error:
-                    with suppress(OSError):  # from Python 3.14 on it tries again to write what could not be written
+                    with suppress(OSError):  # from Python 3.14 on, it would retry the failed write
                         file.close()
                     raise cannot_write(part, error) from None
                 done += len(block)
@@ -109,7 +111,7 @@ def _read(response: http.client.HTTPResponse) -> bytes:
 
 def _limit(entry: ModelEntry, address: str, size: int) -> None:
     if size > entry.most_bytes:
-        message = phrase("more comes than the about {megabytes} MB of the model", megabytes=entry.megabytes)
+        message = phrase("the download is larger than the expected {megabytes} MB", megabytes=entry.megabytes)
         raise _failed(entry, address, message)
 
 
@@ -121,7 +123,7 @@ def _size(part: Path) -> int:
 
 
 def _reason(error: BaseException) -> str:
-    """What went wrong, in the words of the system."""
+    """Return the system's error message."""
     inner = getattr(error, "reason", None)
     if isinstance(inner, BaseException):
         return _reason(inner)
@@ -130,7 +132,7 @@ def _reason(error: BaseException) -> str:
 
 def _failed(entry: ModelEntry, address: str, problem: Phrase) -> LinkwrightError:
     message = phrase(
-        "the model '{name}' cannot be fetched from {address}: {problem}",
+        "the model '{name}' cannot be downloaded from {address}: {problem}",
         name=entry.name,
         address=address,
         problem=problem,
@@ -139,7 +141,7 @@ def _failed(entry: ModelEntry, address: str, problem: Phrase) -> LinkwrightError
 
 
 def cannot_write(path: Path, error: OSError) -> LinkwrightError:
-    """The error for a place that cannot be written to (MODEL106)."""
+    """Return the error for a path that is not writable (MODEL106)."""
     message = phrase("cannot write '{path}': {strerror}", path=path, strerror=foreign(error.strerror or error))
-    hint = phrase("make room, or choose another folder with --to")
+    hint = phrase("free disk space, or choose another folder with --to")
     return LinkwrightError(Diagnostic("MODEL106", message, hint=hint))

@@ -1,4 +1,4 @@
-"""Where models lie, whether they are whole, and taking them away."""
+"""Installed models: their locations, checks and removal."""
 
 from __future__ import annotations
 
@@ -14,32 +14,32 @@ _AT_ONCE = 1 << 20
 
 
 def models_folder() -> Path:
-    """Where models are put: ``XDG_DATA_HOME/linkwright/models`` or ``~/.local/share/linkwright/models``.
+    """Return the folder of models: ``XDG_DATA_HOME/linkwright/models`` or ``~/.local/share/linkwright/models``.
 
-    They are no cache: who is offline cannot get them again.
+    It is not a cache: an offline user cannot download models again.
     """
     base = os.environ.get("XDG_DATA_HOME")
     return (Path(base) if base else Path.home() / ".local" / "share") / "linkwright" / "models"
 
 
 def is_installed(entry: ModelEntry, folder: Path | None = None) -> bool:
-    """Return whether a model is there; what is there has been checked when it was put there.
+    """Return whether a model is installed; it was verified at its installation.
 
     Args:
         entry: the model.
-        folder: where it would be; `models_folder` when left out.
+        folder: the folder of models; `models_folder` if omitted.
     """
     return ((folder or models_folder()) / entry.place).exists()
 
 
 def find_model(entry: ModelEntry) -> Path:
-    """The folder or file of an installed model.
+    """Return the folder or file of an installed model.
 
     Raises:
         LinkwrightError: MODEL102 it is not installed.
     """
     if not is_installed(entry):
-        message = phrase("the model '{name}' has not been fetched", name=entry.name)
+        message = phrase("the model '{name}' is not downloaded", name=entry.name)
         hint = phrase(
             "run `linkwright models get {name}`, about {megabytes} MB", name=entry.name, megabytes=entry.megabytes
         )
@@ -48,7 +48,7 @@ def find_model(entry: ModelEntry) -> Path:
 
 
 def remove(entry: ModelEntry) -> Path:
-    """Take an installed model away; returns where it was.
+    """Remove an installed model, and return its path.
 
     Raises:
         LinkwrightError: MODEL102 it is not installed, MODEL106 it cannot be removed.
@@ -66,7 +66,7 @@ def remove(entry: ModelEntry) -> Path:
 
 
 def by_hand(entry: ModelEntry) -> Phrase:
-    """How to get a model where fetching it fails."""
+    """Return a hint on how to get a model without a download by Linkwright."""
     return phrase(
         "download {address} with a browser, then run `linkwright models get {name} --from FILE`",
         address=entry.address,
@@ -75,14 +75,14 @@ def by_hand(entry: ModelEntry) -> Phrase:
 
 
 def checked(entry: ModelEntry, place: Path) -> None:
-    """See that a model in some place is what its makers gave out.
+    """Verify the checksums of a model.
 
     Args:
         entry: the model.
         place: its folder or file.
 
     Raises:
-        LinkwrightError: MODEL104 a file is another one, MODEL105 one is not there.
+        LinkwrightError: MODEL104 a file differs, MODEL105 a file is missing.
     """
     if not entry.folder:
         check_sum(entry, place, entry.sha256)
@@ -92,16 +92,16 @@ def checked(entry: ModelEntry, place: Path) -> None:
 
 
 def check_sum(entry: ModelEntry, path: Path, expected: str | None, origin: str | None = None) -> None:
-    """See that a file of a model has the sum that it must have.
+    """Verify the checksum of a file of a model.
 
     Args:
         entry: the model.
         path: the file.
-        expected: its SHA-256; None where it is not known.
-        origin: where the file was fetched from, for who never saw its path.
+        expected: its SHA-256; None if it is not known.
+        origin: the source of the download, for messages to users that do not know its path.
 
     Raises:
-        LinkwrightError: MODEL104 it has not, MODEL105 it cannot be read.
+        LinkwrightError: MODEL104 it differs, MODEL105 it cannot be read.
     """
     if expected is None:
         return
@@ -112,13 +112,13 @@ def check_sum(entry: ModelEntry, path: Path, expected: str | None, origin: str |
                 found.update(block)
     except OSError as error:
         message = phrase(
-            "of the model '{name}', '{path}' cannot be read: {reason}",
+            "file '{path}' of the model '{name}' cannot be read: {reason}",
             name=entry.name,
             path=path,
             reason=foreign(error.strerror or error),
         )
         raise LinkwrightError(Diagnostic("MODEL105", message, hint=by_hand(entry))) from None
     if found.hexdigest() != expected:
-        message = phrase("'{path}' is not what belongs to the model '{name}'", path=origin or path, name=entry.name)
-        sums = phrase("its SHA-256 is {found}, and {expected} is right", found=found.hexdigest(), expected=expected)
+        message = phrase("'{path}' is not the right file for the model '{name}'", path=origin or path, name=entry.name)
+        sums = phrase("its SHA-256 is {found}; expected {expected}", found=found.hexdigest(), expected=expected)
         raise LinkwrightError(Diagnostic("MODEL104", message, notes=(Note(sums),), hint=by_hand(entry)))

@@ -1,4 +1,4 @@
-"""Putting a model in its place, wherever it comes from: whole and checked, or not at all."""
+"""Installation of models from any source: verified and complete, or not at all."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from linkwright.model_files.table import ModelEntry
 
 
 def install(entry: ModelEntry, source: str | None, folder: Path | None, progress: Progress) -> Path:
-    """Get a model, check it, and put it in its place; one that was there is replaced.
+    """Get, verify and install a model, replacing an installed one.
 
     Args:
         entry: the model.
-        source: None for the makers' address; else a mirror's address, of the file or of the folder with it; a file as
-            it would be fetched; a folder that holds this file, or the model unpacked, or is it.
-        folder: where to put it; `models_folder` when left out.
-        progress: is told how far it has come when it is fetched.
+        source: None for the publisher's address; else the address of a mirror's file or folder; the file to download;
+            or a folder with this file or with the unpacked model.
+        folder: the folder of models; `models_folder` if omitted.
+        progress: receives the progress of the download.
 
     Returns:
-        Its folder, or its file where it is one file.
+        Its folder, or its file if it is a single file.
 
     Raises:
-        LinkwrightError: MODEL103 it cannot be fetched, MODEL104 it is another file, MODEL105 it is not a model's,
+        LinkwrightError: MODEL103 it cannot be downloaded, MODEL104 the file differs, MODEL105 it is not a model file,
             MODEL106 it cannot be written, MODEL107 the source has no such model.
     """
     target = folder or models_folder()
@@ -48,10 +48,10 @@ def install(entry: ModelEntry, source: str | None, folder: Path | None, progress
         place = _install_file(entry, part, target, address)
     except LinkwrightError as error:
         if error.diagnostics[0].code != "MODEL106":
-            part.unlink(missing_ok=True)  # going on with it would not mend it
+            part.unlink(missing_ok=True)  # resuming it would not fix it
         if not resumed or error.diagnostics[0].code == "MODEL106":
             raise
-        fetch(entry, address, part, progress)  # the beginning may have been another file's
+        fetch(entry, address, part, progress)  # the first part may be of another file
         try:
             place = _install_file(entry, part, target, address)
         except LinkwrightError:
@@ -66,7 +66,7 @@ def _is_address(source: str) -> bool:
 
 
 def _file_of(entry: ModelEntry, address: str) -> str:
-    """The address of the file, where that of a folder may be given."""
+    """Return the address of the file; that of its folder is accepted too."""
     if urllib.parse.urlsplit(address).path.endswith(entry.file_name):
         return address
     return f"{address.rstrip('/')}/{entry.file_name}"
@@ -84,13 +84,13 @@ def _install_local(entry: ModelEntry, source: Path, target: Path) -> Path:
             for unpacked in (source / entry.folder, source):
                 if (unpacked / first).is_file():
                     return _install_folder(entry, unpacked, target)
-    message = phrase("'{path}' holds no model '{name}'", path=source, name=entry.name)
-    hint = phrase("it is a folder with {file}, or this file", file=entry.file_name)
+    message = phrase("'{path}' does not contain the model '{name}'", path=source, name=entry.name)
+    hint = phrase("give a folder that contains {file}, or that file", file=entry.file_name)
     raise LinkwrightError(Diagnostic("MODEL107", message, hint=hint))
 
 
 def _install_file(entry: ModelEntry, file: Path, target: Path, origin: str | None = None) -> Path:
-    """Put a file as it is fetched in its place."""
+    """Install a downloaded file."""
     check_sum(entry, file, entry.sha256, origin)
     with _draft(entry, target) as draft:
         if entry.folder:
@@ -102,7 +102,7 @@ def _install_file(entry: ModelEntry, file: Path, target: Path, origin: str | Non
 
 
 def _install_folder(entry: ModelEntry, folder: Path, target: Path) -> Path:
-    """Put a model that is unpacked in its place."""
+    """Install an unpacked model."""
     checked(entry, folder)
     with _draft(entry, target) as draft:
         for name in entry.files:
@@ -114,7 +114,7 @@ def _install_folder(entry: ModelEntry, folder: Path, target: Path) -> Path:
 
 @contextmanager
 def _draft(entry: ModelEntry, target: Path) -> Iterator[Path]:
-    """A place for the model to be made in: it becomes its own when nothing goes wrong, and goes when something does."""
+    """Provide a temporary path for the model, which is renamed on success and deleted on an error."""
     place = target / entry.place
     draft = target / f".{entry.place}.draft-{os.urandom(4).hex()}"
     former = target / f".{entry.place}.former-{os.urandom(4).hex()}"

@@ -1,6 +1,6 @@
-"""Networks in ONNX files, loaded by onnxruntime, and what is wrong with a file that it does not load.
+"""Sessions of onnxruntime for ONNX files, and explanations of load errors.
 
-Speech and vision run networks alike; each says what went wrong by findings of its own.
+Speech and vision share them; each reports errors with its own findings.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ CPU, CUDA = "CPUExecutionProvider", "CUDAExecutionProvider"
 
 _ERRORS_ONLY = 3
 _OF_THE_LIBRARY = re.compile(r"^.* failed:\s*|/onnxruntime_src/\S+ (?:.*?\) (?=[A-Z]))?")
-"""Where in onnxruntime's own code something failed, which stands before the reason."""
+"""The location in onnxruntime's code, which precedes the reason in its messages."""
 _SECOND_FILE = re.compile(r"\bexternal\b|cannot get file size", re.IGNORECASE)
-"""What onnxruntime says of weights in a file that is not there; the latter up to 1.23, the last one for Python 3.10."""
+"""onnxruntime's messages about a missing weights file; the latter up to 1.23, the last version for Python 3.10."""
 
 _TOO_NEW = re.compile(r"IR version|[Oo]pset \d+")
 _START = 512
@@ -25,11 +25,11 @@ _TEXT = frozenset(range(0x20, 0x7F)) | set(b"\t\r\n")
 
 
 class UnloadableNetworkError(Exception):
-    """A file is not loaded.
+    """A file cannot be loaded.
 
     Attributes:
-        reason: why.
-        hint: what to do; None where nobody knows.
+        reason: the reason.
+        hint: a hint, or None.
     """
 
     def __init__(self, reason: Phrase, hint: Phrase | None) -> None:
@@ -38,24 +38,24 @@ class UnloadableNetworkError(Exception):
 
 
 def load_onnxruntime() -> Any:
-    """The module ``onnxruntime``; it has no types.
+    """Import and return the module ``onnxruntime``, which has no types.
 
     Raises:
         ModuleNotFoundError: it is not installed.
     """
     import onnxruntime  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
-    onnxruntime.set_default_logger_severity(_ERRORS_ONLY)  # it warns of every piece of hardware that it has no use for
+    onnxruntime.set_default_logger_severity(_ERRORS_ONLY)  # it warns about all hardware that it does not use
     return onnxruntime
 
 
 def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
-    """An ``onnxruntime.InferenceSession``.
+    """Return an ``onnxruntime.InferenceSession``.
 
     Args:
         file: the ONNX file.
-        gpu: the number of a GPU that CUDA knows, which `has_cuda` says is of use; None for the processor.
-        threads: of the processor; 0 for one a core.
+        gpu: the CUDA number of a GPU, if `has_cuda`; None for the CPU.
+        threads: CPU threads; 0 for one per core.
 
     Raises:
         ModuleNotFoundError: onnxruntime is not installed.
@@ -66,15 +66,15 @@ def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
     how = onnxruntime.SessionOptions()
     how.intra_op_num_threads = threads
     how.log_severity_level = _ERRORS_ONLY
-    how.add_session_config_entry("session.intra_op.allow_spinning", "0")  # others need the processor, too
+    how.add_session_config_entry("session.intra_op.allow_spinning", "0")  # others also need the CPU
     try:
         return onnxruntime.InferenceSession(str(file), how, providers=providers)
-    except Exception as error:  # noqa: BLE001 - of many classes, which onnxruntime does not document
+    except Exception as error:  # noqa: BLE001 - many classes, which onnxruntime does not document
         raise _unloadable(file, error) from None
 
 
 def has_cuda() -> bool:
-    """Return whether the onnxruntime that is installed was built for CUDA; a GPU may still be missing.
+    """Return whether the installed onnxruntime was built for CUDA; a GPU may still be missing.
 
     Raises:
         ModuleNotFoundError: onnxruntime is not installed.
@@ -83,7 +83,7 @@ def has_cuda() -> bool:
 
 
 def reason_of(error: Exception) -> Phrase:
-    """Of what onnxruntime says the part that is the reason."""
+    """Return the reason in a message of onnxruntime."""
     lines = str(error).strip().splitlines() or [type(error).__name__]
     said = _OF_THE_LIBRARY.sub("", lines[0].rpartition(" : ")[2]).strip()
     return foreign(said or type(error).__name__)
@@ -95,24 +95,24 @@ def _unloadable(file: Path, error: Exception) -> UnloadableNetworkError:
             start = opened.read(_START)
     except OSError as unread:
         return UnloadableNetworkError(foreign(unread.strerror or unread), None)
-    export = phrase("the file is broken or not whole: export or fetch it anew")
+    export = phrase("the file is damaged or incomplete: export or download it again")
     if not start:
         return UnloadableNetworkError(phrase("the file is empty"), export)
     if start.startswith(b"version https://git-lfs"):
         pull = phrase("run `git lfs pull`")
         return UnloadableNetworkError(phrase("it is a pointer of Git LFS, not the file itself"), pull)
     if start.lstrip()[:1] == b"<":
-        address = phrase("the address that it was fetched from is not that of the file")
+        address = phrase("the download address is not that of the file")
         return UnloadableNetworkError(phrase("it is a web page"), address)
     if set(start) <= _TEXT:
-        return UnloadableNetworkError(phrase("it is a text, not an ONNX file"), export)
+        return UnloadableNetworkError(phrase("it is a text file, not an ONNX file"), export)
     reason = reason_of(error)
     if "Protobuf parsing failed" in str(reason):
-        return UnloadableNetworkError(phrase("it is no ONNX file, or not whole"), export)
+        return UnloadableNetworkError(phrase("it is not an ONNX file, or incomplete"), export)
     if _TOO_NEW.search(str(reason)):
-        newer = phrase("it is made for a newer onnxruntime: update onnxruntime, or export it with a lower opset")
+        newer = phrase("it requires a newer onnxruntime: update onnxruntime, or export it with a lower opset")
         return UnloadableNetworkError(reason, newer)
     if _SECOND_FILE.search(str(reason)):
-        beside = phrase("its weights are in a second file, which has to stand beside it")
+        beside = phrase("its weights are in a second file, which must be beside it")
         return UnloadableNetworkError(reason, beside)
     return UnloadableNetworkError(reason, export)

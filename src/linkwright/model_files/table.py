@@ -19,18 +19,18 @@ _TABLE = Path(__file__).with_name("models.toml")
 
 @dataclass(frozen=True, slots=True)
 class ModelEntry:
-    """A model that can be fetched.
+    """A model that can be downloaded.
 
     Attributes:
-        name: as `linkwright models` calls it.
+        name: its name in `linkwright models`.
         kind: ``speech`` or ``vision``.
-        address: where its makers offer it.
-        megabytes: about so much to fetch.
-        licence: SPDX's name of it.
-        purpose: what it is for, in English.
-        folder: of an archive: the folder in it that is the model; empty for a model that is one file.
-        sha256: of what is fetched; None where only the sums of `files` are known.
-        files: of an archive: path of each file below `folder`, with its SHA-256.
+        address: the publisher's URL.
+        megabytes: the approximate download size.
+        licence: the SPDX identifier.
+        purpose: the purpose, in English.
+        folder: the folder of the model in an archive; empty for a single file.
+        sha256: the checksum of the download; None if only those of `files` are known.
+        files: the paths in an archive, relative to `folder`, with their SHA-256.
     """
 
     name: str
@@ -45,32 +45,32 @@ class ModelEntry:
 
     @property
     def file_name(self) -> str:
-        """The name of what is fetched."""
+        """The file name of the download."""
         return self.address.rpartition("/")[2]
 
     @property
     def place(self) -> str:
-        """The name of the folder or file that it is when it is installed."""
+        """The name of the installed folder or file."""
         return self.folder or self.file_name
 
     @property
     def most_bytes(self) -> int:
-        """More than this is not the model."""
+        """The maximum size of the download in bytes."""
         return 2 * self.megabytes * 1_000_000
 
 
 @cache
 def model_table() -> Mapping[str, ModelEntry]:
-    """The models by name, in the table's order."""
+    """Return the models by name, in the table's order."""
     tables = tomllib.loads(_TABLE.read_text(encoding="utf-8"))
     return {name: ModelEntry(name=name, **table) for name, table in tables.items()}
 
 
 def model_entry(name: str) -> ModelEntry:
-    """A model by its name.
+    """Return the model with a name.
 
     Raises:
-        LinkwrightError: MODEL101 there is none of this name.
+        LinkwrightError: MODEL101 there is no such model.
     """
     entry = model_table().get(name)
     if entry is None:

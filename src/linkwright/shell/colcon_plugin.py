@@ -1,7 +1,7 @@
-"""A plugin of colcon for ``ament_cmake`` packages where there is no ament: copies what the package installs.
+"""A colcon plugin for ``ament_cmake`` packages without ament, which copies the files that a package installs.
 
-colcon finds the classes through the entry points of this distribution. Such a package gets a type of its own, for which
-the task is registered; where an ament_cmake is on the path, colcon goes on as if there were no plugin.
+colcon finds the classes through the entry points of this distribution. Such a package gets its own type, for which the
+task is registered; if an ament_cmake is on the path, the plugin does nothing.
 """
 
 from __future__ import annotations
@@ -13,39 +13,39 @@ from pathlib import Path
 from typing import Any
 
 from colcon_core.environment import create_environment_scripts  # type: ignore[import-untyped]  # it ships no types
-from colcon_core.logging import colcon_logger  # type: ignore[import-untyped]  # likewise
-from colcon_core.shell import create_environment_hook  # type: ignore[import-untyped]  # likewise
-from colcon_core.task import TaskExtensionPoint, create_file, install  # type: ignore[import-untyped]  # likewise
-from colcon_ros.package_identification.ros import RosPackageIdentification  # type: ignore[import-untyped]  # likewise
+from colcon_core.logging import colcon_logger  # type: ignore[import-untyped]  # as above
+from colcon_core.shell import create_environment_hook  # type: ignore[import-untyped]  # as above
+from colcon_core.task import TaskExtensionPoint, create_file, install  # type: ignore[import-untyped]  # as above
+from colcon_ros.package_identification.ros import RosPackageIdentification  # type: ignore[import-untyped]  # as above
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages import MANIFEST
 from linkwright.packages.readers.cmake import CMakeFile, read_cmake
 
 COPIED = "ros.ament_cmake_copied"
-"""The type that colcon knows such packages by."""
+"""The colcon type of such packages."""
 
 _LOGGER = colcon_logger.getChild(__name__)
 _INDEX = "share/ament_index/resource_index"
 
 
 class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[misc]  # its base has no types
-    """Tells ``ament_cmake`` packages that can only be copied here from those that can be built."""
+    """Distinguishes ``ament_cmake`` packages that can only be copied from those that can be built."""
 
     PRIORITY = RosPackageIdentification.PRIORITY + 10
 
     def identify(self, desc: Any) -> None:
-        """Identify a ROS package as colcon-ros does, and give it our type where there is no ament_cmake."""
+        """Identify a ROS package as colcon-ros does, and set our type if there is no ament_cmake."""
         super().identify(desc)
         if desc.type == "ros.ament_cmake" and not _has_ament_cmake(os.environ):
             desc.type = COPIED
 
 
 class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its base has no types
-    """Installs what an ``ament_cmake`` package copies, and says what it leaves out: what is compiled."""
+    """Installs the files that an ``ament_cmake`` package copies, and reports the skipped compiled parts."""
 
     async def build(self) -> int:
-        """Copy its files; the exit status.
+        """Copy the package's files and return the exit status.
 
         An ``ament_cmake`` package is found through the same files as any other: its marker in the resource index, and
         the scripts that put its prefix into the environment.
@@ -64,7 +64,7 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
             _install_all(args, package.name, folder, cmake)
         except FileNotFoundError as error:
             missing = error.filename or error
-            _LOGGER.error(f"'{package.name}' installs '{missing}', which is not there")  # noqa: TRY400  # no traceback
+            _LOGGER.error(f"'{package.name}' installs '{missing}', which does not exist")  # noqa: TRY400  # no traceback
             return 1
         hooks = create_environment_hook(
             "ament_prefix_path", Path(args.install_base), package.name, "AMENT_PREFIX_PATH", "", mode="prepend"
@@ -73,7 +73,7 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
             hooks += create_environment_hook(
                 "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _site(), mode="prepend"
             )
-        # Hooks in a shell's own language call functions of ament; those that are tables are colcon's language, too.
+        # Hooks in a shell's language call functions of ament; table hooks work with colcon, too.
         hooks += [Path(hook) for hook in cmake.hooks if hook.endswith(".dsv")]
         create_environment_scripts(package, args, additional_hooks=hooks)
         return 0
@@ -101,7 +101,7 @@ def _install_all(args: Any, name: str, folder: Path, cmake: CMakeFile) -> None:
 
 
 def _install_module(args: Any, folder: Path, module: str) -> None:
-    """Install a Python module, or a Python package with all that lies in it."""
+    """Install a Python module, or a Python package with its contents."""
     path = folder / module
     if not path.exists():
         raise FileNotFoundError(module)
@@ -112,7 +112,7 @@ def _install_module(args: Any, folder: Path, module: str) -> None:
 
 
 def _site() -> str:
-    """Where a prefix has its Python packages, relative to it."""
+    """Return the folder of Python packages in a prefix, relative to it."""
     paths = sysconfig.get_paths("posix_prefix" if os.name != "nt" else "nt", vars={"base": "", "platbase": ""})
     return paths["purelib"].strip("/\\").replace("\\", "/")
 

@@ -1,6 +1,6 @@
-"""What to use here in the place of programs of ROS that users type and that are not here.
+"""Hints on replacements for programs of ROS that are not available.
 
-``python -m linkwright.shell.instead NAME`` says it; shells run that for a command that they do not find.
+``python -m linkwright.shell.instead NAME`` prints a hint; shells run it for an unknown command.
 """
 
 from __future__ import annotations
@@ -10,18 +10,18 @@ import sys
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase, print_diagnostics
 
 _PAGE = phrase(
-    "the panels of the page show that: `linkwright launch` or `linkwright view`, then Panels in its title bar"
+    "the page has panels for that: run `linkwright launch` or `linkwright view`, then open Panels in its title bar"
 )
 _COLCON = phrase("that was ROS 1; build with `colcon build`")
 _ROS2 = phrase("that was ROS 1; the commands of ROS 2 begin with `ros2`, as in `ros2 launch` and `ros2 topic list`")
 _SIMULATION = phrase(
-    "launch files that start it run here with a simulation of Linkwright's own: "
-    "`ros2 launch gazebo_ros gazebo.launch.py world:=FILE`"
+    "launch files that start it run with Linkwright's simulation here: `ros2 launch gazebo_ros "
+    "gazebo.launch.py world:=FILE`"
 )
 
 INSTEAD: dict[str, Phrase] = {
     "rosdep": phrase(
-        "packages need nothing of the system here: put the sources of one that is missing into the workspace's src "
+        "packages need no system packages here: put the sources of a missing package into the workspace's src "
         "folder, and install Python modules with pip"
     ),
     "rqt": _PAGE,
@@ -49,23 +49,23 @@ INSTEAD: dict[str, Phrase] = {
     "rosservice": _ROS2,
     "rosbag": _ROS2,
 }
-"""Name of a program -> what to use."""
+"""Name of a program -> hint."""
 
 
 def no_such_command(name: str, others: tuple[str, ...], otherwise: Phrase | None = None) -> LinkwrightError:
-    """SHELL101: there is no such command here, with what to use.
+    """Return the diagnostic SHELL101 about an unknown command, with a hint.
 
     Args:
-        name: as it was typed.
-        others: commands that may have been meant.
-        otherwise: the hint for one that nothing is known of.
+        name: the command as typed.
+        others: existing commands, for suggestions.
+        otherwise: the hint for an unknown command.
     """
     hint = INSTEAD.get(name) or did_you_mean(name, others) or otherwise
     return LinkwrightError(Diagnostic("SHELL101", phrase("there is no command '{words}'", words=name), hint=hint))
 
 
 def main(name: str) -> int:
-    """Say what to use; the exit status is the one that shells have for a command that they do not find."""
+    """Print the hint, and return a shell's exit status for an unknown command."""
     print_diagnostics(no_such_command(name, ()).diagnostics, sys.stderr)
     return 127
 

@@ -1,4 +1,4 @@
-"""The commands of ROS 2 as small programs in a folder of their own, for the end of the search path."""
+"""The commands of ROS 2 as small programs in a separate folder, for the end of the search path."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ PROGRAMS = {
     "colcon": ("linkwright.cli.tools", "colcon"),
     "linkwright": ("linkwright", None),
 }
-"""Name of the command -> the Python module that it is, and the first word the module is given.
+"""Name of the command -> its Python module, and the first argument of the module.
 
-``urdf_to_graphiz`` is how urdfdom spelt it for years, and still installs beside the right spelling.
+``urdf_to_graphiz`` was urdfdom's spelling for years, which it still installs besides the right one.
 """
 
 
@@ -50,9 +50,9 @@ def write_programs(folder: Path, python: str = sys.executable) -> None:
 
 
 def offer_programs(environment: MutableMapping[str, str]) -> None:
-    """Put the commands at the end of the search path, for launch files that run ``ros2 topic pub`` and the like.
+    """Append the commands to the search path, for launch files that run commands such as ``ros2 topic pub``.
 
-    They are kept in the cache folder; where that cannot be written, nothing is offered.
+    They are stored in the cache folder; if that is not writable, nothing is offered.
     """
     key = hashlib.sha256(repr((sys.executable, sorted(PROGRAMS.items()))).encode()).hexdigest()[:16]
     folder = cache_folder() / "programs" / key
@@ -66,12 +66,12 @@ def offer_programs(environment: MutableMapping[str, str]) -> None:
 
 
 def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
-    """Set what sourcing a ROS 2 sets and launch files ask for, where none is sourced: we follow Humble."""
+    """Set the variables that launch files expect from a sourced ROS 2, if none is sourced; the values follow Humble."""
     if "ROS_DISTRO" not in environment:
         environment.update(ROS_VARIABLES)
         environment[ASSUMED] = "1"
         for name in (
             "GZ_SIM_RESOURCE_PATH",
             "LD_LIBRARY_PATH",
-        ):  # launch files add to them and do not ask for them first
+        ):  # launch files append to them without checking that they exist
             environment.setdefault(name, "")

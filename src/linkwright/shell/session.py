@@ -1,8 +1,7 @@
-"""Running a shell, or one command, in an environment where the commands of ROS 2 exist.
+"""Run a shell, or one command, in an environment with the commands of ROS 2.
 
-The folder of our programs stands at the end of the search path, so that whatever is really installed comes first.
-Start-up files of shells (``~/.bashrc`` often sources a ROS 2) set the path anew; therefore the shell reads them first
-and then a file of ours.
+The folder of our programs is at the end of the search path, so that installed programs take precedence. Start-up files
+of shells (``~/.bashrc`` often sources a ROS 2) set the path again, so the shell reads them first and then our file.
 """
 
 from __future__ import annotations
@@ -23,9 +22,9 @@ from linkwright.shell.programs import PROGRAMS, write_programs
 from linkwright.standins import process
 
 _PR_SET_PDEATHSIG = 1
-"""Of prctl(2): the signal that comes when the parent ends."""
+"""The option of prctl(2) for a signal on the parent's end."""
 MARK = "LINKWRIGHT_SHELL"
-"""Set in the environment of the shell, to the folder of its programs."""
+"""The environment variable with the folder of the shell's programs."""
 
 
 def run_shell(
@@ -36,12 +35,12 @@ def run_shell(
     """Run the user's shell, or one command, until it ends.
 
     Args:
-        command: program and arguments; the user's interactive shell when empty.
-        environment: what it starts from; that of this process when left out.
-        additions: gives what ``bash``, ``zsh`` or ``fish`` reads besides when it starts.
+        command: program and arguments; if empty, the user's interactive shell.
+        environment: the base environment; that of this process if omitted.
+        additions: returns additional start-up text for ``bash``, ``zsh`` or ``fish``.
 
     Returns:
-        The exit status; 128 and the number of the signal for what a signal ended, as shells have it.
+        The exit status; 128 plus the signal's number if a signal ended it, as in shells.
 
     Raises:
         LinkwrightError: SHELL101, there is no such command.
@@ -58,18 +57,21 @@ def run_shell(
         return _run([path, *words[1:]], variables)
 
 
-_QUOTES = phrase("one command and its words follow `--`; for several write `linkwright shell -- bash -c '...'`")
+_QUOTES = phrase(
+    "`--` is followed by one command with its arguments; for several commands, write `linkwright "
+    "shell -- bash -c '...'`"
+)
 
 
 def shell_environment(folder: Path, base: Mapping[str, str]) -> dict[str, str]:
-    """The environment of the shell.
+    """Return the environment of the shell.
 
-    Where no ``ros2`` is installed, the folder of the interpreter that runs Linkwright comes first in the search path:
-    ``python3`` is then one that finds our stand-ins and what they need.
+    If no ``ros2`` is installed, the folder of Linkwright's interpreter comes first in the search path, so that
+    ``python3`` finds our stand-ins and their dependencies.
 
     Args:
-        folder: where our programs are.
-        base: the environment it is made from.
+        folder: the folder of our programs.
+        base: the base environment.
     """
     variables = process.environment(base)
     parts = [part for part in variables.get("PATH", os.defpath).split(os.pathsep) if part and part != base.get(MARK)]
@@ -85,12 +87,12 @@ _STARTED_BY_A_FILE = ("bash", "zsh", "fish")
 
 
 def _interactive(scratch: Path, variables: dict[str, str], additions: Callable[[str], str]) -> list[str]:
-    """The words that start the user's shell so that it keeps our search path after its own start-up files."""
+    """Return the command of the user's shell that keeps our search path after its start-up files."""
     if sys.platform == "win32":
         return [os.environ.get("COMSPEC", "cmd.exe")]
     shell = os.environ.get("SHELL") or "/bin/sh"
     kind = Path(shell).name
-    if kind in _STARTED_BY_A_FILE:  # it puts our folder behind what the user's own file adds
+    if kind in _STARTED_BY_A_FILE:  # our folder goes behind the entries of the user's own file
         parts = variables["PATH"].split(os.pathsep)
         variables["PATH"] = os.pathsep.join(part for part in parts if part != variables[MARK])
     if kind == "bash":
@@ -121,7 +123,7 @@ def _interactive(scratch: Path, variables: dict[str, str], additions: Callable[[
 
 
 def _start_file(own: str, variables: Mapping[str, str]) -> str:
-    """What bash and zsh read: the user's file, then what makes our commands exist behind everything else."""
+    """Return the start-up file for bash and zsh: the user's file, then our commands at the end of the path."""
     interpreter = shlex.quote(str(Path(sys.executable).parent))
     standins = shlex.quote(process.standin_path())
     return f"""\
@@ -134,16 +136,16 @@ PS1="(linkwright) $PS1"
 
 
 def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
-    """Run it to its end. Signals are passed on, but Ctrl-C in a terminal, which reaches it as it reaches us.
+    """Run the command to its end and forward signals, except Ctrl-C in a terminal, which reaches both.
 
-    Where there is no terminal the command is in a process group of its own, so that what is sent to ours does not come
-    twice. Ctrl-C must not become a KeyboardInterrupt here: one that is raised when the wait for the command has just
-    ended loses its exit status, and `subprocess` gives 0 for that.
+    Without a terminal, the command is in its own process group, so that signals to ours do not reach it twice. Ctrl-C
+    must not become a KeyboardInterrupt here: one that is raised just after the end of the wait loses the exit status,
+    and `subprocess` returns 0 then.
     """
     import signal
 
     child: subprocess.Popen[bytes] | None = None
-    early: list[int] = []  # what came while it was being started
+    early: list[int] = []  # signals that arrived during its start
     alone = os.name == "posix" and not _has_terminal()
 
     def pass_on(number: int, _frame: object) -> None:
@@ -155,7 +157,7 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
     previous = {number: signal.signal(number, pass_on) for number in _heard_signals()}
     try:
         first = _standing_alone() if alone else None
-        # The user's own command (S603); there is one thread only, and `first` imports nothing (PLW1509).
+        # The user's own command (S603); there is only one thread, and `first` imports nothing (PLW1509).
         with subprocess.Popen(words, env=dict(variables), preexec_fn=first) as child:  # noqa: S603, PLW1509
             for number in early:
                 if number == signal.SIGINT:
@@ -170,7 +172,7 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
 
 
 def _has_terminal() -> bool:
-    """Return whether a terminal controls this process: its Ctrl-C is sent to the command too."""
+    """Return whether a terminal controls this process, so that its Ctrl-C also reaches the command."""
     try:
         os.close(os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY))
     except OSError:
@@ -179,7 +181,7 @@ def _has_terminal() -> bool:
 
 
 def _standing_alone() -> Callable[[], None]:
-    """What the process of the command does first: it leaves our process group, and on Linux ends when we are killed."""
+    """Return the pre-exec function: it leaves our process group, and on Linux ends the command if we are killed."""
     import ctypes
     import signal
 
@@ -194,7 +196,7 @@ def _standing_alone() -> Callable[[], None]:
 
 
 def _heard_signals() -> list[int]:
-    """Those that the command is to hear of; what this process was started to ignore is ignored by the command too."""
+    """Return the signals to forward; the command also ignores those that this process was started to ignore."""
     import signal
 
     known = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]

@@ -1,4 +1,4 @@
-"""Modules that stand in for those of ROS 2 where these are not installed."""
+"""Modules that replace those of ROS 2 where these are not installed."""
 
 from linkwright.standins.activation import activate
 

@@ -12,15 +12,15 @@ from types import ModuleType
 from linkwright.standins import modules
 
 LAUNCH_MODULES = ("launch", "launch_ros", "ament_index_python", "xacro")
-"""What launch files import. These are always ours when Linkwright runs a launch file, beside a sourced ROS too:
-the real ones would describe the launch to a launcher that is not running."""
+"""The modules that launch files import. When Linkwright runs a launch file, these are always ours, even with a sourced
+ROS: the real ones would need their own launcher."""
 
 
 def activate() -> None:
-    """Let launch files be imported; may be called again.
+    """Make the modules for launch files importable; may be called repeatedly.
 
-    The folder of the tables is the last on ``sys.path``: a module that is installed comes before ours of the same
-    name, with the exception of `LAUNCH_MODULES`. Processes that launch files start find the stand-ins too.
+    The folder of the tables is the last on ``sys.path``: an installed module takes precedence over ours, except for
+    `LAUNCH_MODULES`. Processes that launch files start find the stand-ins too.
     """
     modules.install()
     if modules.FOLDER not in sys.path:
@@ -42,9 +42,9 @@ def activate() -> None:
 
 
 class _InterfacesWhenAsked:
-    """Makes ``std_msgs.msg`` and its kind importable, once a module is asked for that no other finder has.
+    """Makes modules such as ``std_msgs.msg`` importable on the first import that no other finder resolves.
 
-    It is a finder by its method alone: the class of finders takes long to import.
+    It only implements the method of a finder: the base class takes long to import.
     """
 
     def find_spec(
@@ -53,13 +53,13 @@ class _InterfacesWhenAsked:
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """The module, if it is one of interfaces."""
+        """Return the module, if it contains interfaces."""
         if not _may_be_interfaces(fullname):
             return None
         from linkwright.standins import interfaces
 
         if any(isinstance(finder, interfaces.InterfaceFinder) for finder in sys.meta_path):
-            return None  # which is asked next
+            return None  # asked next
         interfaces.install()
         return interfaces.find_spec(fullname)
 
@@ -73,7 +73,7 @@ class _ModulesOfWorkspace:
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """The module, if a user's file asks for it while a launch is read or runs, and a package has it."""
+        """Return the module, if a user's file imports it while a launch is read or runs, and a package has it."""
         from linkwright.packages.active import active_finder
 
         finder = active_finder()
@@ -86,7 +86,7 @@ class _ModulesOfWorkspace:
 
 
 def _asking_file() -> Path | None:
-    """The user's file that the running import stands in; None for a library's, which tries what may well fail."""
+    """Return the user's file with the running import; None for a library, whose import may be optional."""
     from linkwright.launch.errors.user_code import is_users
 
     frame = sys._getframe(2)
@@ -96,7 +96,7 @@ def _asking_file() -> Path | None:
 
 
 def _may_be_interfaces(name: str) -> bool:
-    """Return whether a module may be one of messages, so that it is worth loading their classes to find out."""
+    """Return whether a module may contain messages, so that loading their classes is worthwhile."""
     package, _, kind = name.partition(".")
     if kind:
         return kind in ("msg", "srv", "action")
@@ -107,7 +107,7 @@ def _may_be_interfaces(name: str) -> bool:
 
 
 def _provide_for_processes() -> None:
-    """Let the processes that launch files start import our modules too."""
+    """Make our modules importable in the processes that launch files start."""
     from linkwright.packages.programs import child_python as surroundings
 
     surroundings.provide(_environment, _python_command)

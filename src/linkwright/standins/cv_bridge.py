@@ -1,4 +1,4 @@
-"""Images of messages as the numpy arrays that OpenCV takes, and back (the API of ``cv_bridge``), without OpenCV."""
+"""Conversion between images of messages and numpy arrays for OpenCV (the API of ``cv_bridge``), without OpenCV."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
 _PILLOW_FORMATS = {"jpg": "JPEG", "jpeg": "JPEG", "jpe": "JPEG", "jp2": "JPEG2000", "tif": "TIFF", "tiff": "TIFF"}
-_JPEG_QUALITY = 95  # OpenCV's own
+_JPEG_QUALITY = 95  # OpenCV's numbers
 
 
 class CvBridgeError(TypeError):
-    """An image cannot be converted; the text says why."""
+    """An image cannot be converted; the text gives the reason."""
 
 
-def getCvType(encoding_name: str) -> int:  # the name is cv_bridge's
-    """OpenCV's number of the type of images in an encoding: 16, which is ``CV_8UC3``, for ``bgr8``.
+def getCvType(encoding_name: str) -> int:  # cv_bridge's name
+    """Return OpenCV's type number for an encoding, such as 16 (``CV_8UC3``) for ``bgr8``.
 
     Raises:
         RuntimeError: the encoding is unknown.
@@ -43,9 +43,9 @@ class CvBridge:
     """Converts between sensor_msgs images and arrays.
 
     Attributes:
-        cvtype_to_name: OpenCV's number of a type -> its name without ``CV_``, such as ``8UC3``.
-        cvdepth_to_numpy_depth: OpenCV's number of a number's type -> numpy's name.
-        numpy_type_to_cvtype: numpy's name of a number's type -> OpenCV's, and the other way round.
+        cvtype_to_name: OpenCV's type number -> its name without ``CV_``, such as ``8UC3``.
+        cvdepth_to_numpy_depth: OpenCV's depth number -> numpy's name.
+        numpy_type_to_cvtype: numpy's name of a depth -> OpenCV's, and vice versa.
     """
 
     def __init__(self) -> None:
@@ -59,23 +59,23 @@ class CvBridge:
         self.numpy_type_to_cvtype |= dict(zip(DEPTHS, NUMPY_NAMES, strict=True))
 
     def dtype_with_channels_to_cvtype2(self, dtype: np.dtype[Any], n_channels: int) -> str:
-        """OpenCV's name of a type, such as ``8UC3``."""
+        """Return OpenCV's name of a type, such as ``8UC3``."""
         return f"{self.numpy_type_to_cvtype[dtype.name]}C{n_channels}"
 
     def cvtype2_to_dtype_with_channels(self, cvtype: int) -> tuple[str, int]:
-        """Numpy's name of the type of a number, and how many there are for each pixel."""
+        """Return numpy's name of the depth, and the number of channels."""
         depth, channels = depth_and_channels(cvtype)
         return self.numpy_type_to_cvtype[depth], channels
 
     def encoding_to_cvtype2(self, encoding: str) -> int:
-        """As `getCvType`, with CvBridgeError for an unknown encoding."""
+        """Return the type number of `getCvType`, with CvBridgeError for an unknown encoding."""
         try:
             return getCvType(encoding)
         except ConversionError as error:
             raise CvBridgeError(error) from error
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """Numpy's name of the type of a number, and how many there are for each pixel, for an encoding."""
+        """Return numpy's name of the depth, and the number of channels, of an encoding."""
         return self.cvtype2_to_dtype_with_channels(self.encoding_to_cvtype2(encoding))
 
     def imgmsg_to_cv2(self, img_msg: Any, desired_encoding: str = "passthrough") -> NDArray[Any]:
@@ -83,10 +83,10 @@ class CvBridge:
 
         Args:
             img_msg: the message.
-            desired_encoding: what the result is to be in; as it is in the message when ``passthrough``.
+            desired_encoding: the encoding of the result; ``passthrough`` for that of the message.
 
         Returns:
-            Shape (height, width), or (height, width, channels) where the encoding has more than one.
+            Shape (height, width), or (height, width, channels) for several channels.
 
         Raises:
             CvBridgeError: an encoding is unknown, or it cannot be converted into the other.
@@ -105,11 +105,11 @@ class CvBridge:
 
         Args:
             cvim: shape (height, width) or (height, width, channels).
-            encoding: what its numbers are; only their type is told when ``passthrough``.
-            header: the message's, if given.
+            encoding: the encoding of the array; ``passthrough`` for its plain type.
+            header: the header of the message, if given.
 
         Raises:
-            TypeError: it is no array.
+            TypeError: it is not an array.
             CvBridgeError: the array's type is not that of the encoding.
         """
         _check_array(cvim)
@@ -135,12 +135,12 @@ class CvBridge:
 
         Args:
             cmprs_img_msg: the message.
-            desired_encoding: what the result is to be in, from ``bgr8``; as it was read when ``passthrough``.
+            desired_encoding: the encoding of the result, converted from ``bgr8``; ``passthrough`` for that of the file.
 
         Raises:
-            CvBridgeError: the data are no image, or it cannot be converted.
+            CvBridgeError: the data is not an image, or it cannot be converted.
         """
-        from PIL import Image, UnidentifiedImageError  # an extra: other conversions do without
+        from PIL import Image, UnidentifiedImageError  # an extra, which other conversions do not need
 
         try:
             with Image.open(io.BytesIO(bytes(cmprs_img_msg.data))) as picture:
@@ -159,8 +159,8 @@ class CvBridge:
             dst_format: the format, as the ending of a file name: ``jpg``, ``png``, ``bmp``, ``webp``, ``tiff``...
 
         Raises:
-            TypeError: it is no array.
-            CvBridgeError: there is no such format, or it does not take such an image.
+            TypeError: it is not an array.
+            CvBridgeError: there is no such format, or it does not support such an image.
         """
         _check_array(cvim)
         message = get_message("sensor_msgs/msg/CompressedImage")()

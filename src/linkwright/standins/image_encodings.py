@@ -1,4 +1,4 @@
-"""Images in the encodings of ``sensor_msgs/image_encodings``, and from one into another as OpenCV converts them."""
+"""The encodings of ``sensor_msgs/image_encodings``, and conversions between them as in OpenCV."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from linkwright.images.decoding import demosaiced, from_packed
 
 DEPTHS = ("8U", "8S", "16U", "16S", "32S", "32F", "64F")
-"""OpenCV's names of number types; the place of each is its number."""
+"""OpenCV's names of depths, indexed by their numbers."""
 NUMPY_NAMES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 _CHANNEL_SHIFT = 3
 
@@ -21,24 +21,24 @@ _COLOUR = re.compile(r"(mono|rgb|bgr|rgba|bgra)(8|16)|bayer_(rggb|bggr|gbrg|grbg
 _PACKED_YUV = {"yuv422": "uyvy", "uyvy": "uyvy", "yuv422_yuy2": "yuyv", "yuyv": "yuyv"}
 _CHANNELS = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
 
-# How OpenCV weighs colours to a grey: ITU-R BT.601 in units of 1/32768.
+# OpenCV's weights of colours for grey: ITU-R BT.601 in units of 1/32768.
 _GREY_SHIFT = 15
 _RED, _GREEN, _BLUE = 9798, 19235, 3735
 
 
 class ConversionError(RuntimeError):
-    """An encoding is unknown, or an image cannot be brought into it; the text says which."""
+    """An encoding is unknown, or a conversion is not possible; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """What an encoding says of the numbers of an image.
+    """The properties of an encoding.
 
     Attributes:
-        name: as messages have it.
-        depth: OpenCV's name of the type of a number.
-        channels: numbers for each pixel.
-        order: what the channels are: ``mono``, ``rgb``, ``bgra``, ``bayer_rggb``, ``yuyv``...; empty for plain numbers.
+        name: its name in messages.
+        depth: OpenCV's name of the depth.
+        channels: the number of channels.
+        order: the channels: ``mono``, ``rgb``, ``bgra``, ``bayer_rggb``, ``yuyv``...; empty for plain numbers.
     """
 
     name: str
@@ -48,15 +48,15 @@ class Encoding:
 
     @property
     def cv_type(self) -> int:
-        """OpenCV's number of the type of such images, such as 16 for ``CV_8UC3``."""
+        """OpenCV's type number, such as 16 for ``CV_8UC3``."""
         return DEPTHS.index(self.depth) + ((self.channels - 1) << _CHANNEL_SHIFT)
 
 
 def encoding(name: str) -> Encoding:
-    """What the name of an encoding says.
+    """Return the properties of the encoding with a name.
 
     Raises:
-        ConversionError: it is none.
+        ConversionError: there is no such encoding.
     """
     if plain := _TYPE.fullmatch(name):
         return Encoding(name, plain[1], int(plain[2] or 1), "")
@@ -71,20 +71,20 @@ def encoding(name: str) -> Encoding:
 
 
 def depth_and_channels(cv_type: int) -> tuple[str, int]:
-    """What OpenCV's number of a type stands for: its name of the type of a number, and the numbers for each pixel."""
+    """Return the depth's name and the number of channels for OpenCV's type number."""
     return DEPTHS[cv_type & ((1 << _CHANNEL_SHIFT) - 1)], (cv_type >> _CHANNEL_SHIFT) + 1
 
 
 def converted(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
-    """An image in another encoding, a copy.
+    """Return a copy of an image in another encoding.
 
     Args:
-        image: shape (height, width), or (height, width, channels) where the encoding has more than one.
+        image: shape (height, width), or (height, width, channels) for several channels.
         source: the name of its encoding.
-        wanted: the name of the one that it is to have.
+        wanted: the name of the target encoding.
 
     Raises:
-        ConversionError: one of them is unknown, or such a conversion makes no sense.
+        ConversionError: one of them is unknown, or the conversion is not possible.
     """
     of, to = encoding(source), encoding(wanted)
     if source == wanted or not wanted:
@@ -101,7 +101,7 @@ def converted(image: NDArray[Any], source: str, wanted: str) -> NDArray[Any]:
 
 
 def _in_order(image: NDArray[Any], of: Encoding, order: str) -> NDArray[Any]:
-    """The same image with its channels in another order, or some more or less of them."""
+    """Return an image with its channels reordered, added or removed."""
     if of.order == order:
         return image
     if of.order == "mono":
@@ -123,7 +123,7 @@ def _in_order(image: NDArray[Any], of: Encoding, order: str) -> NDArray[Any]:
 
 
 def _as_colours(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
-    """An image of a Bayer mosaic or of YUV as RGB; any other as it is."""
+    """Return an image in a Bayer or YUV encoding as RGB; others stay unchanged."""
     if of.order.startswith("bayer_"):
         if of.depth != "8U":
             raise ConversionError(f"Unsupported conversion from [{of.name}]: only mosaics of 8 bits are read")
@@ -134,7 +134,7 @@ def _as_colours(image: NDArray[Any], of: Encoding) -> NDArray[Any]:
 
 
 def _in_depth(image: NDArray[Any], of: Encoding, to: Encoding) -> NDArray[Any]:
-    """The same image with numbers of another type; between 8 and 16 bits without sign black and white stay so."""
+    """Return an image in another depth; conversions between unsigned 8 and 16 bits keep black and white."""
     dtype = np.dtype(NUMPY_NAMES[DEPTHS.index(to.depth)])
     if image.dtype == dtype:
         return np.array(image, order="C")

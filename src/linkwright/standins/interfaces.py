@@ -1,8 +1,8 @@
-"""Makes ``<package>.msg``, ``.srv`` and ``.action`` importable: the Python packages that rosidl would have generated.
+"""Makes ``<package>.msg``, ``.srv`` and ``.action`` importable, as the packages that rosidl generates.
 
 ``from sensor_msgs.msg import JointState`` gives `linkwright.messages`' class, and so does ``from
-my_msgs.msg import Count`` for a package of the workspace, straight from its interface files, without a build. A module
-that any other finder has comes first, so interfaces that are installed are used.
+my_msgs.msg import Count`` for a package of the workspace, straight from its interface files, without a build. Other
+finders come first, so installed interfaces take precedence.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from linkwright.messages.message import ActionType, ServiceType
 
 
 class InterfaceFinder(MetaPathFinder):
-    """Finds interface packages, their modules ``msg``, ``srv`` and ``action``, and the modules inside these."""
+    """Finds interface packages, their modules ``msg``, ``srv`` and ``action``, and the submodules of these."""
 
     def find_spec(
         self,
@@ -33,16 +33,16 @@ class InterfaceFinder(MetaPathFinder):
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """The interface module of this name, or None."""
+        """Return the interface module with a name, or None."""
         return find_spec(fullname)
 
 
 class NamespaceFinder(MetaPathFinder):
-    """Finds ``my_msgs.msg`` where Python would take folders for namespace packages.
+    """Finds ``my_msgs.msg`` where Python would find folders as namespace packages.
 
-    In a folder that has a package's sources in it, a folder ``my_msgs/msg`` of ``.msg`` files, Python has modules of
-    these names that are empty (namespace packages). So this finder, which comes before Python's own, takes the modules
-    of interfaces in packages that are nothing but a folder.
+    In a folder with a package's sources, such as ``my_msgs/msg`` with ``.msg`` files, Python finds empty modules with
+    these names (namespace packages). So this finder, which comes before Python's own, handles interface modules in
+    packages that are only folders.
     """
 
     def find_spec(
@@ -59,14 +59,14 @@ class NamespaceFinder(MetaPathFinder):
 
 
 def install() -> None:
-    """Let interface packages be imported; may be called again."""
+    """Make interface packages importable; may be called repeatedly."""
     if not any(isinstance(finder, InterfaceFinder) for finder in sys.meta_path):
         sys.meta_path.insert(0, NamespaceFinder())
         sys.meta_path.append(InterfaceFinder())
 
 
 def find_spec(name: str) -> ModuleSpec | None:
-    """The interface module of this name: ``std_msgs``, ``std_msgs.msg`` or ``std_msgs.msg._string``; else None."""
+    """Return the interface module with a name (``std_msgs``, ``std_msgs.msg`` or ``std_msgs.msg._string``), or None."""
     package, *rest = name.split(".")
     if len(rest) > 2 or (rest and rest[0] not in KINDS) or not is_package_name(package):
         return None
@@ -88,13 +88,13 @@ def find_spec(name: str) -> ModuleSpec | None:
 
 
 def _interfaces(package: str, kind: str) -> list[str]:
-    """The names of a package's interfaces. For a package that comes with Linkwright the disk is not searched."""
+    """Return the names of a package's interfaces, without a search on disk for packages that come with Linkwright."""
     shipped = [name.rpartition("/")[2] for name in catalogue.texts(package) if name.startswith(kind + "/")]
     return sorted(shipped) or [name.rpartition("/")[2] for name in LIBRARY.names(kind, package)]
 
 
 class _PackageLoader(Loader):
-    """Makes the module of a package, which has nothing but its submodules."""
+    """Creates the module of a package, which contains only its submodules."""
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         return None
@@ -111,7 +111,7 @@ class _PackageLoader(Loader):
 
 
 class _KindLoader(Loader):
-    """Makes a module such as ``<package>.msg``, whose classes are made when they are first used."""
+    """Creates a module such as ``<package>.msg``, whose classes are created on first use."""
 
     def __init__(self, names: list[str]) -> None:
         self._names = names
@@ -129,11 +129,11 @@ class _KindLoader(Loader):
             try:
                 found = get_interface(f"{package}/{kind}/{name}")
             except InterfaceNotFoundError:
-                # For whoever writes 'from std_msgs.msg import Strng': Python's own message has no suggestion.
+                # For 'from std_msgs.msg import Strng': Python's own message has no suggestion.
                 hint = did_you_mean(name, names) or "it has " + ", ".join(names)
                 message = f"cannot import name '{name}' from '{module.__name__}': {hint}"
                 raise ImportError(message, name=module.__name__) from None
-            except LinkwrightError as error:  # a mistake in the file: file and line say it all
+            except LinkwrightError as error:  # an error in the file: file and line suffice
                 raise ImportError(str(error), name=module.__name__) from None
             setattr(module, name, found)
             return found
@@ -144,7 +144,7 @@ class _KindLoader(Loader):
 
 
 class _InterfaceLoader(Loader):
-    """Makes a module such as ``std_srvs.srv._set_bool`` with all classes that rosidl puts there."""
+    """Creates a module such as ``std_srvs.srv._set_bool`` with the classes that rosidl generates."""
 
     def __init__(self, type_name: str) -> None:
         self._type_name = type_name
@@ -155,7 +155,7 @@ class _InterfaceLoader(Loader):
     def exec_module(self, module: ModuleType) -> None:
         try:
             whole = get_interface(self._type_name)
-        except LinkwrightError as error:  # a mistake in the file: shown where the import stands
+        except LinkwrightError as error:  # an error in the file: reported at the import
             raise ImportError(str(error), name=module.__name__) from None
         name = whole.__name__
         found = {name: whole}

@@ -17,11 +17,11 @@ from pathlib import Path
 
 _LINE_LENGTH = 99
 _UNCHECKED_DOCSTRINGS = ("D100", "D101", "D102", "D103", "D104", "D105", "D106", "D107", "D203", "D212", "D404")
-"""Rules that ament leaves out: that there is a docstring at all, and one of each two that contradict each other."""
+"""Rules that ament disables: missing docstrings, and one of each contradictory pair."""
 _UNCHECKED_STYLE = ("B902", "C816", "I202", *_UNCHECKED_DOCSTRINGS)
 _SOURCES = frozenset({".c", ".cc", ".cmake", ".cpp", ".cxx", ".h", ".hh", ".hpp", ".hxx", ".py"})
 _HEADER_LENGTH = 4000
-"""Characters at the beginning of a file that hold its copyright notice and licence."""
+"""Characters at the beginning of a file to search for its copyright notice and licence."""
 _COPYRIGHT = re.compile(r"copyright.*\d{4}|SPDX-FileCopyrightText:", re.IGNORECASE)
 _LICENSE = re.compile(
     r"licensed under|SPDX-License-Identifier:|permission is hereby granted|redistribution and use|GNU \w* ?general",
@@ -33,7 +33,7 @@ def flake8(argv: Sequence[str] | None = None) -> int:
     """Run flake8 on a package; return 0 when it finds nothing, else 1.
 
     Args:
-        argv: options and paths of the command ``ament_flake8``; the process's own when left out.
+        argv: options and paths of the command ``ament_flake8``; the process's own if omitted.
     """
     return flake8_with_errors(argv)[0]
 
@@ -59,7 +59,7 @@ def pep257(argv: Sequence[str] | None = None) -> int:
     """Run pydocstyle on a package; return 0 when it finds nothing, else 1.
 
     Args:
-        argv: options and paths of the command ``ament_pep257``; the process's own when left out.
+        argv: options and paths of the command ``ament_pep257``; the process's own if omitted.
     """
     parser = _parser("ament_pep257")
     for name in ("--ignore", "--select", "--add-ignore", "--add-select"):
@@ -77,10 +77,10 @@ def pep257(argv: Sequence[str] | None = None) -> int:
 
 
 def copyright_headers(argv: Sequence[str] | None = None) -> int:
-    """Look for a copyright notice and a licence in each source file; return 0 when each has them, else 1.
+    """Check each source file for a copyright notice and a licence; return 0 if all have them, else 1.
 
     Args:
-        argv: paths and options of the command ``ament_copyright``; the process's own when left out.
+        argv: paths and options of the command ``ament_copyright``; the process's own if omitted.
     """
     files = [path for path in _files(_parser("ament_copyright").parse_args(argv)) if not _is_setup_of_package(path)]
     findings = []
@@ -126,7 +126,7 @@ def _is_setup_of_package(path: Path) -> bool:
 
 
 def _run(module: str, settings: Sequence[str], files: Sequence[Path]) -> tuple[int, list[str]]:
-    """Run a linter on files; return its exit status and what it prints, or skip the test where it is not installed."""
+    """Run a linter on files; return its exit status and output, or skip the test if it is not installed."""
     if not files:
         return 0, []
     if find_spec(module) is None:
@@ -140,6 +140,6 @@ def _run(module: str, settings: Sequence[str], files: Sequence[Path]) -> tuple[i
 
 
 def _skip(reason: str) -> None:
-    import pytest  # which runs, as it is a test that calls a linter
+    import pytest  # pytest is running, because a test calls the linter
 
     pytest.skip(reason)

@@ -1,6 +1,6 @@
-"""Filters that hand messages on, keep them, or match those of several topics (the API of ``message_filters``).
+"""Filters that forward, cache or synchronize messages of topics (the API of ``message_filters``).
 
-What is matched with what, and in which order, follows the Python modules of ``message_filters`` of Humble to Kilted.
+The matching and its order follow the Python modules of ``message_filters`` of Humble to Kilted.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ class SimpleFilter:
         self.callbacks: dict[int, tuple[Callable[..., object], tuple[Any, ...]]] = {}
 
     def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:
-        """Register a callback that gets each output, followed by `args`. Returns its number in `callbacks`."""
+        """Register a callback that gets each output, followed by `args`; return its number in `callbacks`."""
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number
 
     def signalMessage(self, *msg: Any) -> None:
-        """Put something out."""
+        """Output a message."""
         for callback, arguments in tuple(self.callbacks.values()):
             callback(*msg, *arguments)
 
@@ -48,9 +48,9 @@ class Subscriber(SimpleFilter):
     Args:
         node: the node that subscribes.
         msg_type: the message class.
-        topic: its name.
-        qos_profile: what is asked for; a number is a depth.
-        arguments: what else ``Node.create_subscription`` takes.
+        topic: the name of the topic.
+        qos_profile: the requested profile; a number is a depth.
+        arguments: further arguments of ``Node.create_subscription``.
     """
 
     def __init__(self, node: Any, msg_type: type, topic: str, *, qos_profile: Any = 10, **arguments: Any) -> None:
@@ -60,7 +60,7 @@ class Subscriber(SimpleFilter):
         self.sub = node.create_subscription(msg_type, topic, self.callback, qos_profile, **arguments)
 
     def callback(self, msg: Any) -> None:
-        """Put a message out."""
+        """Output a message."""
         self.signalMessage(msg)
 
     def getTopic(self) -> str:
@@ -68,18 +68,18 @@ class Subscriber(SimpleFilter):
         return self.topic
 
     def __getattr__(self, key: str) -> Any:
-        if key == "sub":  # where the constructor failed
+        if key == "sub":  # the constructor failed
             raise AttributeError(key)
         return getattr(self.sub, key)
 
 
 class Cache(SimpleFilter):
-    """Keeps the newest messages of a filter for look-ups by time, and passes each one on.
+    """Caches the newest messages of a filter for lookups by time, and forwards each message.
 
     Args:
-        f: the filter whose messages are kept.
-        cache_size: how many are.
-        allow_headerless: whether messages without a stamp are taken, as of the moment that they arrive.
+        f: the filter.
+        cache_size: the number of messages to keep.
+        allow_headerless: whether to accept messages without a stamp, with their time of arrival.
     """
 
     def __init__(self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False) -> None:
@@ -91,11 +91,11 @@ class Cache(SimpleFilter):
         self.connectInput(f)
 
     def connectInput(self, f: SimpleFilter) -> None:
-        """Keep the messages of a filter."""
+        """Cache the messages of a filter."""
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Keep a message; the oldest goes when there are too many."""
+        """Add a message, and drop the oldest if there are too many."""
         stamp = _time_of(msg, allow_headerless=self.allow_headerless, logger="message_filters_cache")
         if stamp is None:
             return
@@ -105,31 +105,31 @@ class Cache(SimpleFilter):
         self.signalMessage(msg)
 
     def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:
-        """The messages from a time to a time, both included."""
+        """Return the messages in a closed time interval."""
         assert from_stamp <= to_stamp, "the interval ends before it begins"
         return [msg for msg, time in self._kept() if from_stamp <= time <= to_stamp]
 
     def getElemAfterTime(self, stamp: Time) -> Any:
-        """The first message that is not older than a time; None where there is none."""
+        """Return the first message that is not older than a time, or None."""
         return next((msg for msg, time in self._kept() if time >= stamp), None)
 
     def getElemBeforeTime(self, stamp: Time) -> Any:
-        """The last message that is not newer than a time; None where there is none."""
+        """Return the last message that is not newer than a time, or None."""
         older = [msg for msg, time in self._kept() if time <= stamp]
         return older[-1] if older else None
 
     def getLatestTime(self) -> Time | None:
-        """The time of the last message; None without any."""
+        """Return the time of the last message, or None."""
         return self.cache_times[-1] if self.cache_times else None
 
-    getLastestTime = getLatestTime  # the name that Humble and Jazzy have for it
+    getLastestTime = getLatestTime  # the name in Humble and Jazzy
 
     def getOldestTime(self) -> Time | None:
-        """The time of the first message; None without any."""
+        """Return the time of the first message, or None."""
         return self.cache_times[0] if self.cache_times else None
 
     def getLast(self) -> Any:
-        """The message of the latest time; None without any."""
+        """Return the message with the latest time, or None."""
         latest = self.getLatestTime()
         return None if latest is None else self.getElemAfterTime(latest)
 
@@ -142,10 +142,10 @@ class TimeSynchronizer(SimpleFilter):
 
     Args:
         fs: the filters.
-        queue_size: how many messages of each wait for the others at most.
+        queue_size: the maximum number of queued messages of each filter.
 
     Attributes:
-        queues: the messages of each filter that wait, by their stamps in nanoseconds.
+        queues: the queued messages of each filter, by their stamps in nanoseconds.
     """
 
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
@@ -155,7 +155,7 @@ class TimeSynchronizer(SimpleFilter):
         self.connectInput(fs)
 
     def connectInput(self, fs: Sequence[SimpleFilter]) -> None:
-        """Match the messages of these filters."""
+        """Synchronize the messages of these filters."""
         self.queues: list[dict[int, Any]] = [{} for _ in fs]
         self.input_connections = [
             each.registerCallback(self.add, queue, index)
@@ -163,7 +163,7 @@ class TimeSynchronizer(SimpleFilter):
         ]
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Take a message of one of the filters; put out what is complete with it."""
+        """Add a message of one of the filters, and output the set that it completes."""
         with self.lock:
             self._keep(msg, my_queue, _time(msg.header.stamp).nanoseconds)
             common = set(self.queues[0]).intersection(*self.queues[1:])
@@ -182,10 +182,10 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
 
     Args:
         fs: the filters.
-        queue_size: how many messages of each wait for the others at most.
-        slop: how far the stamps of a set may be apart, in seconds.
-        allow_headerless: whether messages without a stamp are taken, as of the moment that they arrive.
-        sync_arrival_time: whether all messages are taken as of that moment.
+        queue_size: the maximum number of queued messages of each filter.
+        slop: the maximum difference of the stamps in a set, in seconds.
+        allow_headerless: whether to accept messages without a stamp, with their time of arrival.
+        sync_arrival_time: whether to use the time of arrival for all messages.
     """
 
     def __init__(
@@ -202,7 +202,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self.sync_arrival_time = sync_arrival_time
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Take a message of one of the filters; put out the set that it completes, of those nearest to it."""
+        """Add a message of one of the filters, and output the set of nearest messages that it completes."""
         if self.sync_arrival_time:
             time: Time | None = ROSClock().now()
         else:
@@ -217,7 +217,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
             self.signalMessage(*match)
 
     def _match(self, stamp: int, own: int | None) -> tuple[int, ...] | None:
-        """The stamps of the messages that go together with one just kept, in the order of the filters."""
+        """Return the stamps of the messages that match a new one, in the order of the filters."""
         slop = self.slop.nanoseconds
         choices = []
         for index, queue in enumerate(self.queues):
@@ -232,7 +232,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
 
 
 def _time_of(msg: Any, *, allow_headerless: bool, logger: str) -> Time | None:
-    """The stamp of a message, or its time of arrival where that is allowed; without either None, and a warning."""
+    """Return the stamp of a message, or its time of arrival if allowed; otherwise warn and return None."""
     stamp = getattr(getattr(msg, "header", None), "stamp", None)
     if stamp is not None:
         return _time(stamp)

@@ -1,9 +1,8 @@
-"""Makes the modules that the tables of names describe, so that ``from launch.actions import Shutdown`` works.
+"""Creates the modules that the tables of names describe, so that ``from launch.actions import Shutdown`` works.
 
-A folder of modules that are not there, as a path for Python's own finder: `FOLDER` holds every package that has a
-table, ``FOLDER/launch`` the modules of ``launch``. Whatever is on ``sys.path`` before it comes first, package by
-package, and `pkgutil` sees the modules as it sees files. A name is looked up where the table says when somebody first
-asks for it.
+`FOLDER` is a virtual folder for Python's path finder, with every package that has a table; ``FOLDER/launch`` contains
+the modules of ``launch``. Earlier entries of ``sys.path`` take precedence, package by package, and `pkgutil` lists the
+modules like files. A name is imported from the origin in the table on first use.
 """
 
 from __future__ import annotations
@@ -20,11 +19,11 @@ from typing import Any
 from linkwright.standins import table
 
 FOLDER = str(table.FOLDER)
-"""To be put on ``sys.path``, after `install`."""
+"""The entry to add to ``sys.path`` after `install`."""
 
 
 def install() -> None:
-    """Have Python find the modules of `FOLDER`; may be called again."""
+    """Make Python find the modules of `FOLDER`; may be called repeatedly."""
     if _finder_of not in sys.path_hooks:
         sys.path_hooks.insert(0, _finder_of)
         for path in [path for path in sys.path_importer_cache if path.startswith(FOLDER)]:
@@ -32,7 +31,7 @@ def install() -> None:
 
 
 def find_spec(name: str) -> ModuleSpec | None:
-    """The module of this name, or None when no table has it."""
+    """Return the module with a name, or None when no table has it."""
     found = table.find(name)
     if found is None:
         return None
@@ -44,7 +43,7 @@ def find_spec(name: str) -> ModuleSpec | None:
     )
     spec.has_location = True
     if spec.submodule_search_locations is not None:
-        spec.submodule_search_locations.append(os.path.join(FOLDER, *name.split(".")))  # noqa: PTH118 - no real folder
+        spec.submodule_search_locations.append(os.path.join(FOLDER, *name.split(".")))  # noqa: PTH118 - not a real folder
     return spec
 
 
@@ -54,7 +53,7 @@ def is_ours(module: ModuleType | None) -> bool:
 
 
 def _finder_of(path: str) -> _Finder:
-    """The finder of a folder, as Python asks each hook for it."""
+    """Return the finder of a folder; a path hook of Python."""
     if path != FOLDER and not path.startswith(FOLDER + os.sep):
         raise ImportError(f"{path!r} holds no stand-ins", path=path)
     return _Finder(path[len(FOLDER) + 1 :].replace(os.sep, "."))
@@ -67,11 +66,11 @@ class _Finder:
         self._package = package
 
     def find_spec(self, name: str, target: ModuleType | None = None) -> ModuleSpec | None:
-        """The module of this name, or None."""
+        """Return the module with a name, or None."""
         return find_spec(name)
 
     def iter_modules(self, prefix: str = "") -> Iterator[tuple[str, bool]]:
-        """The names of the modules, each with whether it is a package, for `pkgutil`."""
+        """Yield the names of the modules, each with whether it is a package, for `pkgutil`."""
         found = table.find(self._package)
         names = table.packages() if found is None else found.submodules
         for name in names:
@@ -80,23 +79,23 @@ class _Finder:
 
 
 class _Loader:
-    """Makes a module that looks its names up when somebody asks for them."""
+    """Creates a module that imports its names on first use."""
 
     def __init__(self, described: table.Module) -> None:
         self._described = described
 
     def homes(self, name: str) -> list[str]:
-        """Where else a name is that the module does not have, for whoever explains the error."""
+        """Return the other modules with a name that the module lacks, for error messages."""
         return table.homes(name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
-        """None: a module as Python makes it."""
+        """Return None, for Python's default module."""
         return None
 
     def exec_module(self, module: ModuleType) -> None:
-        """Give the module its names."""
+        """Set up the names of the module."""
         described = self._described
-        module.__doc__ = f"Stands in for ``{described.name}``."
+        module.__doc__ = f"A stand-in for ``{described.name}``."
         names = {**dict.fromkeys(described.names), **dict.fromkeys(described.submodules)}
 
         def look_up(name: str) -> Any:
@@ -116,7 +115,7 @@ class _Loader:
         vars(module).update(own_names, __all__=described.public)
         for name in described.submodules:
             if name in described.names and described.names[name].origin != table.IMPORT:
-                # A function with the name of its module, which Python would put in its place when that is imported.
+                # A function with the name of its module, which Python would replace by the module on import.
                 importlib.import_module(f"{described.name}.{name}")
                 setattr(module, name, value_of(described, name))
         if described.setup:
@@ -125,7 +124,7 @@ class _Loader:
 
 
 def value_of(module: table.Module, name: str) -> Any:
-    """What a name of a module stands for.
+    """Return the value of a name of a module.
 
     Raises:
         ImportError: the module that should have it cannot be imported.

@@ -21,11 +21,11 @@ _FLOAT32 = 7
 def dtype_from_fields(
     fields: Iterable[Any], point_step: int | None = None, *, is_bigendian: bool = False
 ) -> np.dtype[Any]:
-    """The numpy type of one point.
+    """Return the numpy type of a point.
 
     Args:
         fields: the fields of a point (sensor_msgs/msg/PointField). One with a count of n becomes n fields.
-        point_step: bytes from one point to the next; as few as the fields need when None.
+        point_step: bytes from one point to the next; None for the size of the fields.
         is_bigendian: the order of the bytes of numbers.
     """
     order = ">" if is_bigendian else "<"
@@ -51,17 +51,17 @@ def read_points(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> NDArray[Any]:
-    """The points of a cloud as a structured array.
+    """Return the points of a cloud as a structured array.
 
     Args:
         cloud: sensor_msgs/msg/PointCloud2.
-        field_names: the fields that are wanted; all when None.
-        skip_nans: leave out points of which a wanted field is no number.
-        uvs: which points: their numbers, or pairs of column and row; all when None.
-        reshape_organized_cloud: give an array of width by height when the cloud has rows.
+        field_names: the fields to read; None for all.
+        skip_nans: whether to skip points with NaN in one of the fields.
+        uvs: the points to read: their indices, or pairs of column and row; None for all.
+        reshape_organized_cloud: whether to return an array of width by height for an organised cloud.
 
     Raises:
-        AssertionError: the cloud does not have a field that is wanted.
+        AssertionError: the cloud lacks one of the fields.
     """
     dtype = dtype_from_fields(cloud.fields, cloud.point_step, is_bigendian=cloud.is_bigendian)
     points: NDArray[Any] = _rows(cloud, dtype)
@@ -86,10 +86,10 @@ def read_points_numpy(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> NDArray[Any]:
-    """The points of a cloud as an array with a column for each field; see `read_points`.
+    """Return the points of a cloud as an array with a column for each field; see `read_points`.
 
     Raises:
-        AssertionError: the fields are not all of one type, or one is not there.
+        AssertionError: the fields are not all of one type, or one is missing.
     """
     points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
     if len({points.dtype[name] for name in _names(points.dtype)}) > 1:
@@ -100,7 +100,7 @@ def read_points_numpy(
 def read_points_list(
     cloud: Any, field_names: Sequence[str] | None = None, skip_nans: bool = False, uvs: Iterable[Any] | None = None
 ) -> list[Any]:
-    """The points of a cloud as named tuples; see `read_points`."""
+    """Return the points of a cloud as named tuples; see `read_points`."""
     points = read_points(cloud, field_names, skip_nans, uvs)
     point = namedtuple("Point", _names(points.dtype))  # type: ignore[misc]  # noqa: PYI024 - the cloud's names
     return [point._make(values) for values in points.tolist()]
@@ -109,13 +109,13 @@ def read_points_list(
 def create_cloud(
     header: Any, fields: Sequence[Any], points: Iterable[Any] | NDArray[Any], step: int | None = None
 ) -> Any:
-    """A cloud of points: sensor_msgs/msg/PointCloud2.
+    """Create a point cloud (sensor_msgs/msg/PointCloud2).
 
     Args:
         header: its stamp and frame (std_msgs/msg/Header).
-        fields: what a point consists of (sensor_msgs/msg/PointField).
+        fields: the fields of a point (sensor_msgs/msg/PointField).
         points: rows with a value for each field, or a structured array; one of width by height becomes organised.
-        step: bytes from one point to the next; as few as the fields need when None.
+        step: bytes from one point to the next; None for the size of the fields.
 
     Raises:
         AssertionError: the points do not have these fields.
@@ -140,7 +140,7 @@ def create_cloud(
 
 
 def create_cloud_xyz32(header: Any, points: Iterable[Any] | NDArray[Any], step: int | None = None) -> Any:
-    """A cloud of points with x, y and z as float32; see `create_cloud`."""
+    """Create a point cloud with x, y and z as float32; see `create_cloud`."""
     field = get_message("sensor_msgs/msg/PointField")
     fields = [field(name=name, offset=4 * at, datatype=_FLOAT32, count=1) for at, name in enumerate("xyz")]
     return create_cloud(header, fields, points, step)
@@ -151,7 +151,7 @@ def _names(dtype: np.dtype[Any]) -> tuple[str, ...]:
 
 
 def _rows(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """The points one after another, without the padding at the ends of rows."""
+    """Return the points in sequence, without the padding at the ends of rows."""
     data = np.frombuffer(cloud.data, np.uint8)
     width, height = cloud.width, cloud.height
     if height > 1 and cloud.row_step > width * dtype.itemsize:
@@ -186,7 +186,7 @@ def _structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -> N
 
 
 def _filled(points: list[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
-    """A structured array with zeros in the gaps between fields, which numpy does not initialise."""
+    """Return a structured array with zeros in the gaps between fields, which numpy does not initialise."""
     rows = np.zeros(np.shape(points)[:1] if isinstance(points, list) else points.shape, dtype)
     rows[...] = points
     return rows

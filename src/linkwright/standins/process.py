@@ -1,4 +1,4 @@
-"""Runs users' programs so that ``import rclpy`` finds ours where no real one is installed."""
+"""Commands and environments for users' programs, in which ``import rclpy`` finds ours if no real one is installed."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from linkwright.standins import table
 _STARTUP = Path(__file__).parent / "startup"
 
 _NEEDED = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cyclonedds", "zenoh", "xxhash")
-"""What the stand-ins import, for programs that run in an environment of their own."""
+"""The packages that the stand-ins import, for programs in another environment."""
 
 
 def standin_path() -> str:
-    """The folder to put on ``PYTHONPATH``.
+    """Return the folder for ``PYTHONPATH``.
 
-    It holds only a ``sitecustomize``, which runs the next one too, and ``linkwright_pytest``, which pytest loads.
+    It contains only a ``sitecustomize``, which also runs the next one, and ``linkwright_pytest``, which pytest loads.
     """
     return str(_STARTUP)
 
 
 def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
-    """The environment for a process, and for those that it starts, in which the stand-ins can be imported.
+    """Return the environment in which a process and its children can import the stand-ins.
 
     Args:
-        base: the environment to begin with; this process's own when left out.
+        base: the base environment; this process's own if omitted.
 
     Returns:
         A copy with ``PYTHONPATH`` led by `standin_path`, and ``LINKWRIGHT_SITE``: the folders of the packages that the
@@ -45,11 +45,11 @@ def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
 
 
 def python_command(arguments: Sequence[str], base: Mapping[str, str] | None = None) -> list[str]:
-    """The command that runs a Python program.
+    """Return the command that runs a Python program.
 
     Args:
-        arguments: what follows the interpreter: a file, or ``-m`` and a module, and the program's arguments.
-        base: the environment the program will get; this process's own when left out.
+        arguments: the arguments of the interpreter: a file, or ``-m`` and a module, and the program's arguments.
+        base: the environment of the program; this process's own if omitted.
 
     Returns:
         The arguments behind the interpreter of the active virtual environment, when that has the version of ours, else

@@ -1,4 +1,4 @@
-"""What recordings are described by in ``rosbag2_py``: options, filters, and ``metadata.yaml``."""
+"""The data classes of recordings in ``rosbag2_py``: options, filters, and ``metadata.yaml``."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.graph.time.values import ClockType, Duration, Time
 
 @dataclass(slots=True)
 class StorageOptions:
-    """Where a recording is, in which format, and how it is divided into files."""
+    """The location and format of a recording, and its division into files."""
 
     uri: str
     storage_id: str = ""
@@ -43,7 +43,7 @@ class ConverterOptions:
 
 @dataclass(slots=True)
 class StorageFilter:
-    """Which topics are read: those named and those that match a regular expression; all where neither is given."""
+    """The topics to read: those named and those that match a regular expression, or all by default."""
 
     topics: list[str] = field(default_factory=list)
     topics_regex: str = ""
@@ -65,7 +65,7 @@ class StorageFilter:
 
 
 class ReadOrderSortBy(enum.Enum):
-    """What messages are sorted by."""
+    """The sort keys of messages."""
 
     ReceivedTimestamp = 0
     PublishedTimestamp = 1
@@ -82,7 +82,7 @@ class ReadOrder:
 
 @dataclass(slots=True)
 class MessageDefinition:
-    """The definition of a type as a recording has it, with those of the types in it."""
+    """The definition of a type in a recording, with its nested types."""
 
     topic_type: str
     encoding: str
@@ -144,7 +144,7 @@ class FileInformation:
 
 @dataclass(repr=False, slots=True)
 class BagMetadata:
-    """What is known of a recording without reading its messages."""
+    """The metadata of a recording."""
 
     version: int = 9
     bag_size: int = 0
@@ -185,7 +185,7 @@ class MetadataIo:
         """Read the file in a folder.
 
         Raises:
-            RuntimeError: there is none, or it has another form.
+            RuntimeError: there is none, or it has another structure.
         """
         import yaml
 
@@ -206,16 +206,16 @@ class MetadataIo:
         write_information(Path(uri), _information(metadata))
 
     def serialize_metadata(self, metadata: BagMetadata) -> str:
-        """The text of the file, without the key above all others."""
+        """Return the text of the file, without its root key."""
         import yaml
 
         return yaml.safe_dump(_information(metadata), sort_keys=False, allow_unicode=True)
 
     def deserialize_metadata(self, serialized_metadata: str) -> BagMetadata:
-        """Read what `serialize_metadata` gives.
+        """Parse the text of `serialize_metadata`.
 
         Raises:
-            RuntimeError: it has another form.
+            RuntimeError: it has another structure.
         """
         import yaml
 
@@ -226,22 +226,22 @@ class MetadataIo:
 
 
 def get_default_storage_id() -> str:
-    """The format of the files that are written where none is named."""
+    """Return the default format of written files."""
     return STORAGES[0]
 
 
 def to_rclcpp_qos_vector(serialized: str, version: int) -> list[QoSProfile]:  # noqa: ARG001 - rosbag2's signature
-    """The profiles in a text of ``metadata.yaml``, of any version."""
+    """Return the profiles in a text of ``metadata.yaml``, of any version."""
     return from_text(serialized)
 
 
 def convert_rclcpp_qos_to_rclpy_qos(qos_input: QoSProfile) -> QoSProfile:
-    """The profile itself, which is that of rclpy here."""
+    """Return the profile itself, which is rclpy's."""
     return qos_input
 
 
 def _metadata(found: Mapping[str, Any]) -> BagMetadata:
-    """The metadata in a ``metadata.yaml``; older versions lack keys."""
+    """Return the metadata in a ``metadata.yaml``; older versions lack keys."""
     topics = []
     for each in found["topics_with_message_count"]:
         known = dict(each["topic_metadata"])

@@ -1,4 +1,4 @@
-"""Recording, playing and rewriting from a program (``rosbag2_py``'s ``Recorder``, ``Player``, ``bag_rewrite`` ...)."""
+"""Recording, playback and rewriting in programs (``rosbag2_py``'s ``Recorder``, ``Player``, ``bag_rewrite`` ...)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _LOOK_SECONDS = 0.1
 
 
 class ServiceRequestsSource(enum.Enum):
-    """Whose introspection events requests are taken from, when requests are played."""
+    """The source of introspection events for the playback of requests."""
 
     SERVICE_INTROSPECTION = 0
     CLIENT_INTROSPECTION = 1
@@ -40,7 +40,7 @@ class ServiceRequestsSource(enum.Enum):
 
 @dataclass(slots=True)
 class PlayOptions:
-    """How a recording is played; what only tunes rosbag2 is accepted and changes nothing."""
+    """The options of playback; options that only tune rosbag2 are accepted without effect."""
 
     read_ahead_queue_size: int = 1000
     node_prefix: str = ""
@@ -71,7 +71,7 @@ class PlayOptions:
 
 @dataclass(slots=True)
 class RecordOptions:
-    """What is recorded, and how; what only tunes rosbag2 is accepted and changes nothing."""
+    """The options of recording; options that only tune rosbag2 are accepted without effect."""
 
     all_topics: bool = False
     all_services: bool = False
@@ -106,7 +106,7 @@ class RecordOptions:
 
     @property
     def selection(self) -> TopicSelection:
-        """Which topics are recorded. Services are given by the topics of their events, as ``ros2bag`` does."""
+        """Return the selection of topics; services are given by their event topics, as in ``ros2bag``."""
         return TopicSelection(
             everything=self.all_topics or self.all,
             names=_absolute(self.topics),
@@ -123,7 +123,7 @@ class RecordOptions:
 
 
 class _Transport:
-    """A node of its own in a context of its own, which runs until it is done or cancelled."""
+    """A node in its own context, which runs until it is done or cancelled."""
 
     _cancelled: ClassVar[threading.Event]
 
@@ -143,15 +143,15 @@ class _Transport:
 
     @classmethod
     def cancel(cls) -> None:
-        """End what runs, from any thread."""
+        """End the run, from any thread."""
         cls._cancelled.set()
 
     @contextmanager
     def _running(self, name: str, *arguments: str) -> Iterator[tuple[Node, Callable[[Callable[[], bool]], None]]]:
-        """A node, and what runs its callbacks until something holds or it is cancelled.
+        """Yield a node, and a function that runs its callbacks until a condition holds or it is cancelled.
 
         Raises:
-            RuntimeError: a recording cannot be opened or made.
+            RuntimeError: a recording cannot be opened or created.
         """
         context = Context()
         context.init([*self._arguments, *arguments])
@@ -169,7 +169,7 @@ class _Transport:
             raise RuntimeError(str(error)) from error
         finally:
             context.try_shutdown()
-            self._cancelled.clear()  # not at the beginning: it may be cancelled before its thread comes here
+            self._cancelled.clear()  # not at the start: it may be cancelled before its thread gets here
 
 
 class Recorder(_Transport):
@@ -178,10 +178,10 @@ class Recorder(_Transport):
     def record(
         self, storage_options: StorageOptions, record_options: RecordOptions, node_name: str = "rosbag2_recorder"
     ) -> None:
-        """Record; returns after `cancel`, and after Ctrl-C.
+        """Record until `cancel` or Ctrl-C.
 
         Raises:
-            RuntimeError: the folder exists already, or there is no such storage.
+            RuntimeError: the folder already exists, or there is no such storage.
         """
         parameters = ("-p", "use_sim_time:=true") if record_options.use_sim_time else ()
         with self._running(node_name, *parameters) as (node, spin_until):
@@ -219,7 +219,7 @@ class Player(_Transport):
         """Publish the first messages as fast as possible and wait, paused, until it is cancelled.
 
         Raises:
-            RuntimeError: as with `play`.
+            RuntimeError: see `play`.
         """
         self._play(storage_options, play_options, num_messages)
 
@@ -240,7 +240,7 @@ class Player(_Transport):
 
 
 class Reindexer:
-    """Makes the metadata of recordings anew."""
+    """Rebuilds the metadata of recordings."""
 
     def reindex(self, storage_options: StorageOptions) -> None:
         """Write the ``metadata.yaml`` of a recording.
@@ -255,10 +255,10 @@ class Reindexer:
 
 
 def bag_rewrite(input_options: Sequence[StorageOptions], output_config_file: str) -> None:
-    """Write recordings anew, by a YAML file with the key ``output_bags``.
+    """Rewrite recordings, with the options in a YAML file with the key ``output_bags``.
 
     Raises:
-        RuntimeError: a recording cannot be read or made, or the file has another form.
+        RuntimeError: a recording cannot be read or created, or the file has another structure.
     """
     if not input_options:
         raise RuntimeError("Must provide at least one input and one output bag to rewrite.")
@@ -289,7 +289,7 @@ def _how_to_play(options: PlayOptions, *, paused: bool) -> _HowToPlay:
 
 
 def _remapping(rule: str) -> list[str]:
-    """The words of a command line for a rule; rosbag2 takes them with and without ``--ros-args --remap``."""
+    """Return the words of a command line for a rule; rosbag2 accepts it with and without ``--ros-args --remap``."""
     return [] if rule.startswith("-") else ["--remap", rule]
 
 

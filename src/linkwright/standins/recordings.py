@@ -1,4 +1,4 @@
-"""Recordings, read and written message by message (the API of ``rosbag2_py``, of Humble to Kilted)."""
+"""Readers and writers of recordings (the API of ``rosbag2_py``, of Humble to Kilted)."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from linkwright.standins.recording_storage import (
 _Message = tuple[str, int, bytes]
 
 _STEP_NS = 1_000_000_000
-"""How much is read at once where messages are read backwards."""
+"""The size of a block when messages are read backwards."""
 
 
 class CompressionMode(enum.Enum):
-    """What is compressed."""
+    """The unit of compression."""
 
     NONE = 0
     FILE = 1
@@ -43,7 +43,7 @@ class CompressionMode(enum.Enum):
 
 @dataclass
 class CompressionOptions:
-    """How a recording is compressed; zstd is the only format, and there is nothing to be tuned."""
+    """The compression options; zstd is the only format, and tuning options have no effect."""
 
     compression_format: str = ""
     compression_mode: CompressionMode = CompressionMode.NONE
@@ -53,12 +53,12 @@ class CompressionOptions:
 
 
 def compression_mode_from_string(name: str) -> CompressionMode:
-    """The mode that a name means, in any case; none for an unknown one."""
+    """Return the mode with a name, in any case; NONE for an unknown name."""
     return CompressionMode.__members__.get(name.upper(), CompressionMode.NONE)
 
 
 def compression_mode_to_string(mode: CompressionMode) -> str:
-    """The name of a mode."""
+    """Return the name of a mode."""
     return mode.name
 
 
@@ -88,7 +88,7 @@ class SequentialReader:
         self.seek(None)
 
     def open_uri(self, uri: str) -> None:
-        """Open a recording by its place alone."""
+        """Open a recording by its path alone."""
         self.open(StorageOptions(uri))
 
     def close(self) -> None:
@@ -100,7 +100,7 @@ class SequentialReader:
         return self._next is not None
 
     def read_next(self) -> tuple[str, bytes, int]:
-        """The next message: topic, CDR bytes, and when it was received, in nanoseconds since the epoch.
+        """Return the next message: topic, CDR bytes, and time of reception in nanoseconds since the epoch.
 
         Raises:
             RuntimeError: there is none.
@@ -112,15 +112,15 @@ class SequentialReader:
         return topic, data, stamp_ns
 
     def get_all_topics_and_types(self) -> list[TopicMetadata]:
-        """The topics of the recording, whatever is filtered."""
+        """Return the topics of the recording, without filters."""
         return [topic_information.topic_metadata for topic_information in self.get_metadata().topics_with_message_count]
 
     def get_all_message_definitions(self) -> list[MessageDefinition]:
-        """The definitions of the types of its topics, as far as it has them."""
+        """Return the definitions of its topics' types, as far as it contains them."""
         return [MessageDefinition(*definition) for definition in self._opened().definitions]
 
     def get_metadata(self) -> BagMetadata:
-        """What is known of the recording."""
+        """Return the metadata of the recording."""
         bag = self._opened()
         hashes = {name: digest for name, _, _, digest in bag.definitions}
         topics = [
@@ -162,7 +162,7 @@ class SequentialReader:
         self.set_filter(StorageFilter())
 
     def set_read_order(self, read_order: ReadOrder) -> bool:
-        """Read forwards or backwards from here on; whether that is possible.
+        """Read forwards or backwards from here on; return whether that is possible.
 
         Raises:
             RuntimeError: the order is not that of the times at which messages were received.
@@ -184,7 +184,7 @@ class SequentialReader:
         return self._bag
 
     def _continue(self) -> None:
-        """Go on after the last message that was read."""
+        """Continue after the last message read."""
         bag = self._opened()
         topics = [topic.name for topic in bag.topics if self._filter.admits(topic.name)]
         if not topics:
@@ -214,7 +214,7 @@ class SequentialReader:
 
 
 def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> Iterator[_Message]:
-    """The messages of topics from the last one on, where a time is given from the last one at or before it."""
+    """Yield the messages of topics backwards, from the end or from the last one at or before a time."""
     stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _STEP_NS
     while stop_ns > bag.start_ns:
         found = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
@@ -224,7 +224,7 @@ def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> 
 
 
 def _files(bag: BagReader) -> list[FileInformation]:
-    """What ``metadata.yaml`` says of each of several files; nothing where it is missing."""
+    """Return the entries of ``metadata.yaml`` for several files; none if it is missing."""
     metadata = MetadataIo()
     where = str(bag.path)
     return metadata.read_metadata(where).files if metadata.metadata_file_exists(where) else []
@@ -241,10 +241,10 @@ class SequentialWriter:
         self._bag: BagWriter | None = None
 
     def open(self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None) -> None:
-        """Begin a recording.
+        """Start a recording.
 
         Raises:
-            RuntimeError: the folder exists already, or there is no such storage.
+            RuntimeError: the folder already exists, or there is no such storage.
         """
         try:
             self._bag = writer_for(storage_options, self._compression(storage_options))
@@ -257,7 +257,7 @@ class SequentialWriter:
         self._opened().close()
 
     def create_topic(self, topic_with_type: TopicMetadata) -> None:
-        """Make room for a topic; its messages may follow.
+        """Add a topic, whose messages may follow.
 
         Raises:
             RuntimeError: no package has its type.
@@ -274,10 +274,10 @@ class SequentialWriter:
         """Add a message.
 
         Args:
-            topic_name: a topic that was made.
-            message: CDR bytes with their header, as ``serialize_message`` gives them.
-            timestamp: when it was received, nanoseconds since the epoch.
-            send_timestamp: when it was published; not kept.
+            topic_name: an existing topic.
+            message: CDR bytes with their header, from ``serialize_message``.
+            timestamp: the time of reception, nanoseconds since the epoch.
+            send_timestamp: the time of publication; not recorded.
 
         Raises:
             RuntimeError: there is no such topic.
@@ -288,10 +288,10 @@ class SequentialWriter:
         bag.write(topic_name, timestamp, message)
 
     def take_snapshot(self) -> bool:
-        """Write the last messages, which are kept with ``snapshot_mode``; whether they are.
+        """Write the latest messages, which ``snapshot_mode`` keeps; return whether the mode is on.
 
         Raises:
-            RuntimeError: the disk refuses.
+            RuntimeError: the file cannot be written.
         """
         try:
             return self._opened().take_snapshot()
@@ -299,10 +299,10 @@ class SequentialWriter:
             raise RuntimeError(str(error)) from error
 
     def split_bagfile(self) -> None:
-        """Go on in another file.
+        """Continue in a new file.
 
         Raises:
-            RuntimeError: the disk refuses.
+            RuntimeError: the file cannot be written.
         """
         try:
             self._opened().split()
@@ -319,7 +319,7 @@ class SequentialWriter:
 
 
 class SequentialCompressionWriter(SequentialWriter):
-    """A `SequentialWriter` of compressed recordings; without options, where the format has compression."""
+    """A `SequentialWriter` of compressed recordings; without options, it uses the format's own compression."""
 
     def __init__(self, compression_options: CompressionOptions | None = None) -> None:
         super().__init__()
@@ -335,7 +335,7 @@ class Info:
     """Answers questions about recordings."""
 
     def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:
-        """What is known of a recording.
+        """Return the metadata of a recording.
 
         Raises:
             RuntimeError: there is none, or it is damaged.
@@ -349,10 +349,10 @@ class Info:
 
 
 class LocalMessageDefinitionSource:
-    """The definitions of types that are known here."""
+    """The definitions of known types."""
 
     def get_full_text(self, root_topic_type: str) -> MessageDefinition:
-        """The definition of a type; one without a text where it is not known."""
+        """Return the definition of a type; an empty one if it is not known."""
         try:
             return MessageDefinition(root_topic_type, "ros2msg", schema_of(root_topic_type), type_hash(root_topic_type))
         except LinkwrightError:
@@ -360,30 +360,30 @@ class LocalMessageDefinitionSource:
 
 
 def get_registered_readers() -> set[str]:
-    """The formats of files that can be read."""
+    """Return the readable file formats."""
     return set(STORAGES)
 
 
 def get_registered_compressors() -> set[str]:
-    """The formats of compression."""
+    """Return the compression formats."""
     return {"zstd"}
 
 
 def get_registered_serializers() -> set[str]:
-    """The converters of messages: none, since CDR is the only form."""
+    """Return the converters of messages: none, because CDR is the only format."""
     return set()
 
 
 def get_registered_writers() -> set[str]:
-    """The formats of files that can be written."""
+    """Return the writable file formats."""
     return set(STORAGES)
 
 
 def writer_for(options: StorageOptions, compression: str) -> BagWriter:
-    """A recording by its options.
+    """Create a writer from its options.
 
     Raises:
-        RuntimeError: there is no such storage, or there is no room for snapshots.
+        RuntimeError: there is no such storage, or no memory for snapshots.
         LinkwrightError: those of `BagWriter`.
     """
     storage = options.storage_id or STORAGES[0]

@@ -1,4 +1,4 @@
-"""What programs take of ros2cli's packages: ``ros2pkg.api`` and ``ros2topic.api``."""
+"""The parts of ros2cli's packages that programs use: ``ros2pkg.api`` and ``ros2topic.api``."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ class PackageNotFound(Exception):
 
 
 def get_package_names() -> KeysView[str]:
-    """The names of all packages."""
+    """Return the names of all packages."""
     return get_packages_with_prefixes().keys()
 
 
 def get_prefix_path(package_name: str) -> str | None:
-    """The prefix of a package; None without one."""
+    """Return the prefix of a package, or None."""
     try:
         return get_package_prefix(package_name)
     except PackageNotFoundError:
@@ -37,7 +37,7 @@ def get_prefix_path(package_name: str) -> str | None:
 
 
 def get_executable_paths(*, package_name: str) -> list[str]:
-    """The programs below ``lib`` of a package's prefix.
+    """Return the programs below ``lib`` of a package's prefix.
 
     Raises:
         PackageNotFound: there is no such package.
@@ -46,7 +46,7 @@ def get_executable_paths(*, package_name: str) -> list[str]:
     if prefix is None:
         raise PackageNotFound(package_name)
     found: list[str] = []
-    for folder, inside, files in os.walk(os.path.join(prefix, "lib", package_name)):  # noqa: PTH118 - texts, as there
+    for folder, inside, files in os.walk(os.path.join(prefix, "lib", package_name)):  # noqa: PTH118 - strings, as in ros2pkg
         inside[:] = sorted(each for each in inside if not each.startswith("."))
         paths = (os.path.join(folder, name) for name in sorted(files))  # noqa: PTH118
         found += [path for path in paths if os.access(path, os.X_OK)]
@@ -54,21 +54,21 @@ def get_executable_paths(*, package_name: str) -> list[str]:
 
 
 def get_topic_names_and_types(*, node: Any, include_hidden_topics: bool = False) -> list[tuple[str, list[str]]]:
-    """The topics that a node knows of, with their types."""
+    """Return the topics that a node has discovered, with their types."""
     found: list[tuple[str, list[str]]] = node.get_topic_names_and_types()
     return [each for each in found if include_hidden_topics or not topic_or_service_is_hidden(each[0])]
 
 
 def get_topic_names(*, node: Any, include_hidden_topics: bool = False) -> list[str]:
-    """The names of the topics that a node knows of."""
+    """Return the names of the topics that a node has discovered."""
     return [name for name, _ in get_topic_names_and_types(node=node, include_hidden_topics=include_hidden_topics)]
 
 
 def get_msg_class(node: Any, topic: str, blocking: bool = False, include_hidden_topics: bool = False) -> Any:
-    """The class of a topic's messages; None where nobody publishes it, or it is waited for that somebody does.
+    """Return the class of a topic's messages; without a publisher, return None or wait for one.
 
     Raises:
-        RuntimeError: the name is none, or the topic has several types.
+        RuntimeError: the name is invalid, or the topic has several types.
     """
     found = _get_msg_class(node, topic, include_hidden_topics)
     if found is None:
@@ -96,17 +96,17 @@ def _get_msg_class(node: Any, topic: str, include_hidden_topics: bool) -> Any:
 
 
 def unsigned_int(string: str) -> int:
-    """A number on a command line that is not negative.
+    """Parse a non-negative number on a command line.
 
     Raises:
         ArgumentTypeError: it is negative.
-        ValueError: it is no number.
+        ValueError: it is not a number.
     """
     return _at_least(0, string, "value must be non-negative integer")
 
 
 def positive_int(string: str) -> int:
-    """A number on a command line that is greater than zero; raises what `unsigned_int` does."""
+    """Parse a positive number on a command line; raises the same errors as `unsigned_int`."""
     return _at_least(1, string, "value must be a positive integer")
 
 

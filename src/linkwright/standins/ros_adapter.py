@@ -32,10 +32,10 @@ class ROSAdapter:
             self.start()
 
     def start(self) -> None:
-        """Make the node and spin.
+        """Create the node and spin.
 
         Raises:
-            RuntimeError: it runs already.
+            RuntimeError: it is already running.
         """
         if self._running:
             raise RuntimeError("Cannot start a ROS adapter that is already running")
@@ -55,7 +55,7 @@ class ROSAdapter:
         """Stop spinning and destroy the node.
 
         Raises:
-            RuntimeError: it does not run.
+            RuntimeError: it is not running.
         """
         if not self._running:
             raise RuntimeError("Cannot shutdown a ROS adapter that is not running")
@@ -82,12 +82,12 @@ class ROSAdapter:
 
     @property
     def ros_node(self) -> Any:
-        """The node; None while it does not run."""
+        """The node, or None while it is not running."""
         return self._node
 
     @property
     def ros_executor(self) -> Any:
-        """What runs the node's callbacks."""
+        """The executor of the node."""
         return self._executor
 
     def _spin(self) -> None:
@@ -96,7 +96,7 @@ class ROSAdapter:
 
 
 def get_ros_adapter(context: LaunchContext) -> ROSAdapter:
-    """The adapter of a launch; made when first asked for, and ended with the launch."""
+    """Return the adapter of a launch, which is created on first use and ends with the launch."""
     try:
         adapter: ROSAdapter = context.locals.ros_adapter
     except AttributeError:
@@ -107,5 +107,5 @@ def get_ros_adapter(context: LaunchContext) -> ROSAdapter:
 
 
 def get_ros_node(context: LaunchContext) -> Any:
-    """The node of the adapter of a launch."""
+    """Return the node of a launch's adapter."""
     return get_ros_adapter(context).ros_node

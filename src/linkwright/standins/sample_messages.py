@@ -18,12 +18,12 @@ _KINDS = 3
 
 
 def samples(name: str) -> list[Message]:
-    """Messages of a type of ``test_msgs``: with its defaults, with small values, and with extreme ones.
+    """Return messages of a type of ``test_msgs``: with its defaults, with small values, and with extreme ones.
 
-    A type without fields has the first alone.
+    A type without fields has only the first.
 
     Args:
-        name: of the type, such as ``BasicTypes``.
+        name: the name of the type, such as ``BasicTypes``.
     """
     cls = get_message(f"test_msgs/msg/{name}")
     has_fields = bool(cls.get_fields_and_field_types())
@@ -58,7 +58,7 @@ def _value(type_name: str, kind: int) -> Any:
 
 
 def get_test_msg(message_name: str) -> list[Message]:
-    """The samples of a type; ValueError where there is no such type."""
+    """Return the samples of a type; ValueError if there is no such type."""
     if message_name not in _FIXTURES:
         raise ValueError(f"test_msgs has no samples of '{message_name}'; it has them of {', '.join(_FIXTURES)}")
     return samples(message_name)

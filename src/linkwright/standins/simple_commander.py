@@ -1,4 +1,4 @@
-"""Goals for nav2 from a program, without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
+"""Goals for nav2 without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.rclpy_api.session import spin_once, spin_until_future_complete
 
 _WAIT = 1.0
-"""Seconds between two complaints about a server that is not there."""
+"""Seconds between log messages about a missing server."""
 _STEP = 0.1
 _ACTIVE = "active"
 
 
 class TaskResult(Enum):
-    """What became of a task."""
+    """The result of a task."""
 
     UNKNOWN = 0
     SUCCEEDED = 1
@@ -49,15 +49,15 @@ _ACTIONS = {
 
 
 class BasicNavigator(Node):
-    """Asks nav2 for what it can do: each task begins at once, and `isTaskComplete` tells whether it has ended.
+    """Sends tasks to nav2: each starts at once, and `isTaskComplete` returns whether it has ended.
 
     Attributes:
-        initial_pose: where the robot was said to be.
-        initial_pose_received: whether the localisation has answered.
-        feedback: the latest of the task.
-        status: of the task, a number of action_msgs/GoalStatus; None before it has ended.
-        goal_handle: of the task.
-        result_future: gets its result.
+        initial_pose: the given initial pose of the robot.
+        initial_pose_received: whether the localisation has responded.
+        feedback: the latest feedback of the task.
+        status: the status of the task (action_msgs/GoalStatus); None before it has ended.
+        goal_handle: the goal handle of the task.
+        result_future: the future of its result.
     """
 
     def __init__(self, node_name: str = "basic_navigator", namespace: str = "") -> None:
@@ -76,51 +76,51 @@ class BasicNavigator(Node):
         self.initial_pose_pub = self.create_publisher(pose, "initialpose", 10)
 
     def destroyNode(self) -> None:
-        """End the node."""
+        """Destroy the node."""
         self.destroy_node()
 
     # --- tasks --------------------------------------------------------------------------------------------------------
 
     def setInitialPose(self, initial_pose: Any) -> None:
-        """Say where the robot is (geometry_msgs/PoseStamped)."""
+        """Publish the initial pose of the robot (geometry_msgs/PoseStamped)."""
         self.initial_pose_received = False
         self.initial_pose = initial_pose
         self._setInitialPose()
 
     def goToPose(self, pose: Any, behavior_tree: str = "") -> bool:
-        """Go to a pose; whether the goal was accepted."""
+        """Go to a pose; return whether the goal was accepted."""
         return self._begin("navigate_to_pose", pose=pose, behavior_tree=behavior_tree)
 
     def goThroughPoses(self, poses: Any, behavior_tree: str = "") -> bool:
-        """Go to the last of some poses by way of the others; whether the goal was accepted."""
+        """Go through poses to the last of them; return whether the goal was accepted."""
         return self._begin("navigate_through_poses", poses=list(poses), behavior_tree=behavior_tree)
 
     def followWaypoints(self, poses: Any) -> bool:
-        """Go to each of some poses and do there what is to be done; whether the goal was accepted."""
+        """Go to each of some poses and execute the waypoint tasks there; return whether the goal was accepted."""
         return self._begin("follow_waypoints", poses=list(poses))
 
     def followPath(self, path: Any, controller_id: str = "", goal_checker_id: str = "") -> bool:
-        """Drive along a path; whether the goal was accepted."""
+        """Drive along a path; return whether the goal was accepted."""
         return self._begin("follow_path", path=path, controller_id=controller_id, goal_checker_id=goal_checker_id)
 
     def spin(self, spin_dist: float = 1.57, time_allowance: float = 10) -> bool:
-        """Turn on the spot by an angle (radians); whether the goal was accepted."""
+        """Turn in place by an angle (radians); return whether the goal was accepted."""
         return self._begin("spin", target_yaw=float(spin_dist), time_allowance=_duration(time_allowance))
 
     def backup(self, backup_dist: float = 0.15, backup_speed: float = 0.025, time_allowance: float = 10) -> bool:
-        """Drive straight back (metres, m/s); whether the goal was accepted."""
+        """Drive straight back (metres, m/s); return whether the goal was accepted."""
         return self._straight("backup", backup_dist, backup_speed, time_allowance)
 
     def driveOnHeading(self, dist: float = 0.15, speed: float = 0.025, time_allowance: float = 10) -> bool:
-        """Drive straight on (metres, m/s); whether the goal was accepted."""
+        """Drive straight on (metres, m/s); return whether the goal was accepted."""
         return self._straight("drive_on_heading", dist, speed, time_allowance)
 
     def assistedTeleop(self, time_allowance: float = 30) -> bool:
-        """Let somebody drive, but not into obstacles; whether the goal was accepted."""
+        """Allow teleoperation with collision avoidance; return whether the goal was accepted."""
         return self._begin("assisted_teleop", time_allowance=_duration(time_allowance))
 
     def cancelTask(self) -> None:
-        """End the task."""
+        """Cancel the task."""
         self.info("Canceling current task.")
         if self.result_future is not None:
             spin_until_future_complete(self, self.goal_handle.cancel_goal_async())
@@ -139,17 +139,17 @@ class BasicNavigator(Node):
         return True
 
     def getFeedback(self) -> Any:
-        """The latest feedback of the task; None before the first."""
+        """Return the latest feedback of the task, or None."""
         return self.feedback
 
     def getResult(self) -> TaskResult:
-        """What became of the task."""
+        """Return the result of the task."""
         return _RESULTS.get(GoalStatus(self.status or 0), TaskResult.UNKNOWN)
 
     # --- waiting ------------------------------------------------------------------------------------------------------
 
     def waitUntilNav2Active(self, navigator: str = "bt_navigator", localizer: str = "amcl") -> None:
-        """Wait until nav2 is at work, and the robot knows where it is."""
+        """Wait until nav2 is active and the robot is localised."""
         if localizer != "robot_localization":
             self._waitForNodeToActivate(localizer)
         if localizer == "amcl":
@@ -160,63 +160,63 @@ class BasicNavigator(Node):
     # --- plans --------------------------------------------------------------------------------------------------------
 
     def getPath(self, start: Any, goal: Any, planner_id: str = "", use_start: bool = False) -> Any:
-        """A path to a pose (nav_msgs/Path); None where there is none."""
+        """Return a path to a pose (nav_msgs/Path), or None."""
         told = {"start": start, "goal": goal, "planner_id": planner_id, "use_start": use_start}
         return getattr(self._done("compute_path_to_pose", **told), "path", None)
 
     def getPathThroughPoses(self, start: Any, goals: Any, planner_id: str = "", use_start: bool = False) -> Any:
-        """A path through poses; see `getPath`."""
+        """Return a path through poses; see `getPath`."""
         told = {"start": start, "goals": list(goals), "planner_id": planner_id, "use_start": use_start}
         return getattr(self._done("compute_path_through_poses", **told), "path", None)
 
     def smoothPath(
         self, path: Any, smoother_id: str = "", max_duration: float = 2.0, check_for_collision: bool = False
     ) -> Any:
-        """A path that is smoother; None where that failed."""
+        """Return a smoothed path, or None if that failed."""
         told = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _duration(max_duration)}
         return getattr(self._done("smooth_path", **told, check_for_collisions=check_for_collision), "path", None)
 
     # --- maps and costmaps --------------------------------------------------------------------------------------------
 
     def changeMap(self, map_filepath: str) -> bool:
-        """Have another map served; whether that was possible."""
+        """Load another map; return whether that was successful."""
         answer = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
         if answer.result != answer.RESULT_SUCCESS:
             self.error("Change map request failed!")
         return bool(answer.result == answer.RESULT_SUCCESS)
 
     def clearAllCostmaps(self) -> None:
-        """Have all costmaps forget their obstacles."""
+        """Clear all costmaps."""
         self.clearLocalCostmap()
         self.clearGlobalCostmap()
 
     def clearLocalCostmap(self) -> None:
-        """Have the local costmap forget its obstacles."""
+        """Clear the local costmap."""
         self._call("nav2_msgs/srv/ClearEntireCostmap", "local_costmap/clear_entirely_local_costmap")
 
     def clearGlobalCostmap(self) -> None:
-        """Have the global costmap forget its obstacles."""
+        """Clear the global costmap."""
         self._call("nav2_msgs/srv/ClearEntireCostmap", "global_costmap/clear_entirely_global_costmap")
 
     def getGlobalCostmap(self) -> Any:
-        """The global costmap (nav2_msgs/Costmap)."""
+        """Return the global costmap (nav2_msgs/Costmap)."""
         return self._call("nav2_msgs/srv/GetCostmap", "global_costmap/get_costmap").map
 
     def getLocalCostmap(self) -> Any:
-        """The local costmap (nav2_msgs/Costmap)."""
+        """Return the local costmap (nav2_msgs/Costmap)."""
         return self._call("nav2_msgs/srv/GetCostmap", "local_costmap/get_costmap").map
 
-    # --- the life of nav2 ---------------------------------------------------------------------------------------------
+    # --- the lifecycle of nav2 ----------------------------------------------------------------------------------------
 
     def lifecycleStartup(self) -> None:
-        """Have the lifecycle managers bring nav2 up."""
+        """Start nav2 through the lifecycle managers."""
         self._manage("STARTUP")
 
     def lifecycleShutdown(self) -> None:
-        """Have the lifecycle managers shut nav2 down."""
+        """Shut nav2 down through the lifecycle managers."""
         self._manage("SHUTDOWN")
 
-    # --- inside -------------------------------------------------------------------------------------------------------
+    # --- internals ----------------------------------------------------------------------------------------------------
 
     def _straight(self, name: str, distance: float, speed: float, time_allowance: float) -> bool:
         target = get_message("geometry_msgs/msg/Point")(x=float(distance))
@@ -233,7 +233,7 @@ class BasicNavigator(Node):
         return True
 
     def _done(self, name: str, **goal: Any) -> Any:
-        """The result of a goal; None where it was not reached."""
+        """Return the result of a goal, or None if it was not reached."""
         handle = self._sent(name, goal, None)
         if not handle.accepted:
             self.error(f"{name} was rejected!")
@@ -306,7 +306,7 @@ class BasicNavigator(Node):
         self.feedback = msg.feedback
 
     def info(self, msg: str) -> None:
-        """Log an information."""
+        """Log an info message."""
         self.get_logger().info(msg)
 
     def warn(self, msg: str) -> None:
@@ -318,7 +318,7 @@ class BasicNavigator(Node):
         self.get_logger().error(msg)
 
     def debug(self, msg: str) -> None:
-        """Log for debugging."""
+        """Log a debug message."""
         self.get_logger().debug(msg)
 
 

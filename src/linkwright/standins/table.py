@@ -1,4 +1,4 @@
-"""The tables of names: which public names the modules of a ROS package have, and where ours of each name is.
+"""The tables of the public names in modules of ROS packages, with the origin of our implementation of each.
 
 A table is a text file ``tables/<package>.txt``, in the order of the package's modules::
 
@@ -16,13 +16,13 @@ A table is a text file ``tables/<package>.txt``, in the order of the package's m
     setup: linkwright.some.module.function
     others: linkwright.some.module.function_of_a_name
 
-A line ``origin: names`` says that ``origin`` has these names, under the name on the right where it reads
-``ours=theirs``; the origin may be another module stood in for. ``import`` names modules, submodules of the package
-first. What ROS 2 Humble does not have says ``since`` when it came. Names that begin with an underscore and
-submodules that no line names are importable and are not among ``__all__``. ``setup`` is called once the module
-is made; ``others`` gives the names that the table does not have.
+A line ``origin: names`` means that ``origin`` defines these names; in ``ours=theirs``, the origin's name is on the
+right. The origin may be another stand-in module. ``import`` names modules, submodules of the package first. ``since``
+names the distribution for names that ROS 2 Humble lacks. Names with a leading underscore and submodules that no line
+names are importable, but not in ``__all__``. ``setup`` is called after the module is created; ``others`` returns names
+that are not in the table.
 
-Programs wait for this to be read: it is read without a library, and a table only when its package is imported.
+Programs wait for a table to be read, so it is read without a library, and only when its package is imported.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ VALUE = "value"
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """Where a name of a module comes from: ``from origin import name``, ``import name``, or ``value`` and a literal."""
+    """The origin of a name of a module: ``from origin import name``, ``import name``, or ``value`` and a literal."""
 
     origin: str
     name: str
@@ -47,7 +47,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """Why a name is not here, or in what it is other than the real one, in English and in Chinese."""
+    """The reason why a name is missing or how it differs from the real one, in English and in Chinese."""
 
     english: str
     chinese: str
@@ -55,17 +55,17 @@ class Remark:
 
 @dataclass(slots=True)
 class Module:
-    """What a table says of one module.
+    """The entries of a table for one module.
 
     Attributes:
         name: the full name of the module.
-        since: the distribution of ROS 2 in which it came, when Humble does not have it.
+        since: the distribution of ROS 2 that introduced it, if after Humble.
         names: the names that can be imported from it.
         absent: public names of the real module that ours does not have.
-        differs: names of ours that do not do all that the real ones do.
-        setup: the full name of a function to be called once the module is made.
-        others: the full name of a function that gives any other name, or raises AttributeError.
-        submodules: the last parts of the names of the modules below it.
+        differs: names of ours that differ from the real ones.
+        setup: the full name of a function to call after the module is created.
+        others: the full name of a function that returns any other name, or raises AttributeError.
+        submodules: the last parts of its submodules' names.
     """
 
     name: str
@@ -79,18 +79,18 @@ class Module:
 
     @property
     def public(self) -> list[str]:
-        """The names that ``from module import *`` gives."""
+        """Return the names that ``from module import *`` imports."""
         return [name for name in self.names if not name.startswith("_")]
 
 
 def packages() -> list[str]:
-    """The names of all packages that have a table."""
+    """Return the names of all packages with a table."""
     return sorted(path.stem for path in FOLDER.glob("*.txt"))
 
 
 @cache
 def read(package: str) -> dict[str, Module]:
-    """The modules of a package, by their full names; none for a package without a table."""
+    """Return the modules of a package by their full names; none for a package without a table."""
     try:
         text = (FOLDER / f"{package}.txt").read_text(encoding="utf-8")
     except OSError:
@@ -99,12 +99,12 @@ def read(package: str) -> dict[str, Module]:
 
 
 def find(module: str) -> Module | None:
-    """What the tables say of a module, or None when they have no such module."""
+    """Return the table entries of a module, or None if there are none."""
     return read(module.partition(".")[0]).get(module)
 
 
 def homes(name: str) -> list[str]:
-    """The modules that a name should be imported from, one of each package that has it: rclpy.node for Node."""
+    """Return the modules to import a name from, one for each package that has it, such as rclpy.node for Node."""
     found: dict[str, str] = {}
     for package in packages():
         having = [
@@ -113,7 +113,7 @@ def homes(name: str) -> list[str]:
             if name in module.names and module.names[name].origin.startswith("linkwright.") and "._" not in module.name
         ]
         having = [module for module in having if module.rpartition(".")[0] not in having]
-        if having:  # where several have it, the one that is called as it is
+        if having:  # of several, the one with a similar name
             last = {module: module.rpartition(".")[2].replace("_", "") for module in having}
             found[package] = min(having, key=lambda module: (last[module] not in name.lower(), len(module)))
     return sorted(found.values())
@@ -123,7 +123,7 @@ def parse(text: str) -> dict[str, Module]:
     """Read a table.
 
     Raises:
-        ValueError: a line that is none of a table, named in the message.
+        ValueError: a line is invalid; the message quotes it.
     """
     modules: dict[str, Module] = {}
     for line in _joined(text):
@@ -157,7 +157,7 @@ def parse(text: str) -> dict[str, Module]:
 
 
 def _joined(text: str) -> list[str]:
-    """The lines of a table, each with those that go on with it."""
+    """Return the lines of a table, with continuation lines joined."""
     lines: list[str] = []
     for line in text.splitlines():
         if line[:1] in ("", "#"):

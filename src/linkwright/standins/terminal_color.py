@@ -1,4 +1,4 @@
-"""Colours of terminals by marks in texts such as ``@{redf}`` (``osrf_pycommon.terminal_color``)."""
+"""Terminal colours for marks in texts, such as ``@{redf}`` (``osrf_pycommon.terminal_color``)."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _ANSI = _codes()
 
 
 class _Switch:
-    """Whether marks become colours, or vanish."""
+    """The switch that makes marks become colours or vanish."""
 
     is_on = True
 
@@ -44,7 +44,7 @@ class _Marked(Template):
 
 
 def ansi(key: str) -> str:
-    """The escape sequence of a name such as ``redf`` or ``reset``; nothing while colours are switched off.
+    """Return the escape sequence for a name such as ``redf`` or ``reset``; empty while colours are disabled.
 
     Raises:
         KeyError: there is no such name.
@@ -53,26 +53,26 @@ def ansi(key: str) -> str:
 
 
 def get_ansi_dict() -> dict[str, str]:
-    """The escape sequences by name."""
+    """Return the escape sequences by name."""
     return dict(_ANSI) if _Switch.is_on else dict.fromkeys(_ANSI, "")
 
 
 def enable_ansi_color_substitution_globally() -> None:
-    """Have marks become colours."""
+    """Enable colours for marks."""
     _Switch.is_on = True
 
 
 def disable_ansi_color_substitution_globally() -> None:
-    """Have marks vanish."""
+    """Disable colours, so that marks vanish."""
     _Switch.is_on = False
 
 
 def format_color(msg: str) -> str:
-    """A text with its marks replaced, ``@!`` and its kind among them, and an end to all colours behind it.
+    """Return a text with its marks replaced, including short ones such as ``@!``, and a colour reset at the end.
 
     Raises:
         KeyError: there is no such mark.
-        ValueError: an ``@`` begins no mark; `sanitize` a text that may have such.
+        ValueError: an ``@`` does not start a mark; `sanitize` escapes them.
     """
     for short, mark in _SHORT.items():
         msg = msg.replace(short, mark)
@@ -80,13 +80,13 @@ def format_color(msg: str) -> str:
 
 
 def print_color(*args: Any, **kwargs: Any) -> None:
-    """Print texts as `format_color` gives them; takes what ``print`` takes."""
+    """Print texts formatted by `format_color`; accepts the arguments of ``print``."""
     end, separator = kwargs.pop("end", "\n"), kwargs.pop("sep", " ")
     print(format_color(separator.join(map(str, args))), end=end, **kwargs)
 
 
 def sanitize(msg: str) -> str:
-    """A text in which nothing is a mark for `format_color`."""
+    """Return a text without marks for `format_color`, by escaping them."""
     return (
         msg.replace("@", "@@")
         .replace("@@!", "@{atexclamation}")
@@ -97,10 +97,10 @@ def sanitize(msg: str) -> str:
 
 
 def remove_ansi_escape_sequences(string: str) -> str:
-    """A text without colours."""
+    """Return a text without escape sequences."""
     return _ESCAPE_SEQUENCE.sub("", string)
 
 
 def split_by_ansi_escape_sequence(string: str, include_delimiters: bool = False) -> list[str]:
-    """The parts of a text between changes of colour; by choice with the changes."""
+    """Split a text at escape sequences, optionally including them."""
     return re.split(f"({_ESCAPE_SEQUENCE.pattern})" if include_delimiters else _ESCAPE_SEQUENCE, string)

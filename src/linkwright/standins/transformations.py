@@ -1,8 +1,8 @@
 """Rotations and homogeneous matrices with the names and conventions of the Python package ``tf_transformations``.
 
 Quaternions are x y z w. A matrix, array of shape (4, 4), takes column vectors. Euler angles, in radians, come with an
-axes code: ``s`` for axes that stay or ``r`` for axes that turn with the body, and the three axes in the order in which
-they are turned about; ``sxyz`` is ROS's roll, pitch and yaw.
+axes code: ``s`` for static or ``r`` for rotating axes, and the three axes in the order of rotation; ``sxyz`` is ROS's
+roll, pitch and yaw.
 """
 
 from __future__ import annotations
@@ -29,25 +29,25 @@ _AXES = {
 
 
 def identity_matrix() -> Matrix:
-    """No motion."""
+    """Return the identity."""
     return np.eye(4)
 
 
 def translation_matrix(direction: ArrayLike) -> Matrix:
-    """The motion along a vector."""
+    """Return the translation along a vector."""
     matrix = np.eye(4)
     matrix[:3, 3] = np.asarray(direction, dtype=float)[:3]
     return matrix
 
 
 def translation_from_matrix(matrix: ArrayLike) -> Vector:
-    """Where a motion takes the origin: array, shape (3,)."""
+    """Return the translation part of a matrix: array, shape (3,)."""
     translation: Vector = np.array(matrix, dtype=float)[:3, 3].copy()
     return translation
 
 
 def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None = None) -> Matrix:
-    """The turn about an axis through a point, the origin when None."""
+    """Return the rotation about an axis through a point, by default the origin."""
     matrix = quaternion_matrix(quaternion_about_axis(angle, direction))
     if point is not None:
         fixed = np.asarray(point, dtype=float)[:3]
@@ -56,10 +56,10 @@ def rotation_matrix(angle: float, direction: ArrayLike, point: ArrayLike | None 
 
 
 def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Vector, Vector]:
-    """Angle, axis and a point (homogeneous) on the axis of a turn.
+    """Return the angle, the axis and a point (homogeneous) on the axis of a rotation.
 
     Raises:
-        ValueError: the matrix is not one.
+        ValueError: the matrix is not a rotation.
     """
     m = np.array(matrix, dtype=float)
     direction = _fixed_vector(m[:3, :3].T)
@@ -72,7 +72,7 @@ def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Vector, Vector]:
 
 
 def scale_matrix(factor: float, origin: ArrayLike | None = None, direction: ArrayLike | None = None) -> Matrix:
-    """The scaling by a factor about a point, in all directions or in one."""
+    """Return the scaling by a factor about a point, in all directions or in one."""
     matrix = np.eye(4)
     if direction is None:
         matrix[:3, :3] *= factor
@@ -86,24 +86,24 @@ def scale_matrix(factor: float, origin: ArrayLike | None = None, direction: Arra
 
 
 def reflection_matrix(point: ArrayLike, normal: ArrayLike) -> Matrix:
-    """The mirroring at the plane through a point with a normal."""
+    """Return the reflection at the plane through a point with a normal."""
     return scale_matrix(-1.0, point, normal)
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Matrix:
-    """The rotation with Euler angles.
+    """Return the rotation with Euler angles.
 
     Raises:
-        ValueError: the axes code is not one.
+        ValueError: the axes code is invalid.
     """
     return quaternion_matrix(quaternion_from_euler(ai, aj, ak, axes))
 
 
 def euler_from_matrix(matrix: ArrayLike, axes: str = "sxyz") -> tuple[float, float, float]:
-    """The Euler angles of a rotation. Where only the sum of the outer two is given, the last turned about is 0.
+    """Return the Euler angles of a rotation; in gimbal lock, the last angle is 0.
 
     Raises:
-        ValueError: the axes code is not one.
+        ValueError: the axes code is invalid.
     """
     turning, (a, b, c) = _read_axes(axes)
     m = np.asarray(matrix, dtype=float)[:3, :3]
@@ -112,19 +112,19 @@ def euler_from_matrix(matrix: ArrayLike, axes: str = "sxyz") -> tuple[float, flo
 
 
 def euler_from_quaternion(quaternion: Sequence[float], axes: str = "sxyz") -> tuple[float, float, float]:
-    """The Euler angles of a quaternion x y z w.
+    """Return the Euler angles of a quaternion x y z w.
 
     Raises:
-        ValueError: the axes code is not one.
+        ValueError: the axes code is invalid.
     """
     return euler_from_matrix(quaternion_matrix(quaternion), axes)
 
 
 def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Vector:
-    """The quaternion x y z w with Euler angles.
+    """Return the quaternion x y z w of Euler angles.
 
     Raises:
-        ValueError: the axes code is not one.
+        ValueError: the axes code is invalid.
     """
     turning, (a, b, c) = _read_axes(axes)
     first, third = (ak, ai) if turning else (ai, ak)
@@ -132,7 +132,7 @@ def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -
 
 
 def quaternion_about_axis(angle: float, axis: ArrayLike) -> Vector:
-    """The quaternion x y z w of the turn about an axis."""
+    """Return the quaternion x y z w of the rotation about an axis."""
     vector = np.asarray(axis, dtype=float)[:3]
     length = float(np.linalg.norm(vector))
     scale = math.sin(angle / 2.0) / length if length > _EPSILON else 0.0
@@ -140,7 +140,7 @@ def quaternion_about_axis(angle: float, axis: ArrayLike) -> Vector:
 
 
 def quaternion_matrix(quaternion: ArrayLike) -> Matrix:
-    """The rotation of a quaternion x y z w, which need not have unit length."""
+    """Return the rotation of a quaternion x y z w, which need not have unit length."""
     x, y, z, w = (float(value) for value in np.asarray(quaternion, dtype=float)[:4])
     squared = x * x + y * y + z * z + w * w
     matrix = np.eye(4)
@@ -156,7 +156,7 @@ def quaternion_matrix(quaternion: ArrayLike) -> Matrix:
 
 
 def quaternion_from_matrix(matrix: ArrayLike) -> Vector:
-    """The unit quaternion x y z w of a rotation, with w not negative; of several that fit, the nearest."""
+    """Return the unit quaternion x y z w of a rotation, with w not negative; the nearest for an inexact rotation."""
     m = np.asarray(matrix, dtype=float)[:3, :3]
     # The matrix whose eigenvector of the largest eigenvalue is the quaternion (Bar-Itzhack 2000), x y z w.
     k = np.array(
@@ -173,17 +173,17 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Vector:
 
 
 def quaternion_multiply(quaternion1: ArrayLike, quaternion0: ArrayLike) -> Vector:
-    """The product: the turn by `quaternion0`, then by `quaternion1`, seen from outside; x y z w."""
+    """Return the product x y z w: the rotation by `quaternion0`, then by `quaternion1`, about static axes."""
     return arrays.quaternion_multiply(quaternion1, quaternion0)
 
 
 def quaternion_conjugate(quaternion: ArrayLike) -> Vector:
-    """The quaternion x y z w with its vector part turned round."""
+    """Return the conjugate of a quaternion x y z w."""
     return arrays.quaternion_inverse(quaternion)
 
 
 def quaternion_inverse(quaternion: ArrayLike) -> Vector:
-    """The quaternion x y z w that undoes one."""
+    """Return the inverse of a quaternion x y z w."""
     q = np.asarray(quaternion, dtype=float)
     return quaternion_conjugate(q) / float(q @ q)
 
@@ -191,14 +191,14 @@ def quaternion_inverse(quaternion: ArrayLike) -> Vector:
 def quaternion_slerp(
     quat0: ArrayLike, quat1: ArrayLike, fraction: float, spin: int = 0, shortestpath: bool = True
 ) -> Vector:
-    """The quaternion x y z w at a fraction of the way from one to another.
+    """Interpolate between two quaternions x y z w (slerp).
 
     Args:
-        quat0: where the way begins.
-        quat1: where it ends.
-        fraction: 0 at its beginning, 1 at its end.
-        spin: half turns more on the way.
-        shortestpath: whether the way round with the smaller angle is taken.
+        quat0: the start.
+        quat1: the end.
+        fraction: 0 at the start, 1 at the end.
+        spin: additional half turns.
+        shortestpath: whether to take the path with the smaller angle.
     """
     q0, q1 = unit_vector(np.asarray(quat0, dtype=float)[:4]), unit_vector(np.asarray(quat1, dtype=float)[:4])
     cosine = float(q0 @ q1)
@@ -213,7 +213,7 @@ def quaternion_slerp(
 
 
 def random_quaternion(rand: Sequence[float] | None = None) -> Vector:
-    """A unit quaternion x y z w, all rotations alike (Shoemake 1992), from three numbers from 0 to 1 if given."""
+    """Return a uniformly random unit quaternion x y z w (Shoemake 1992), from three numbers from 0 to 1 if given."""
     u, v, w = np.random.default_rng().random(3) if rand is None else rand
     outer, inner = math.sqrt(1.0 - u), math.sqrt(u)
     first, second = 2.0 * math.pi * v, 2.0 * math.pi * w
@@ -223,23 +223,23 @@ def random_quaternion(rand: Sequence[float] | None = None) -> Vector:
 
 
 def random_rotation_matrix(rand: Sequence[float] | None = None) -> Matrix:
-    """A rotation, all alike, from three numbers from 0 to 1 if given."""
+    """Return a uniformly random rotation, from three numbers from 0 to 1 if given."""
     return quaternion_matrix(random_quaternion(rand))
 
 
 def random_vector(size: int) -> Vector:
-    """Numbers from 0 to 1."""
+    """Return random numbers from 0 to 1."""
     return np.random.default_rng().random(size)
 
 
 def inverse_matrix(matrix: ArrayLike) -> Matrix:
-    """The motion that undoes one."""
+    """Return the inverse of a matrix."""
     inverse: Matrix = np.linalg.inv(np.asarray(matrix, dtype=float))
     return inverse
 
 
 def concatenate_matrices(*matrices: ArrayLike) -> Matrix:
-    """The product of matrices from left to right."""
+    """Return the product of matrices from left to right."""
     product = np.eye(4)
     for matrix in matrices:
         product = product @ np.asarray(matrix, dtype=float)
@@ -247,18 +247,18 @@ def concatenate_matrices(*matrices: ArrayLike) -> Matrix:
 
 
 def is_same_transform(matrix0: ArrayLike, matrix1: ArrayLike) -> bool:
-    """Return whether two matrices are the same motion, up to a factor."""
+    """Return whether two matrices are the same transform, up to a factor."""
     m0, m1 = np.array(matrix0, dtype=float), np.array(matrix1, dtype=float)
     return bool(np.allclose(m0 / m0[3, 3], m1 / m1[3, 3]))
 
 
 def vector_norm(data: ArrayLike, axis: int | None = None) -> Any:
-    """The length of a vector, or of the vectors along an axis."""
+    """Return the length of a vector, or of the vectors along an axis."""
     return np.linalg.norm(np.asarray(data, dtype=float), axis=axis)
 
 
 def unit_vector(data: ArrayLike, axis: int | None = None) -> Vector:
-    """The vector, or the vectors along an axis, with length 1."""
+    """Return the vector, or the vectors along an axis, normalized."""
     vectors = np.array(data, dtype=float)
     lengths = np.linalg.norm(vectors, axis=axis, keepdims=axis is not None)
     unit: Vector = vectors / lengths
@@ -272,7 +272,7 @@ def compose_matrix(
     translate: ArrayLike | None = None,
     perspective: ArrayLike | None = None,
 ) -> Matrix:
-    """The motion that scales, shears, turns (Euler angles ``sxyz``), moves, and projects, in this order.
+    """Return the matrix that scales, shears, rotates (Euler angles ``sxyz``), translates and projects, in this order.
 
     Args:
         scale: factors for x, y and z.
@@ -299,10 +299,10 @@ def compose_matrix(
 
 
 def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float], Vector, Vector]:
-    """Scale, shear, Euler angles (``sxyz``), translation and last row of a matrix: the arguments of `compose_matrix`.
+    """Return the scale, shear, Euler angles (``sxyz``), translation and last row of a matrix; see `compose_matrix`.
 
     Raises:
-        ValueError: the matrix cannot be undone.
+        ValueError: the matrix is not invertible.
     """
     m = np.array(matrix, dtype=float)
     if abs(m[3, 3]) < _EPSILON:
@@ -327,11 +327,11 @@ def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float
 
 
 def _read_axes(axes: str) -> tuple[bool, tuple[int, int, int]]:
-    """Return whether the axes turn with the body, and the axes about which to turn, as if they did not."""
+    """Return whether the axes rotate, and the equivalent order of static axes."""
     if axes not in _AXES:
         raise ValueError(f"unknown axes '{axes}': write s or r and three axes, such as sxyz")
     a, b, c = ("xyz".index(letter) for letter in axes[1:])
-    # Turns about axes that go with the body are those about fixed ones in the opposite order.
+    # Rotations about rotating axes are those about static axes in reverse order.
     return (True, (c, b, a)) if axes[0] == "r" else (False, (a, b, c))
 
 
@@ -361,7 +361,7 @@ def _proper_angles(m: Matrix, a: int, b: int) -> tuple[float, float, float]:
 
 
 def _fixed_vector(matrix: Matrix) -> Vector:
-    """The real vector, of unit length, that a matrix leaves as it is."""
+    """Return the real unit eigenvector of a matrix for eigenvalue 1."""
     values, vectors = np.linalg.eig(matrix)
     fixed = np.flatnonzero(np.abs(np.real(values) - 1.0) < 1e-8)
     if not fixed.size:

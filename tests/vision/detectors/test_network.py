@@ -241,8 +241,8 @@ def test_a_corrupt_file(tmp_path):
         (b"", "the file is empty"),
         (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "it is a pointer of Git LFS"),
         (b"\n<!DOCTYPE html><html></html>", "it is a web page"),
-        (b"not a network\n", "it is a text, not an ONNX file"),
-        (bytes(1000), "it is no ONNX file, or not whole"),
+        (b"not a network\n", "it is a text file, not an ONNX file"),
+        (bytes(1000), "it is not an ONNX file, or incomplete"),
     ],
 )
 def test_files_that_are_no_networks_are_told_apart(tmp_path, content, reason):
@@ -263,7 +263,7 @@ def test_a_file_for_a_newer_onnxruntime(tmp_path, change):
         model.opset_import[0].version = 99
     onnx.save(model, path)
     code, message, hint = refused(path)
-    assert (code, "made for a newer onnxruntime" in hint) == ("VISION103", True)
+    assert (code, "requires a newer onnxruntime" in hint) == ("VISION103", True)
     assert "onnxruntime_src" not in message
 
 

@@ -1,7 +1,7 @@
 """The program that shells run for TAB: ``python -m linkwright.cli.completion (--line LINE | WORD ...)``.
 
 The words are those of the command line: the program first, and the word at the cursor, which may be empty, last. The
-    candidates for that word are printed, one on each line.
+candidates for that word are printed, one on each line.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """The program of the guardian, which briefly outlives the launcher and ends the remaining processes.
 
 It is run by path in a bare interpreter and imports little, so that it costs a launch next to nothing. Its standard
-    input is a pipe from the launcher with a line for each event: ``+PID`` a process group was started, ``-PID`` the
-    group ended, ``=PATH`` a folder of temporary files was created, ``.`` the launch ended regularly. If the pipe closes
-    without the last one, the launcher was killed.
+input is a pipe from the launcher with a line for each event: ``+PID`` a process group was started, ``-PID`` the group
+ended, ``=PATH`` a folder of temporary files was created, ``.`` the launch ended regularly. If the pipe closes without
+the last one, the launcher was killed.
 """
 
 from __future__ import annotations

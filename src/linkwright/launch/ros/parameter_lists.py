@@ -1,8 +1,8 @@
 """Normalization and evaluation of the ``parameters`` of a node (``launch_ros.utilities``).
 
 They are normalized, and thus checked, when the node is created: paths become `ParameterFile`, and dictionaries become
-    flat, with tuples of substitutions for names and either plain values or tuples of substitutions for values.
-    Evaluation gives for each item a path, a dictionary of values by name, or a `Parameter`.
+flat, with tuples of substitutions for names and either plain values or tuples of substitutions for values. Evaluation
+gives for each item a path, a dictionary of values by name, or a `Parameter`.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""What ``launch_pytest`` has: launches as pytest fixtures, and tests that run beside them and after them."""
+"""The API of ``launch_pytest``: launches as pytest fixtures, and tests that run during and after them."""

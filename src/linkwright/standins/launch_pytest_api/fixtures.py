@@ -20,13 +20,13 @@ _SCOPES = ("function", "class", "module", "package", "session")
 
 @dataclass(frozen=True)
 class LaunchOptions:
-    """How the description that a fixture gives is launched.
+    """The launch options of a fixture's description.
 
     Attributes:
         fixture: the name of the fixture.
-        scope: what the launch lasts for: one of pytest's scopes.
-        shutdown_when_idle: whether the launch ends when nothing runs any more.
-        auto_shutdown: whether it is ended before tests that run after it; otherwise they wait for its end.
+        scope: the duration of the launch: one of pytest's scopes.
+        shutdown_when_idle: whether the launch ends when it is idle.
+        auto_shutdown: whether it is shut down before tests that run after it; otherwise they wait for its end.
     """
 
     fixture: str
@@ -42,7 +42,7 @@ def fixture(
     auto_shutdown: bool = True,
     **kwargs: Any,
 ) -> Any:
-    """Decorate a function that makes a launch description, so that it is launched for the tests that name it.
+    """Decorate a function that creates a launch description, to launch it for the tests that name it.
 
     The function returns or yields a ``LaunchDescription``, or a sequence whose first item is one. A launch that
     outlasts a test needs the other fixtures of this module to last as long: unless the test's module has its own,
@@ -51,7 +51,7 @@ def fixture(
     Args:
         decorated: the function, where the decorator has no arguments.
         *args: for ``pytest.fixture``.
-        shutdown_when_idle: whether the launch ends when nothing runs any more.
+        shutdown_when_idle: whether the launch ends when it is idle.
         auto_shutdown: whether the launch is ended once the tests that run beside it are over.
         **kwargs: for ``pytest.fixture``; a ``scope`` that depends on the configuration is not supported.
     """
@@ -71,13 +71,13 @@ def fixture(
 
 
 def options_of(function: object) -> LaunchOptions | None:
-    """The options of a fixture that `fixture` made, or of the function that it was made of; None for any other."""
+    """Return the options of a fixture that `fixture` created, or of its function; None for any other."""
     options = getattr(function, _OPTIONS, None)
     return options if isinstance(options, LaunchOptions) else None
 
 
 def _provide(namespace: MutableMapping[str, Any], scope: str) -> None:
-    """Put fixtures that last as long as `scope` into a module, where ours that last less, or none, are."""
+    """Add fixtures with a scope to a module that has none, or ours with a shorter scope."""
     for name, function in _FUNCTIONS.items():
         present = namespace.get(name)
         if present is None or _SCOPES.index(getattr(present, _SCOPE, _SCOPES[-1])) < _SCOPES.index(scope):
@@ -101,7 +101,7 @@ def _event_loop() -> Iterator[asyncio.AbstractEventLoop]:
     loop.close()
 
 
-def _launch_service(event_loop: asyncio.AbstractEventLoop) -> Iterator[LaunchService]:  # noqa: ARG001 - outlasts it
+def _launch_service(event_loop: asyncio.AbstractEventLoop) -> Iterator[LaunchService]:  # noqa: ARG001 - to outlast it
     """The service that launches the description."""
     service = ServiceOfProcesses()
     yield service
@@ -127,12 +127,12 @@ launch_context = _lasting(_launch_context, "function")
 
 
 def finish(service: LaunchService, when: str, *, ask: bool = True) -> None:
-    """Have a launch end, if it runs, and wait until it has.
+    """End a running launch, and wait for its end.
 
     Args:
-        service: what launched.
-        when: said with a failure.
-        ask: whether to end it; otherwise it is waited for.
+        service: the launch service.
+        when: the phase, for the failure message.
+        ask: whether to end it; otherwise its own end is awaited.
 
     Raises:
         pytest.fail.Exception: something in the launch failed.

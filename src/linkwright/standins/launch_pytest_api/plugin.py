@@ -1,4 +1,4 @@
-"""The pytest plugin of ``launch_pytest``: launches what its fixtures describe, and runs the tests that are marked.
+"""The pytest plugin of ``launch_pytest``: launches the descriptions of its fixtures, and runs the marked tests.
 
 A test with ``@pytest.mark.launch(fixture=description)`` runs beside the launch: a coroutine on the launch's event
 loop, a function in a thread. With ``shutdown=True`` it runs once the launch has ended; a generator does so from its
@@ -41,18 +41,18 @@ _OVER = object()
 
 
 class LaunchTestWarning(pytest.PytestWarning):
-    """A test is marked in a way that makes no launch test of it."""
+    """The mark of a test does not make it a launch test."""
 
 
 def look_up_hooks() -> None:
-    """Have the stand-in ``launch_pytest.plugin`` hold its names: pytest takes only hooks that a module has already."""
+    """Load the names of the stand-in ``launch_pytest.plugin``: pytest registers only existing hooks of a module."""
     module = importlib.import_module("launch_pytest.plugin")
     for name in module.__all__:
         getattr(module, name)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the marker known."""
+    """Register the marker."""
     config.addinivalue_line("markers", _MARKER)
 
 
@@ -61,7 +61,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any], request: SubRequest) -> Generator[None, object, object]:
-    """Launch what a launch fixture gives, and wait until tests may begin."""
+    """Launch the description of a launch fixture, and wait until tests may start."""
     options = options_of(fixturedef.func)
     if options is None:
         return (yield)
@@ -72,14 +72,14 @@ def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any], request: SubRequest
     fixturedef.addfinalizer(functools.partial(finish, service, when, ask=options.auto_shutdown))
     try:
         _launch(service, loop, _description_in(made, when), options)
-    except BaseException as error:  # which the other tests that ask for the fixture get too
+    except BaseException as error:  # other tests with the fixture get the same
         fixturedef.cached_result = (None, fixturedef.cache_key(request), (error, error.__traceback__))
         raise
     return made
 
 
 def _description_in(made: object, when: str) -> LaunchDescription:
-    """The description in what a launch fixture gave."""
+    """Return the description in the result of a launch fixture."""
     first = made[0] if isinstance(made, Sequence) and made else made
     if not isinstance(first, LaunchDescription):
         pytest.fail(
@@ -92,7 +92,7 @@ def _description_in(made: object, when: str) -> LaunchDescription:
 def _launch(
     service: LaunchService, loop: asyncio.AbstractEventLoop, description: LaunchDescription, options: LaunchOptions
 ) -> None:
-    """Begin a launch, and return once its `ReadyToTest` was visited."""
+    """Start a launch, and return when its `ReadyToTest` has been visited."""
     actions = list(ready_actions(description.entities))
     if len(actions) > 1:
         pytest.fail(f"launch fixture '{options.fixture}': only one ReadyToTest action may be in it", pytrace=False)
@@ -107,7 +107,7 @@ def _launch(
     loop.run_until_complete(asyncio.wait({waiting, run}, return_when=asyncio.FIRST_COMPLETED))
     if not ready.is_set():
         waiting.cancel()
-        run.result()  # raises what run_async raised
+        run.result()  # raises the exception of run_async
         pytest.fail(f"launch fixture '{options.fixture}': the launch ended before it was ready to test", pytrace=False)
 
 
@@ -115,13 +115,13 @@ def _launch(
 
 
 class LaunchTest(pytest.Function):
-    """A test that runs beside a launch, or what of it runs after the launch.
+    """A test that runs during a launch, or its part that runs after the launch.
 
     Attributes:
-        options: of the fixture that is launched.
+        options: the options of the launched fixture.
         test: the test's function or bound method.
-        begun: the generator, once the part before its ``yield`` has passed.
-        first_part: the test whose generator this one goes on with; None for a test of its own.
+        begun: the generator, after the part before its ``yield`` has passed.
+        first_part: the test whose generator this one continues; None for a separate test.
     """
 
     options: LaunchOptions
@@ -131,7 +131,7 @@ class LaunchTest(pytest.Function):
 
     @classmethod
     def of(cls, item: pytest.Function, options: LaunchOptions, first_part: LaunchTest | None = None) -> LaunchTest:
-        """The launch test of a function that pytest collected."""
+        """Return the launch test of a function that pytest collected."""
         ending = "" if first_part is None else "[shutdown_test]"
         made: LaunchTest = cls.from_parent(
             item.parent,
@@ -153,14 +153,14 @@ class LaunchTest(pytest.Function):
 
     @property
     def launch(self) -> tuple[object, ...]:
-        """What tests of the same launch have in common."""
+        """The key of tests with the same launch."""
         kinds: dict[str, Any] = {"function": pytest.Function, "class": pytest.Class, "module": pytest.Module}
         lasting = self.getparent(kinds.get(self.options.scope, pytest.Session)) or self.getparent(pytest.Module)
         params = self.callspec.indices if hasattr(self, "callspec") else {}
         return self.options.fixture, lasting, params.get(self.options.fixture)
 
     def runtest(self) -> None:
-        """Run it, or the part of it that this one is."""
+        """Run the test or its part."""
         __tracebackhide__ = True
         loop = self._loop
         given = {name: self.funcargs[name] for name in self._fixtureinfo.argnames}
@@ -199,7 +199,7 @@ class LaunchTest(pytest.Function):
         finish(service, f"before test '{self.name}'", ask=self.options.auto_shutdown)
 
     def _go_on(self, loop: asyncio.AbstractEventLoop, generator: Any) -> None:
-        """Run what follows the ``yield``."""
+        """Run the part after the ``yield``."""
         __tracebackhide__ = True
         self._end_launch()
         is_async = inspect.isasyncgen(generator)
@@ -217,7 +217,7 @@ def _has_parts(test: Callable[..., Any]) -> bool:
 
 
 def _plain(test: Callable[..., Any]) -> Callable[..., Any]:
-    """A function with the same arguments for pytest to look at: plugins for coroutines would run one themselves."""
+    """Return a function with the same arguments for pytest: plugins for coroutines would run a coroutine themselves."""
 
     @functools.wraps(getattr(test, "__func__", test))
     def plain(*_: object, **__: object) -> None:
@@ -231,7 +231,7 @@ def _plain(test: Callable[..., Any]) -> Callable[..., Any]:
 def pytest_pycollect_makeitem(
     collector: pytest.Module | pytest.Class, name: str, obj: object
 ) -> list[pytest.Function] | None:
-    """Collect the tests that are marked."""
+    """Collect the marked tests."""
     if not inspect.isfunction(obj) or not collector.funcnamefilter(name):
         return None
     marks = [mark for mark in getattr(obj, "pytestmark", ()) if mark.name == "launch"]
@@ -259,7 +259,7 @@ def _skipped(item: pytest.Function) -> pytest.Function:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Have what runs after a launch run after all tests that run beside it."""
+    """Order tests that run after a launch behind all tests that run during it."""
     last = {
         item.launch: index
         for index, item in enumerate(items)

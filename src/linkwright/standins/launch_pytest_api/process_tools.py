@@ -1,9 +1,9 @@
-"""Waiting for what processes of a launch do (``launch_pytest.tools.process``).
+"""Waits for the output and exit of processes in a launch (``launch_pytest.tools.process``).
 
 Each function takes the launch's context, the action that runs the process, and a timeout in seconds, or None to wait
 without end. The coroutines are for tests that run on the launch's event loop, the functions that end in ``_sync`` for
 tests that run in a thread beside it. A start or an exit before the call does not count: as in ROS, the next one is
-waited for. What was written is known of actions with ``cached_output=True`` only.
+waited for. Output is available only for actions with ``cached_output=True``.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from linkwright.launch.model.context import Handler, LaunchContext
 from linkwright.launch.model.process_event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 
 Validate = Callable[[str], Any]
-"""Whether a text is right: says so by what it returns, or by raising AssertionError."""
+"""Validates a text by its return value or by raising AssertionError."""
 
 Reaction = Callable[..., None]
 _P = ParamSpec("_P")
 
 
 class _Wait:
-    """A wait for an event, or for something that may hold after one.
+    """A wait for an event or for a condition.
 
     Args:
-        context: of the launch.
-        handler: makes the handler of such events, which calls a function.
-        timeout: in seconds; None to wait without end.
-        condition: what has to give a true value, now or after an event; without one, the first event ends the wait.
-        given_up: what is called when the time is over.
+        context: the context of the launch.
+        handler: creates the handler of such events, which calls a function.
+        timeout: in seconds; None to wait without limit.
+        condition: the condition to hold now or after an event; without it, the first event ends the wait.
+        given_up: called on a timeout.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class _Wait:
         self._happened = False
 
     async def run(self) -> Any:
-        """Wait on the launch's event loop; returns what the condition gave last."""
+        """Wait on the launch's event loop; return the last value of the condition."""
         event = asyncio.Event()
         with self._listening(event.set):
             value = self._value()
@@ -70,7 +70,7 @@ class _Wait:
         return value
 
     def run_sync(self) -> Any:
-        """Wait in a thread beside the loop; returns what the condition gave last."""
+        """Wait in another thread than the loop; return the last value of the condition."""
         event = threading.Event()
         with self._listening(event.set):
             value = self._value()
@@ -91,7 +91,7 @@ class _Wait:
 
     @contextmanager
     def _listening(self, notify: Callable[[], None]) -> Iterator[None]:
-        """Have `notify` called after each event."""
+        """Call `notify` after each event."""
 
         def react(*_: object) -> None:
             self._happened = True
@@ -106,12 +106,12 @@ class _Wait:
 
 
 def _left(deadline: float | None) -> float | None:
-    """The seconds until a moment of the monotonic clock, at least 0."""
+    """Return the seconds until a time on the monotonic clock, at least 0."""
     return None if deadline is None else max(deadline - time.monotonic(), 0.0)
 
 
 def _waits(make: Callable[_P, _Wait]) -> tuple[Callable[_P, Coroutine[Any, Any, Any]], Callable[_P, Any]]:
-    """The coroutine and the function that make a wait and go through it; both have the maker's signature and text."""
+    """Return a coroutine and a function that run a wait, with the signature and docstring of its factory."""
 
     @wraps(make)
     async def wait(*args: _P.args, **kwargs: _P.kwargs) -> Any:
@@ -131,7 +131,7 @@ def _for_output(stream: str) -> Callable[..., _Wait]:
         validate_output: Validate,
         timeout: float | None = None,
     ) -> _Wait:
-        """Wait until `validate_output` returns a true value for all output so far; returns what it returned last."""
+        """Wait until `validate_output` returns a true value for all output so far; return its last value."""
         handler, read = _written(execute_process_action, stream)
         return _Wait(launch_context, handler, timeout, lambda: validate_output(read()))
 
@@ -183,7 +183,7 @@ def _for_exit(
 
 
 def _written(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
-    """What is told when a process writes to ``stdout`` or ``stderr``, and what reads all that it has written there."""
+    """Return the handler's argument for output to ``stdout`` or ``stderr``, and the function that reads this output."""
 
     def handler(react: Reaction) -> Handler:
         return OnProcessIO(target_action=action, **{f"on_{stream}": react})  # type: ignore[arg-type]  # a keyword by its name

@@ -1,1 +1,1 @@
-"""``launch_testing`` and ``launch_testing_ros``: tests of ``unittest`` that run beside a launch and after its end."""
+"""``launch_testing`` and ``launch_testing_ros``: tests of ``unittest`` that run during a launch and after its end."""

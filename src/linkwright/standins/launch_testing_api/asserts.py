@@ -1,4 +1,4 @@
-"""Assertions about what processes wrote and how they ended (``launch_testing.asserts``)."""
+"""Assertions about the output and exit codes of processes (``launch_testing.asserts``)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EXIT_SIGQUIT = 131
 EXIT_SIGKILL = 137
 EXIT_SIGSEGV = 139
 EXIT_FORCED = 1
-"""Of a process that a launch on Windows ended."""
+"""The exit code of a process that a launch on Windows ended."""
 
 _STREAMS = ("stdout", "stderr")
 _LINES_AROUND = 3
@@ -36,11 +36,11 @@ def assertExitCodes(
     """Raise AssertionError unless processes ended with one of some exit codes.
 
     Args:
-        proc_info: how processes ended.
+        proc_info: the records of exits.
         allowable_exit_codes: the codes.
         process: an action, or a part of the name of a process; None for all processes.
         cmd_args: arguments of the process, see `resolveProcesses`.
-        strict_proc_matching: whether a name must be that of one process only.
+        strict_proc_matching: whether a name must match only one process.
     """
     for code in allowable_exit_codes:
         _check(isinstance(code, int), f"Provided exit code {code} is not an int")
@@ -62,16 +62,16 @@ def assertInStream(
     strip_ansi_escape_sequences: bool = True,
     stream: str = "stderr",
 ) -> None:
-    """Raise AssertionError unless a process wrote something.
+    """Raise AssertionError unless the output of a process contains a text.
 
     Args:
-        proc_output: what processes wrote.
+        proc_output: the output of the processes.
         expected_output: a text, a regular expression, or several of them in order.
         process: an action, or a part of the name of a process; None for any process.
         cmd_args: arguments of the process, see `resolveProcesses`.
-        output_filter: what is made of the output before it is looked at.
-        strict_proc_matching: whether a name must be that of one process only.
-        strip_ansi_escape_sequences: whether colours are taken out before.
+        output_filter: a function to filter the output first.
+        strict_proc_matching: whether a name must match only one process.
+        strip_ansi_escape_sequences: whether to remove colours first.
         stream: ``stdout`` or ``stderr``.
 
     Raises:
@@ -131,10 +131,10 @@ def text_of(written: Sequence[Any], stream: str | None = None) -> str:
 def assertSequentialStdout(
     proc_output: ProcessRecords, process: ExecuteLocal | str, cmd_args: str | Sequence[str] | None = None
 ) -> Iterator[SequentialTextChecker]:
-    """Give what looks for texts in the output of one process, each after the one before it.
+    """Yield a checker that finds texts in the output of one process in order.
 
     Args:
-        proc_output: what processes wrote.
+        proc_output: the output of the processes.
         process: an action, or a part of the name of a process.
         cmd_args: arguments of the process, see `resolveProcesses`.
     """
@@ -143,10 +143,10 @@ def assertSequentialStdout(
 
 
 class SequentialTextChecker:
-    """Looks for texts, each after the one before it.
+    """Finds texts in order.
 
     Args:
-        output: what was written, in pieces; a text is looked for in single pieces.
+        output: the output in pieces; each text is searched within single pieces.
     """
 
     def __init__(self, output: Sequence[str]) -> None:
@@ -155,7 +155,7 @@ class SequentialTextChecker:
         self._offset = 0
 
     def assertInText(self, msg: str) -> None:
-        """Raise AssertionError unless the text comes after what was found before."""
+        """Raise AssertionError unless the text follows the last match."""
         offset = self._offset
         for piece in range(self._piece, len(self._output)):
             at = self._output[piece].find(msg, offset)
@@ -171,7 +171,7 @@ class SequentialTextChecker:
     assertInStdout = assertInText
 
     def get_nearby_lines(self) -> str:
-        """Return the lines around what was found last: it, two before it and two after it."""
+        """Return the last match with two lines before and after it."""
         text = "".join(self._output)
         at = sum(map(len, self._output[: self._piece])) + self._offset
         begin = at

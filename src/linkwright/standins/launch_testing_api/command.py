@@ -21,20 +21,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument("launch_test_file", help="the file with generate_test_description and tests")
     parser.add_argument("--package-name", help="the package that the tests belong to, for the report")
-    parser.add_argument("-v", "--verbose", action="store_true", help="tell in detail what the launcher does")
+    parser.add_argument("-v", "--verbose", action="store_true", help="log in detail what the launcher does")
     parser.add_argument(
         "-s",
         "--show-args",
         "--show-arguments",
         action="store_true",
-        help="list the arguments of the description and end",
+        help="list the arguments of the launch description and exit",
     )
     parser.add_argument("launch_arguments", nargs="*", metavar="NAME:=VALUE", help="arguments of the description")
-    parser.add_argument("--junit-xml", dest="xmlpath", metavar="FILE", help="write a report for CI servers to a file")
+    parser.add_argument("--junit-xml", dest="xmlpath", metavar="FILE", help="write a JUnit report to this file")
 
 
 def parse_arguments() -> tuple[argparse.ArgumentParser, argparse.Namespace]:
-    """Return the parser of the command, and what it made of ``sys.argv``."""
+    """Return the parser of the command, and the parsed ``sys.argv``."""
     parser = argparse.ArgumentParser(prog="launch_test", description="Run the tests of a file beside their launch.")
     add_arguments(parser)
     return parser, parser.parse_args()
@@ -48,8 +48,8 @@ def run(
     """Run the tests of a file.
 
     Args:
-        parser: tells what is wrong with the arguments.
-        args: what `add_arguments` declares.
+        parser: the parser, for usage errors.
+        args: the arguments that `add_arguments` declares.
         test_runner_cls: runs the tests.
 
     Returns:
@@ -85,7 +85,7 @@ def print_arguments_of_launch_description(*, launch_description: LaunchDescripti
 
 
 def main() -> None:
-    """Run the command, and end with its exit status: 0 or 1, 2 for wrong usage."""
+    """Run the command, and exit with its status: 0 or 1, 2 for a usage error."""
     parser, args = parse_arguments()
     sys.exit(run(parser, args))
 
@@ -93,7 +93,7 @@ def main() -> None:
 def _loaded(name: str, path: Path) -> ModuleType:
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
-        raise ImportError(f"'{path}' is no Python file", path=str(path))
+        raise ImportError(f"'{path}' is not a Python file", path=str(path))
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

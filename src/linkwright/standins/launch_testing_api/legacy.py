@@ -1,4 +1,4 @@
-"""Tests as processes of a launch that end with 0 (``launch_testing.legacy``), as nav2 and others still have them."""
+"""Tests as processes of a launch that exit with 0 (``launch_testing.legacy``), as in nav2 and others."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _OutputTest = tuple[Any, Callable[[Any, bytes], Any], Callable[[Any, Any], bool]
 
 
 class LaunchTestService:
-    """Ends a launch when its tests are done, and gives the status of the first one that failed."""
+    """Ends a launch when its tests are done, and returns the status of the first failed one."""
 
     def __init__(self) -> None:
         self._tests: dict[str, str] = {}
@@ -26,12 +26,12 @@ class LaunchTestService:
     def add_fixture_action(
         self, launch_description: Any, action: _Action, exit_allowed: Collection[int] | bool = (0,)
     ) -> _Action:
-        """Add what the tests need; where it is a process that ends, the launch ends.
+        """Add an action that the tests need; if it is a process that exits, the launch ends.
 
         Args:
-            launch_description: what it is added to.
+            launch_description: the description to add it to.
             action: the action.
-            exit_allowed: with which statuses a process may end before the tests do; whether it may with any.
+            exit_allowed: the statuses with which the process may exit before the tests, or whether it may with any.
         """
         launch_description.add_action(action)
 
@@ -47,7 +47,7 @@ class LaunchTestService:
         return action
 
     def add_test_action(self, launch_description: Any, action: _Action) -> _Action:
-        """Add a test: a process passes by ending with 0, another action by being completed."""
+        """Add a test: a process passes if it exits with 0, another action if it is completed."""
         test = f"test_{id(action)}"
 
         def on_exit(event: Any, _: Any) -> Any:
@@ -83,14 +83,14 @@ class LaunchTestService:
         output_filter: Callable[[bytes], bytes] | None = None,
         side_effect: str | None = None,
     ) -> _Action:
-        """Add a test of what a process of the description writes.
+        """Add a test of the output of a process in the description.
 
         Args:
-            launch_description: what has the process.
+            launch_description: the description with the process.
             action: the process.
-            output_test: what a function of `linkwright.standins.launch_testing_api.legacy_output` gives.
-            test_suffix: tells several tests of one process apart.
-            output_filter: takes out of the output what does not count.
+            output_test: a test from `linkwright.standins.launch_testing_api.legacy_output`.
+            test_suffix: a suffix that distinguishes several tests of one process.
+            output_filter: a function to filter the output.
             side_effect: ``shutdown`` ends the launch once the test has passed.
         """
         test = f"test_{id(action)}_{test_suffix}"
@@ -120,7 +120,7 @@ class LaunchTestService:
         return action
 
     def run(self, launch_service: Any, *args: Any, **kwargs: Any) -> int:
-        """Run a launch service; returns its status, or where that is 0, that of the first test that failed."""
+        """Run a launch service; return its status, or if that is 0, the status of the first failed test."""
         status = int(launch_service.run(*args, **kwargs))
         return status or next(iter(self._statuses), int(_FAILED in self._tests.values()))
 
@@ -136,7 +136,7 @@ class LaunchTestService:
         return [_shutdown(reason)]
 
     def _ended(self, test: str) -> Any:
-        """End the launch where no other test runs."""
+        """End the launch if no other test is running."""
         others = [state for name, state in self._tests.items() if name != test]
         return None if _RUNS in others else [_shutdown("all tests finished")]
 

@@ -1,4 +1,4 @@
-"""What the output of a process is compared with (``launch_testing.legacy.output``), all in bytes."""
+"""Tests of the output of a process (``launch_testing.legacy.output``), all in bytes."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ _OutputTest = tuple[bytes, Callable[[bytes, bytes], bytes], Callable[..., bool],
 
 
 def get_default_filtered_prefixes() -> list[bytes]:
-    """How lines begin that do not count."""
+    """Return the prefixes of lines to ignore."""
     return [b"pid", b"rc"]
 
 
 def get_default_filtered_patterns() -> list[bytes]:
-    """Patterns of lines that do not count: none."""
+    """Return the patterns of lines to ignore: none."""
     return []
 
 
@@ -25,7 +25,7 @@ def create_output_lines_filter(
     filtered_patterns: Sequence[bytes] | None = None,
     filtered_rmw_implementation: str | None = None,  # noqa: ARG001  # ours writes nothing
 ) -> Callable[[bytes], bytes]:
-    """What takes lines that begin so, or match a pattern, out of an output."""
+    """Return a filter that removes lines with a prefix or pattern from an output."""
     prefixes = tuple(filtered_prefixes or get_default_filtered_prefixes())
     patterns = [
         re.compile(filtered_pattern) for filtered_pattern in filtered_patterns or get_default_filtered_patterns()
@@ -43,23 +43,23 @@ def create_output_lines_filter(
 
 
 def create_output_lines_test(expected_lines: Sequence[bytes]) -> _OutputTest:
-    """A test that each of these texts is in a line."""
+    """Return a test that each of these texts is in a line."""
     return b"", _joined, lambda output, text: any(text in line for line in output.splitlines()), expected_lines
 
 
 def create_output_regex_test(expected_patterns: Sequence[re.Pattern[bytes]]) -> _OutputTest:
-    """A test that each of these patterns is found."""
+    """Return a test that each of these patterns matches."""
     return b"", _joined, lambda output, pattern: pattern.search(output) is not None, expected_patterns
 
 
 def create_output_test_from_file(output_file: str) -> _OutputTest:
-    """A test by a file ``.txt`` with lines, or ``.regex`` with patterns.
+    """Return a test from a file ``.txt`` with lines, or ``.regex`` with patterns.
 
     Args:
         output_file: its path without the suffix.
 
     Raises:
-        RuntimeError: there is neither.
+        RuntimeError: neither file exists.
     """
     for suffix, create in ((".txt", create_output_lines_test), (".regex", _of_patterns)):
         path = Path(output_file + suffix)

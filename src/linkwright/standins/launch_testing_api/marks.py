@@ -1,4 +1,4 @@
-"""What marks the functions and classes of a launch test (``launch_testing``'s decorators)."""
+"""Decorators for the functions and classes of a launch test (``launch_testing``'s)."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def parametrize(argnames: str, argvalues: Iterable[Any]) -> Callable[[Callable[.
 
 
 def post_shutdown_test() -> Callable[[type[C]], type[C]]:
-    """Decorate a class of tests that run once the launch has ended; TypeError for what is no class."""
+    """Decorate a class of tests that run after the launch; TypeError if it is not a class."""
 
     def decorate(test_item: type[C]) -> type[C]:
         if not isinstance(test_item, type):
@@ -57,7 +57,7 @@ def post_shutdown_test() -> Callable[[type[C]], type[C]]:
 
 
 def ready_to_test_action_timeout(timeout: float) -> Callable[[F], F]:
-    """Decorate ``generate_test_description``: how many seconds are waited for its `ReadyToTest`."""
+    """Decorate ``generate_test_description`` with the timeout for its `ReadyToTest` in seconds."""
 
     def decorate(function: F) -> F:
         setattr(function, TIMEOUT, timeout)
@@ -67,7 +67,7 @@ def ready_to_test_action_timeout(timeout: float) -> Callable[[F], F]:
 
 
 def keep_alive(test_description: F) -> F:
-    """Decorate ``generate_test_description``: the launch goes on when no process runs any more, until the tests end."""
+    """Decorate ``generate_test_description`` to keep the launch running without processes until the tests end."""
     if not hasattr(test_description, MARKERS):
         setattr(test_description, MARKERS, {})
     getattr(test_description, MARKERS)["keep_alive"] = True
@@ -75,11 +75,11 @@ def keep_alive(test_description: F) -> F:
 
 
 def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[F], F]:
-    """Decorate a test that is tried again where an assertion fails.
+    """Decorate a test to retry on a failed assertion.
 
     Args:
-        times: how often it is tried.
-        delay: seconds between two tries.
+        times: the number of attempts.
+        delay: seconds between attempts.
     """
     if times <= 0:
         raise AssertionError("times must be positive")
@@ -108,7 +108,7 @@ def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[F],
 
 
 def _has_passed(test: Any) -> bool:
-    """Return whether no subtest of a test has failed; unittest keeps that to itself."""
+    """Return whether no subtest of a test has failed; unittest has no public API for it."""
     outcome = test._outcome
     return outcome is None or bool(outcome.success)
 
@@ -126,11 +126,11 @@ def _forget_failures(test: Any) -> None:
 
 
 class ReadyAggregator:
-    """Calls a function once its own has been called so many times.
+    """Calls a function after its own has been called a number of times.
 
     Args:
-        ready_fn: what is called.
-        num_to_aggregate: how many calls it takes.
+        ready_fn: the function to call.
+        num_to_aggregate: the number of calls.
     """
 
     def __init__(self, ready_fn: Callable[[], object], num_to_aggregate: int) -> None:

@@ -1,4 +1,4 @@
-"""Which processes of a launch a test means (``launch_testing.util``)."""
+"""The selection of processes of a launch in tests (``launch_testing.util``)."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from linkwright.launch.model.actions.execute import ExecuteLocal, ExecuteProcess
 from linkwright.launch.model.substitution import Substitution, TextSubstitution
 
 NO_CMD_ARGS: Any = object()
-"""Stands for a command without arguments, where arguments are asked for."""
+"""Selects commands without arguments."""
 
 _WAIT = "import signal, threading; signal.signal(signal.SIGINT, lambda *_: exit(0)); threading.Event().wait()"
 
 
 class NoMatchingProcessException(Exception):
-    """No process is the one that was asked for."""
+    """No process matches."""
 
 
 class ProcessRecords(Protocol):
-    """What was recorded of processes."""
+    """The records of processes."""
 
     def processes(self) -> Collection[ExecuteLocal]:
         """The actions of the processes."""
 
     def __getitem__(self, key: Any) -> Any:
-        """What was recorded of one."""
+        """Return the record of a process."""
 
 
 def KeepAliveProc() -> ExecuteProcess:
@@ -41,13 +41,13 @@ def resolveProcesses(
     cmd_args: str | Sequence[str] | None = None,
     strict_proc_matching: bool = True,
 ) -> list[ExecuteLocal]:
-    """Return the actions of the processes that are meant, at least one.
+    """Return the actions of the matching processes, at least one.
 
     Args:
-        info_obj: what was recorded.
+        info_obj: the records.
         process: an action, or a part of the name of a process; None for all processes.
         cmd_args: arguments that the command has, beside a name; `NO_CMD_ARGS` for a command without any.
-        strict_proc_matching: whether a name must be that of one process only.
+        strict_proc_matching: whether a name must match only one process.
 
     Raises:
         NoMatchingProcessException: there is none.
@@ -98,7 +98,7 @@ def _has_words(action: ExecuteLocal, words: Sequence[str] | None) -> bool:
 
 
 def _called(action: ExecuteLocal) -> str:
-    """Name and arguments of a process, for messages."""
+    """Return the name and arguments of a process, for messages."""
     details = action.process_details
     if details:
         return " ".join([details["name"], *details["cmd"][1:]])
@@ -108,6 +108,6 @@ def _called(action: ExecuteLocal) -> str:
 
 
 def _plain(parts: Iterable[Substitution]) -> str | None:
-    """A word of a command; None where only the launch knows it."""
+    """Return a word of a command; None if only the launch can evaluate it."""
     texts = [part.text for part in parts if isinstance(part, TextSubstitution)]
     return "".join(texts) if len(texts) == len(list(parts)) else None

@@ -1,4 +1,4 @@
-"""One process of a launch, as a test sees it (``launch_testing.tools.process``)."""
+"""A proxy of a process in a launch for tests (``launch_testing.tools.process``)."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from linkwright.standins.launch_testing_api.records import ActiveIoHandler, Acti
 
 
 class Outcome:
-    """Whether a wait was successful, and what had been written by then.
+    """The result of a wait, with the output by then.
 
     Args:
-        is_true: whether it was.
-        output: the text.
+        is_true: whether the wait was successful.
+        output: the output.
     """
 
     def __init__(self, is_true: bool, output: str | None) -> None:
@@ -34,16 +34,16 @@ class Outcome:
 
 
 class ProcessProxy:
-    """A process: whether it runs, what it wrote, how it ended.
+    """A process with its state, output and exit code.
 
     Args:
         process_action: the action that starts it.
-        proc_info: how processes are.
-        proc_output: what processes wrote.
-        output_filter: what is made of the output before it is looked at.
+        proc_info: the records of starts and exits.
+        proc_output: the output of the processes.
+        output_filter: a function to filter the output first.
 
     Raises:
-        TypeError: an argument is something else.
+        TypeError: an argument has another type.
     """
 
     def __init__(
@@ -70,17 +70,17 @@ class ProcessProxy:
 
     @property
     def stdout(self) -> str:
-        """What it wrote to standard output."""
+        """Its standard output."""
         return self._text("stdout")
 
     @property
     def stderr(self) -> str:
-        """What it wrote to standard error."""
+        """Its standard error."""
         return self._text("stderr")
 
     @property
     def output(self) -> str:
-        """What it wrote to both, in the order in which it came."""
+        """Its output to both streams, in order."""
         return self._text(None)
 
     @property
@@ -95,21 +95,21 @@ class ProcessProxy:
 
     @property
     def exit_code(self) -> int:
-        """How it ended."""
+        """Its exit code."""
         code: int = self._proc_info[self._process_action].returncode
         return code
 
     def wait_for_shutdown(self, timeout: float | None = None) -> bool:
-        """Wait until it has ended, and return whether it did in time (seconds; None to wait without end)."""
+        """Wait until it has ended, and return whether it did in time (seconds; None to wait without limit)."""
         with self._proc_info.proc_event:
             return self._proc_info.proc_event.wait_for(lambda: self.terminated, timeout=timeout)
 
     def wait_for_output(self, condition: Callable[[str], Any] | None = None, timeout: float | None = None) -> Outcome:
-        """Wait until it has written something, and return whether it did in time.
+        """Wait for output, and return whether it came in time.
 
         Args:
-            condition: what has to be true of all that it wrote; any output will do without one.
-            timeout: seconds; None to wait without end.
+            condition: a predicate on its entire output; if omitted, any output suffices.
+            timeout: seconds; None to wait without limit.
         """
         _check_callable(condition, "condition")
         written: str | None = None
@@ -143,13 +143,13 @@ def launch_process(
     proc_output: ActiveIoHandler,
     **kwargs: Any,
 ) -> Iterator[ProcessProxy]:
-    """Start a process in a launch that runs, and end it afterwards where it still runs.
+    """Start a process in a running launch, and end it afterwards if it is still running.
 
     Args:
         launch_service: runs the launch.
         process_action: the action that starts it.
-        proc_info: how processes are.
-        proc_output: what processes wrote.
+        proc_info: the records of starts and exits.
+        proc_output: the output of the processes.
         kwargs: for `ProcessProxy`.
     """
     _check_type(process_action, ExecuteProcess, "process_action")

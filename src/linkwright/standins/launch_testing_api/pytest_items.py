@@ -17,7 +17,7 @@ from linkwright.standins.launch_testing_api.test_runs import LoadTestsFromPython
 
 @pytest.hookspec(firstresult=True)
 def pytest_launch_collect_makemodule(path: Path, parent: pytest.Collector, entrypoint: object) -> object:
-    """Make a collector of the tests in a file with ``generate_test_description``, for plugins that have their own."""
+    """Create a collector of the tests in a file with ``generate_test_description``; plugins may override it."""
 
 
 MARKS = ("launch_test", "rostest")
@@ -27,7 +27,7 @@ class LaunchTestFailure(Exception):
     """Tests of a launch have failed.
 
     Attributes:
-        message: that they have.
+        message: the message.
         results: launch -> results of its tests.
     """
 
@@ -38,7 +38,7 @@ class LaunchTestFailure(Exception):
 
     @property
     def report(self) -> str:
-        """What each test that failed says."""
+        """Return the messages of the failed tests."""
         parts = []
         for result in self.results.values():
             for case, text in (*result.errors, *result.failures):
@@ -52,8 +52,8 @@ class LaunchTestItem(pytest.Item):
     """All tests of a file, with their launches.
 
     Attributes:
-        load: makes the tests anew, for plugins that run a test several times.
-        runner_cls: runs them.
+        load: loads the tests again, for plugins that run a test several times.
+        runner_cls: the class that runs them.
     """
 
     load: Callable[[], list[TestRun]]
@@ -68,7 +68,7 @@ class LaunchTestItem(pytest.Item):
         load: Callable[[], list[TestRun]],
         runner_cls: type[LaunchTestRunner] = LaunchTestRunner,
     ) -> LaunchTestItem:
-        """Make it, as pytest wants it."""
+        """Create the item; pytest's interface."""
         made: LaunchTestItem = super().from_parent(parent, name=name)
         made.load, made.runner_cls = load, runner_cls
         return made
@@ -87,13 +87,13 @@ class LaunchTestItem(pytest.Item):
             raise LaunchTestFailure("some test cases have failed", results)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], *args: Any, **kwargs: Any) -> Any:
-        """What is printed of a failure: what the tests say."""
+        """Return the text of a failure: the tests' messages."""
         if isinstance(excinfo.value, LaunchTestFailure):
             return excinfo.value.report
         return super().repr_failure(excinfo, *args, **kwargs)
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Where it is, and what it is called."""
+        """Return its location and name."""
         return self.path, 0, f"launch tests: {self.name}"
 
 
@@ -103,22 +103,22 @@ class LaunchTestModule(pytest.File):
     module: Any
 
     def makeitem(self, *args: Any, **kwargs: Any) -> LaunchTestItem:
-        """Make the test of the file."""
+        """Create the test of the file."""
         return LaunchTestItem.from_parent(*args, **kwargs)
 
     def collect(self) -> Iterator[LaunchTestItem]:
-        """Give the one test of the file."""
+        """Yield the one test of the file."""
         name = self.module.__name__
         yield self.makeitem(name=name, parent=self, load=lambda: LoadTestsFromPythonModule(self.module, name=name))
 
 
 def collect_marked(path: Path, parent: pytest.Collector) -> LaunchTestModule | None:
-    """Return the launch tests of a file; None where it has none that are marked, or cannot be imported."""
+    """Return the marked launch tests of a file; None if it has none, or cannot be imported."""
     usual = pytest.Module.from_parent(parent, path=path)
     try:
         module = usual.obj
     except (usual.CollectError, pytest.skip.Exception):
-        return None  # pytest tells when it collects the file
+        return None  # pytest reports it on collection
     marks = list(getattr(getattr(module, "generate_test_description", None), "pytestmark", ()))
     if not any(mark.name in MARKS for mark in marks):
         return None

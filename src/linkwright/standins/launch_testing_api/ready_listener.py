@@ -12,9 +12,9 @@ class StdoutReadyListener(OnProcessIO):
     """Visits actions when a process writes a text to standard output.
 
     Args:
-        target_action: the action whose process is meant; all by default.
+        target_action: the action of the process; all by default.
         ready_txt: the text.
-        actions: what is visited then.
+        actions: the actions to visit.
     """
 
     def __init__(self, *, target_action: Any = None, ready_txt: str, actions: Any) -> None:
@@ -26,5 +26,5 @@ class StdoutReadyListener(OnProcessIO):
         super().__init__(target_action=target_action, on_stdout=react)
 
     def describe(self) -> tuple[str, Any]:
-        """What it is, and the actions."""
+        """Return a description and the actions."""
         return super().describe()[0], self._actions

@@ -1,6 +1,6 @@
-"""What processes of a launch wrote and how they ended, kept for tests (``launch_testing``'s handlers).
+"""Records of the output and exits of processes in a launch, for tests (``launch_testing``'s handlers).
 
-The active handlers are for tests that run beside the launch: they can be waited on. The plain ones inside them are for
+The active handlers are for tests that run during the launch: they support waiting. The plain ones inside them are for
 tests that run after it.
 """
 
@@ -17,18 +17,18 @@ from linkwright.standins.launch_testing_api.processes import NoMatchingProcessEx
 
 
 class IoHandler:
-    """What processes wrote, in the order in which it came."""
+    """The output of processes, in order."""
 
     def __init__(self) -> None:
         self._all: list[events.ProcessIO] = []
         self._by_name: dict[str, list[events.ProcessIO]] = {}
 
     def track(self, process_name: str) -> None:
-        """Note a process that may write nothing."""
+        """Register a process, which may have no output."""
         self._by_name.setdefault(process_name, [])
 
     def append(self, process_io: events.ProcessIO) -> None:
-        """Note what a process wrote."""
+        """Record output of a process."""
         self._all.append(process_io)
         self._by_name.setdefault(process_io.process_name, []).append(process_io)
 
@@ -36,7 +36,7 @@ class IoHandler:
         return iter(self._all)
 
     def processes(self) -> list[Any]:
-        """Return the actions of the processes that wrote something."""
+        """Return the actions of the processes with output."""
         return [written[0].action for written in self._by_name.values() if written]
 
     def process_names(self) -> list[str]:
@@ -44,18 +44,18 @@ class IoHandler:
         return list(self._by_name)
 
     def __getitem__(self, key: str | ExecuteLocal) -> list[events.ProcessIO]:
-        """Return what a process wrote, by its name or its action; KeyError where it is not known."""
+        """Return the output of a process, by its name or action; KeyError if it is not known."""
         return list(self._by_name[key if isinstance(key, str) else name_of(key)])
 
 
 class ProcInfoHandler:
-    """The last event of each process: that it started, or that it ended."""
+    """The last event of each process: its start or its exit."""
 
     def __init__(self) -> None:
         self._by_action: dict[Any, events.RunningProcessEvent] = {}
 
     def append(self, process_info: events.RunningProcessEvent) -> None:
-        """Note an event."""
+        """Record an event."""
         self._by_action[process_info.action] = process_info
 
     def __iter__(self) -> Iterator[events.RunningProcessEvent]:
@@ -70,7 +70,7 @@ class ProcInfoHandler:
         return [name_of(action) for action in self._by_action]
 
     def __getitem__(self, key: str | ExecuteLocal) -> Any:
-        """Return the event of a process, by a part of its name or its action; KeyError where it is not known."""
+        """Return the event of a process, by a part of its name or its action; KeyError if it is not known."""
         if not isinstance(key, str):
             return self._by_action[key]
         for action, event in self._by_action.items():
@@ -80,10 +80,10 @@ class ProcInfoHandler:
 
 
 class ActiveIoHandler:
-    """What processes wrote so far, to be waited on.
+    """The output of processes so far, with waits.
 
     Attributes:
-        io_event: notified when a process has written something.
+        io_event: notified on output of a process.
     """
 
     def __init__(self) -> None:
@@ -91,13 +91,13 @@ class ActiveIoHandler:
         self._io_handler = IoHandler()
 
     def track(self, process_name: str) -> None:
-        """Note a process that may write nothing."""
+        """Register a process, which may have no output."""
         with self.io_event:
             self._io_handler.track(process_name)
             self.io_event.notify_all()
 
     def append(self, process_io: events.ProcessIO) -> None:
-        """Note what a process wrote."""
+        """Record output of a process."""
         with self.io_event:
             self._io_handler.append(process_io)
             self.io_event.notify_all()
@@ -107,7 +107,7 @@ class ActiveIoHandler:
             return iter(list(self._io_handler))
 
     def processes(self) -> list[Any]:
-        """Return the actions of the processes that wrote something."""
+        """Return the actions of the processes with output."""
         with self.io_event:
             return self._io_handler.processes()
 
@@ -117,7 +117,7 @@ class ActiveIoHandler:
             return self._io_handler.process_names()
 
     def __getitem__(self, key: str | ExecuteLocal) -> list[events.ProcessIO]:
-        """Return what a process wrote, by its name or its action; KeyError where it is not known."""
+        """Return the output of a process, by its name or action; KeyError if it is not known."""
         with self.io_event:
             return self._io_handler[key]
 
@@ -144,14 +144,14 @@ class ActiveIoHandler:
             expected_output: a text, a regular expression, or several of them in order.
             process: an action, or a part of the name of a process; None for all processes.
             cmd_args: arguments of the process, see `resolveProcesses`.
-            strict_proc_matching: whether a name must be that of one process only.
-            output_filter: what is made of the output before it is looked at.
-            timeout: seconds; None to wait without end.
-            strip_ansi_escape_sequences: whether colours are taken out before.
+            strict_proc_matching: whether a name must match only one process.
+            output_filter: a function to filter the output first.
+            timeout: seconds; None to wait without limit.
+            strip_ansi_escape_sequences: whether to remove colours first.
             stream: ``stdout`` or ``stderr``.
 
         Raises:
-            Exception: no process of this name wrote anything.
+            Exception: no process with this name has output.
         """
 
         def is_there() -> bool:
@@ -178,7 +178,7 @@ class ActiveIoHandler:
 
 
 class ActiveProcInfoHandler:
-    """How processes are so far, to be waited on.
+    """The starts and exits of processes so far, with waits.
 
     Attributes:
         proc_event: notified when a process has started or ended.
@@ -189,7 +189,7 @@ class ActiveProcInfoHandler:
         self._proc_info_handler = ProcInfoHandler()
 
     def append(self, process_info: events.RunningProcessEvent) -> None:
-        """Note an event."""
+        """Record an event."""
         with self.proc_event:
             self._proc_info_handler.append(process_info)
             self.proc_event.notify_all()
@@ -209,7 +209,7 @@ class ActiveProcInfoHandler:
             return self._proc_info_handler.process_names()
 
     def __getitem__(self, key: str | ExecuteLocal) -> Any:
-        """Return the event of a process, by a part of its name or its action; KeyError where it is not known."""
+        """Return the event of a process, by a part of its name or its action; KeyError if it is not known."""
         with self.proc_event:
             return self._proc_info_handler[key]
 
@@ -220,7 +220,7 @@ class ActiveProcInfoHandler:
         *,
         timeout: float | None = 10,
     ) -> None:
-        """Wait until a process has started; raise AssertionError where it does not in time."""
+        """Wait until a process has started; raise AssertionError on a timeout."""
         self._wait(process, cmd_args, events.RunningProcessEvent, "start", timeout)
 
     def assertWaitForShutdown(
@@ -230,7 +230,7 @@ class ActiveProcInfoHandler:
         *,
         timeout: float | None = 10,
     ) -> None:
-        """Wait until a process has ended; raise AssertionError where it does not in time."""
+        """Wait until a process has ended; raise AssertionError on a timeout."""
         self._wait(process, cmd_args, events.ProcessExited, "finish", timeout)
 
     def _wait(

@@ -19,7 +19,7 @@ class _Run(Protocol):
 class TestResult(unittest.TextTestResult):
     """Results of tests that ran, with the tests themselves and how long each took."""
 
-    __test__ = False  # pytest would take it for tests
+    __test__ = False  # pytest would collect it as tests
 
     def __init__(self, stream: Any = None, descriptions: Any = None, verbosity: Any = None, **kwargs: Any) -> None:
         super().__init__(stream, descriptions, verbosity, **kwargs)
@@ -33,16 +33,16 @@ class TestResult(unittest.TextTestResult):
 
     @property
     def testTimes(self) -> dict[Any, float]:
-        """How many seconds each took."""
+        """The duration of each in seconds."""
         return {case: self._seconds.get(case, 0.0) for case in self._begun}
 
     def startTest(self, test: Case) -> None:
-        """Note when a test begins."""
+        """Record the start of a test."""
         self._begun[test] = time.monotonic()
         super().startTest(test)
 
     def stopTest(self, test: Case) -> None:
-        """Note how long it took."""
+        """Record its duration."""
         self._seconds[test] = time.monotonic() - self._begun[test]
         super().stopTest(test)
 
@@ -65,16 +65,16 @@ class _NotRun(unittest.TestResult):
 
     @property
     def testTimes(self) -> dict[Any, float]:
-        """No time for each."""
+        """A duration of 0 for each."""
         return dict.fromkeys(self.testCases, 0)
 
 
 class FailResult(_NotRun):
-    """Results of tests whose launch ended before they did: each has failed.
+    """Results of tests whose launch ended before them: all have failed.
 
     Args:
-        test_run: the tests.
-        message: why.
+        test_run: the test run.
+        message: the reason.
     """
 
     def __init__(self, test_run: _Run, message: str) -> None:
@@ -83,7 +83,7 @@ class FailResult(_NotRun):
             self.addFailure(case, (Exception, Exception(message), None))  # type: ignore[arg-type]  # no traceback
 
     def wasSuccessful(self) -> bool:
-        """False, without any test too."""
+        """Return False, even without tests."""
         return False
 
 
@@ -91,8 +91,8 @@ class SkipResult(_NotRun):
     """Results of tests whose launch is skipped.
 
     Args:
-        test_run: the tests.
-        skip_reason: why.
+        test_run: the test run.
+        skip_reason: the reason.
     """
 
     def __init__(self, test_run: _Run, skip_reason: str = "") -> None:
@@ -107,7 +107,7 @@ def unittestResultsToXml(
     """Return a document ``testsuites`` for the results of several launches.
 
     Args:
-        name: of the document.
+        name: the name of the document.
         test_results: a launch, or its name -> its results.
     """
     results = test_results or {}

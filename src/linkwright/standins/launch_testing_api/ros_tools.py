@@ -1,4 +1,4 @@
-"""What tests of launches do with topics (``launch_testing_ros``)."""
+"""Tools for topics in launch tests (``launch_testing_ros``)."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ class LaunchTestRunner(_LaunchTestRunner):
 
 
 class WaitForTopics:
-    """Waits until a message has come on each of several topics; a context manager too.
+    """Waits for a message on each of several topics; also a context manager.
 
     Args:
         topic_tuples: names and types of the topics.
         timeout: seconds.
-        messages_received_buffer_length: how many messages of each topic are kept.
-        trigger: called once the subscriptions are made.
-        node_namespace: where the node lives that listens.
+        messages_received_buffer_length: the number of messages to keep for each topic.
+        trigger: called after the subscriptions are created.
+        node_namespace: the namespace of the subscribing node.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class WaitForTopics:
         self._thread.start()
 
     def wait(self, *args: Any, **kwargs: Any) -> bool:
-        """Wait, and return whether all topics had a message in time; arguments are those of the trigger."""
+        """Wait, and return whether all topics had a message in time; the arguments are passed to the trigger."""
         with self._all_there:
             for messages in self._received.values():
                 messages.clear()
@@ -96,7 +96,7 @@ class WaitForTopics:
         """Return the messages of a topic, the latest last.
 
         Raises:
-            KeyError: it is none of the topics.
+            KeyError: it is not one of the topics.
         """
         if topic_name not in self._received:
             raise KeyError("No messages received for topic: " + topic_name)
@@ -142,11 +142,11 @@ class MessagePump:
         self._thread = threading.Thread(target=self._pump, name="msg_pump_thread", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._thread.start()
 
     def stop(self) -> None:
-        """End.
+        """Stop the thread.
 
         Raises:
             Exception: a callback does not end.
@@ -164,14 +164,14 @@ class MessagePump:
 
 
 class DataRepublisher:
-    """Publishes what it makes of each message of a topic on another topic.
+    """Transforms the messages of a topic and publishes them on another topic.
 
     Args:
-        node: the node that listens and publishes.
-        listen_topic: where messages come from.
-        publish_topic: where they go.
-        msg_type: their type.
-        transform_fn: makes a message of each; None to publish nothing for it.
+        node: the node that subscribes and publishes.
+        listen_topic: the input topic.
+        publish_topic: the output topic.
+        msg_type: the type of both.
+        transform_fn: returns the output for a message; None to publish nothing.
     """
 
     def __init__(
@@ -190,15 +190,15 @@ class DataRepublisher:
         self._node.destroy_publisher(self._publisher)
 
     def get_num_received(self) -> int:
-        """Return how many messages came."""
+        """Return the number of received messages."""
         return self._count
 
     def get_num_republished(self) -> int:
-        """Return for how many of them one was published."""
+        """Return the number of republished messages."""
         return len(self._republished)
 
     def get_republished(self) -> list[Any]:
-        """Return the messages that came and for which one was published."""
+        """Return the received messages that were republished."""
         return self._republished
 
     def _take(self, message: Any) -> None:
@@ -210,7 +210,7 @@ class DataRepublisher:
 
 
 def get_rmw_output_filter(rmw_implementation: str, filter_type: str) -> list[str]:
-    """Return the lines that an implementation of rmw says are to be taken out of outputs.
+    """Return the lines that an rmw implementation declares as noise in outputs.
 
     Args:
         rmw_implementation: its package.
@@ -234,12 +234,12 @@ def basic_output_filter(
     filtered_patterns: Sequence[str] | None = None,
     filtered_rmw_implementation: str | None = None,
 ) -> Callable[[str], str]:
-    """Return a function that takes lines out of an output.
+    """Return a function that removes lines from an output.
 
     Args:
         filtered_prefixes: the beginnings of such lines.
         filtered_patterns: regular expressions for the beginnings of such lines.
-        filtered_rmw_implementation: whose lines are taken out too, see `get_rmw_output_filter`.
+        filtered_rmw_implementation: an rmw implementation whose lines to remove too, see `get_rmw_output_filter`.
     """
     prefixes = list(text.get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
     patterns = list(filtered_patterns or ())

@@ -1,7 +1,7 @@
-"""Runs the tests of a file beside their launches (``launch_testing.test_runner``).
+"""Runs the tests of a file with their launches (``launch_testing.test_runner``).
 
-A launch runs in the main thread, because only that one gets signals, and the tests beside it in another. Those that
-look at its end run in the main thread after it.
+A launch runs in the main thread, because only that one gets signals, and its tests in another thread. The tests of its
+end run in the main thread after it.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ class _RunnerWorker:
 
     Args:
         test_run: the tests.
-        test_run_preamble: what is launched before all else.
+        test_run_preamble: entities to launch first.
         launch_file_arguments: arguments of the launch, ``name:=value``.
-        debug: whether the launch tells details.
+        debug: whether the launch logs details.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class _RunnerWorker:
         """Launch, and run the tests.
 
         Raises:
-            _LaunchDiedError: the launch ended before the tests that run beside it.
+            _LaunchDiedError: the launch ended before its tests.
             unittest.SkipTest: the launch is skipped.
         """
         run = self._test_run
@@ -79,7 +79,7 @@ class _RunnerWorker:
         return results
 
     def _bind(self, context: Mapping[str, Any]) -> None:
-        """Give the tests what they ask for."""
+        """Pass the tests their arguments and attributes."""
         beside: dict[str, Any] = {
             "launch_service": self._launch_service,
             "proc_info": self._proc_info,
@@ -95,7 +95,7 @@ class _RunnerWorker:
         self._test_run.bind(self._test_run.post_shutdown_tests, after, {**context, **after})
 
     def _wrapped(self, description: LaunchDescription) -> LaunchDescription:
-        """The description with its arguments, and with what records its processes."""
+        """Return the description with its arguments and the recorders of its processes."""
         info, output = self._proc_info, self._proc_output
 
         def started(event: events.ProcessStarted, _: Any) -> None:
@@ -115,7 +115,7 @@ class _RunnerWorker:
         )
 
     def _run_test(self) -> None:
-        """Run the tests beside the launch once they may begin, and end it."""
+        """Run the tests when the launch is ready, and end it."""
         if not self._processes_launched.wait(self._test_run.timeout):
             print("Timed out waiting for processes to start up")
             self._launch_service.shutdown()
@@ -127,13 +127,13 @@ class _RunnerWorker:
             self._launch_service.shutdown()
 
     def _print_failed_processes(self) -> None:
-        """Print what the processes wrote that ended with an exit code."""
+        """Print the output of processes that exited with an error code."""
         for event in self._proc_info:
             if getattr(event, "returncode", 0) == 0:
                 continue
             name = event.process_name
             head = f"##### '{name}' output #####"
-            print(f"Process '{name}' exited with {event.returncode}", head, sep="\n")  # type: ignore[attr-defined]  # asked
+            print(f"Process '{name}' exited with {event.returncode}", head, sep="\n")  # type: ignore[attr-defined]  # checked
             print(text_of(self._proc_output[name]), "#" * len(head), sep="\n")
 
 
@@ -143,7 +143,7 @@ class LaunchTestRunner:
     Args:
         test_runs: the tests of each launch.
         launch_file_arguments: arguments of the launches, ``name:=value``.
-        debug: whether they tell details.
+        debug: whether they log details.
     """
 
     def __init__(
@@ -154,11 +154,11 @@ class LaunchTestRunner:
         self._debug = debug
 
     def generate_preamble(self) -> list[Any]:
-        """Return what is launched before all else: nothing, unless a derived class says so."""
+        """Return entities to launch first; none, unless a subclass overrides it."""
         return []
 
     def run(self) -> dict[TestRun, unittest.TestResult]:
-        """Run all launches, and return the results of each; where one dies, no further launch is run."""
+        """Run all launches, and return the results of each; stop if one dies."""
         results: dict[TestRun, unittest.TestResult] = {}
         for run in self._test_runs:
             if len(self._test_runs) > 1:
@@ -175,7 +175,7 @@ class LaunchTestRunner:
         return results
 
     def validate(self) -> None:
-        """Raise Exception where the arguments of ``generate_test_description`` are not those that it is given."""
+        """Raise Exception if ``generate_test_description`` does not accept its arguments."""
         for run in self._test_runs:
             asked = inspect.getfullargspec(inspect.unwrap(run._test_description_function))
             names = [*asked.args, *asked.kwonlyargs]

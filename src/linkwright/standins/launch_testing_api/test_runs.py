@@ -1,4 +1,4 @@
-"""The tests in a file, and the launches that they run beside (``launch_testing.loader``)."""
+"""The tests in a file and their launches (``launch_testing.loader``)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.launch.model.description import LaunchDescription
 from linkwright.standins.launch_testing_api.marks import AFTER_SHUTDOWN, MARKERS, PARAMETRIZED, TIMEOUT
 
 _READY_SECONDS = 15.0
-"""How long a launch may take until its tests may begin, where it is not said."""
+"""The default seconds that a launch may take until its tests may start."""
 
 Described = tuple[LaunchDescription, dict[str, Any]]
 
@@ -22,14 +22,14 @@ class TestRun:
     """The tests that belong to one launch.
 
     Attributes:
-        name: of the tests.
-        param_args: the arguments that the description is made with, where it is parametrized.
-        pre_shutdown_tests: the tests that run beside the launch.
+        name: the name of the tests.
+        param_args: the arguments of a parametrized description.
+        pre_shutdown_tests: the tests that run during the launch.
         post_shutdown_tests: the tests that run after its end.
-        timeout: seconds that the launch may take until the tests may begin.
+        timeout: seconds that the launch may take until the tests may start.
     """
 
-    __test__ = False  # pytest would take it for tests
+    __test__ = False  # pytest would collect it as tests
 
     def __init__(
         self,
@@ -45,22 +45,22 @@ class TestRun:
         self.post_shutdown_tests = post_shutdown_tests
         self.timeout: float = getattr(test_description_function, TIMEOUT, _READY_SECONDS)
         self._test_description_function = test_description_function
-        self._cases = [*_cases(pre_shutdown_tests), *_cases(post_shutdown_tests)]  # suites forget those that ran
+        self._cases = [*_cases(pre_shutdown_tests), *_cases(post_shutdown_tests)]  # suites drop finished tests
         if self.param_args:
             for case in self._cases:
                 _rename(case, case._testMethodName + self._shown_arguments())
 
     @property
     def markers(self) -> dict[str, Any]:
-        """What the function that makes the description is marked with."""
+        """The marks of the function that creates the description."""
         found: dict[str, Any] = getattr(self._test_description_function, MARKERS, {})
         return found
 
     def normalized_test_description(self, *, ready_fn: Callable[[], object]) -> Described:
-        """Return the description, and what its function gives the tests.
+        """Return the description, and the context that its function returns for the tests.
 
         Args:
-            ready_fn: called when the tests may begin.
+            ready_fn: called when the tests may start.
 
         Raises:
             Exception: the description has no `ReadyToTest`.
@@ -77,7 +77,7 @@ class TestRun:
         return description, context
 
     def get_launch_description(self) -> LaunchDescription:
-        """Return the description, to be looked at."""
+        """Return the description, for inspection."""
         return self.normalized_test_description(ready_fn=lambda: None)[0]
 
     def bind(
@@ -86,7 +86,7 @@ class TestRun:
         injected_attributes: Mapping[str, Any] | None = None,
         injected_args: Mapping[str, Any] | None = None,
     ) -> None:
-        """Give tests what they ask for.
+        """Pass tests their arguments and attributes.
 
         Args:
             tests: a suite.
@@ -104,7 +104,7 @@ class TestRun:
                 setattr(case, name, _bound(getattr(case, name), injected_args or {}))
 
     def all_cases(self) -> Iterator[unittest.TestCase]:
-        """Give all tests, also once they ran."""
+        """Return all tests, including finished ones."""
         return iter(self._cases)
 
     def __str__(self) -> str:
@@ -119,7 +119,7 @@ def LoadTestsFromPythonModule(module: Any, *, name: str = "launch_tests") -> lis
 
     Args:
         module: the module.
-        name: of the tests.
+        name: the name of the tests.
     """
     made = module.generate_test_description
     descriptions = made() if hasattr(made, PARAMETRIZED) else [(made, {})]
@@ -136,12 +136,12 @@ def LoadTestsFromPythonModule(module: Any, *, name: str = "launch_tests") -> lis
 
 
 class _Loader(unittest.TestLoader):
-    """Loads the tests that run after the end of a launch, or those that run beside it."""
+    """Loads the tests that run after a launch, or those that run during it."""
 
     is_after = False
 
     def loadTestsFromTestCase(self, testCaseClass: type[unittest.TestCase]) -> unittest.TestSuite:
-        """Load the tests of a class; each launch has a class of its own, which things can be given to."""
+        """Load the tests of a class; each launch has its own subclass for injected attributes."""
         if getattr(testCaseClass, AFTER_SHUTDOWN, False) != self.is_after:
             return unittest.TestSuite()
         own = type(testCaseClass.__name__, (testCaseClass,), {"__module__": testCaseClass.__module__})
@@ -149,7 +149,7 @@ class _Loader(unittest.TestLoader):
 
 
 class PreShutdownTestLoader(_Loader):
-    """Loads the tests that run beside the launch."""
+    """Loads the tests that run during the launch."""
 
 
 class PostShutdownTestLoader(_Loader):
@@ -173,6 +173,6 @@ def _rename(case: Any, name: str) -> None:
 
 
 def _bound(function: Callable[..., Any], given: Mapping[str, Any]) -> Callable[..., Any]:
-    """A function that has of the arguments given those that it asks for."""
+    """Bind the given arguments that a function accepts."""
     asked = inspect.signature(function).parameters
     return functools.partial(function, **{name: value for name, value in given.items() if name in asked})

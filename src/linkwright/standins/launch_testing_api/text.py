@@ -1,4 +1,4 @@
-"""Comparing what was written with what is expected (``launch_testing.tools.text`` and ``output``)."""
+"""Comparison of output with expectations (``launch_testing.tools.text`` and ``output``)."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from linkwright.standins.terminal_color import remove_ansi_escape_sequences
 
 T = TypeVar("T")
 Range = tuple[int, int]
-"""Where something begins and ends."""
+"""The start and end of a match."""
 
 Match = Callable[..., "Range | None"]
-"""A function of a text, or of lines, and of where to begin: where the expected is found; None where it is not."""
+"""A function of a text, or of lines, and a start: the position of the match, or None."""
 
 
 def normalize_lineseps(lines: str) -> str:
-    r"""Return a text whose lines end with ``\n``, also where it comes from a terminal."""
+    r"""Return a text with ``\n`` line ends, even if it comes from a terminal."""
     return lines.replace(os.linesep, "\n").replace("\r\n", "\n")
 
 
 def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
-    """Return a function that finds what is expected in a text.
+    """Return a function that finds an expectation in a text.
 
     Args:
         expected_text: a text, a regular expression, or several of them in order.
-        strict: whether the text must be that and nothing else; several, whether they must follow each other at once.
+        strict: whether the text must match completely; for several, whether they must be adjacent.
 
     Raises:
-        ValueError: it is something else.
+        ValueError: it has another type.
     """
 
     def find(text: str, start: int = 0) -> Range | None:
@@ -52,14 +52,14 @@ def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
 
 
 def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
-    """Return a function that finds what is expected in lines.
+    """Return a function that finds an expectation in lines.
 
     Args:
         expected_lines: a part of a line, a regular expression for the beginning of a line, or several in order.
-        strict: whether every line must be that; of several, whether they must follow each other at once.
+        strict: whether every line must match; for several, whether they must be adjacent.
 
     Raises:
-        ValueError: it is something else.
+        ValueError: it has another type.
     """
 
     def fits(line: str) -> bool:
@@ -81,7 +81,7 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
 
 
 def _in_order(matches: Sequence[Match], *, strict: bool) -> Match:
-    """A function that finds one after the other; where they need not follow at once, anything may be between."""
+    """Return a function that finds expectations in order, adjacent or with other text between them."""
 
     def find(written: Any, start: int = 0) -> Range | None:
         begin, end = None, start
@@ -104,18 +104,18 @@ def expect_output(
     strip_ansi_escape_sequences: bool = True,
     strict: bool = False,
 ) -> bool:
-    """Return whether a text, or lines, have in them what is expected.
+    """Return whether a text, or lines, contain an expectation.
 
     Args:
-        text: what was written; or `lines`.
-        lines: what was written, in lines.
+        text: the output as text; or `lines`.
+        lines: the output in lines.
         expected_text: see `build_text_match`; or `expected_lines`.
         expected_lines: see `build_line_match`.
-        strip_ansi_escape_sequences: whether colours are taken out before.
+        strip_ansi_escape_sequences: whether to remove colours first.
         strict: see `build_text_match`.
 
     Raises:
-        ValueError: both of a pair are given, or none.
+        ValueError: both of a pair are given, or neither.
     """
     if (text is None) == (lines is None):
         raise ValueError("Either lines or text, but not both, must be specified")
@@ -130,10 +130,10 @@ def expect_output(
 
 
 def expected_output_from_file(path: str, encoding: str | None = None) -> list[Any]:
-    """Return what is expected from a file: the lines of ``PATH.txt``, or the regular expressions of ``PATH.regex``.
+    """Return the expectations in a file: the lines of ``PATH.txt``, or the regular expressions of ``PATH.regex``.
 
     Raises:
-        RuntimeError: there is neither.
+        RuntimeError: neither file exists.
     """
     for ending, made in ((".txt", str), (".regex", re.compile)):
         file = Path(path + ending)
@@ -143,19 +143,19 @@ def expected_output_from_file(path: str, encoding: str | None = None) -> list[An
 
 
 def get_default_filtered_prefixes() -> list[str]:
-    """Return the beginnings of lines that a filter takes out by default."""
+    """Return the prefixes of lines that a filter removes by default."""
     return ["pid", "rc"]
 
 
 def get_default_filtered_patterns() -> list[str]:
-    """Return the regular expressions of lines that a filter takes out by default: none."""
+    """Return the regular expressions of lines that a filter removes by default: none."""
     return []
 
 
 def basic_output_filter(
     filtered_prefixes: Iterable[str] | None = None, filtered_patterns: Iterable[str] | None = None
 ) -> Callable[[str], str]:
-    """Return a function that takes lines out of an output.
+    """Return a function that removes lines from an output.
 
     Args:
         filtered_prefixes: the beginnings of such lines; those of `get_default_filtered_prefixes` by default.

@@ -1,1 +1,1 @@
-"""What the Python package ``rclpy`` offers, on the nodes and executors of `linkwright.graph`."""
+"""The API of the Python package ``rclpy``, on the nodes and executors of `linkwright.graph`."""

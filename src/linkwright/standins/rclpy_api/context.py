@@ -35,7 +35,7 @@ class Context:
     """A graph and its nodes from initialisation to shutdown, each of which happens once.
 
     Args:
-        graph: the graph, where there is one already; it is closed with the context.
+        graph: an existing graph, which is closed with the context.
     """
 
     def __init__(self, graph: Graph | None = None) -> None:
@@ -52,7 +52,7 @@ class Context:
 
     @property
     def enable_rosout(self) -> bool:
-        """Whether nodes publish their log messages, which the command line may turn off."""
+        """Whether nodes publish their log messages, which the command line may disable."""
         return self.ros_arguments.rosout_logs is not False
 
     @property
@@ -62,14 +62,14 @@ class Context:
 
     @property
     def graph(self) -> Graph:
-        """The graph that the nodes of the context are in. It joins the network when the first node asks for it."""
+        """The graph of the context's nodes, which joins the network on first use by a node."""
         with self._lock:
             if self._graph is None:
                 self._graph = self._new_graph()
             return self._graph
 
     def wait_for_network(self) -> None:
-        """Wait, the first time, until the graph has joined the network; else DDS delays the first timers."""
+        """Wait once until the graph has joined the network; otherwise DDS would delay the first timers."""
         joining, self._joining = self._joining, None
         if joining is not None:
             joining.wait_until_ready(_LONGEST_JOINING_S)
@@ -77,18 +77,18 @@ class Context:
     def init(
         self, args: Sequence[str] | None = None, *, initialize_logging: bool = True, domain_id: int | None = None
     ) -> None:
-        """Initialise it.
+        """Initialise the context.
 
         Args:
-            args: the command line; ``sys.argv`` when None.
-            initialize_logging: whether what the command line says about logging holds.
-            domain_id: the network's domain; that of ROS_DOMAIN_ID, else 0, when None.
+            args: the command line; None for ``sys.argv``.
+            initialize_logging: whether to apply the logging options of the command line.
+            domain_id: the network's domain; None for that of ROS_DOMAIN_ID, or else 0.
 
         Raises:
             RuntimeError: the domain is negative, or the context was initialised before.
             UnknownROSArgsError: there are unknown ROS arguments.
             RCLInvalidROSArgsError: a ROS argument is malformed.
-            RclError: security is enforced (``ROS_SECURITY_STRATEGY``), which there is none of.
+            RclError: security is enforced (``ROS_SECURITY_STRATEGY``), which is not supported.
         """
         if domain_id is not None and domain_id < 0:
             raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
@@ -125,10 +125,10 @@ class Context:
         return int(text) if text.isdigit() else 0
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
-        """Register a callback for the shutdown, called at once where that has happened. Bound methods are held weakly.
+        """Register a callback for the shutdown, called at once if it is shut down; bound methods are held weakly.
 
         Raises:
-            TypeError: it cannot be called.
+            TypeError: it is not callable.
         """
         if not callable(callback):
             raise TypeError(f"callback should be a callable, got {type(callback)}")
@@ -143,7 +143,7 @@ class Context:
         """Shut down: executors stop spinning and the nodes leave the graph.
 
         Raises:
-            RclError: it was not initialised, or is shut down already, other than by a signal.
+            RclError: it was not initialised, or is already shut down, other than by a signal.
         """
         if not self._initialized:
             raise RclError("Context must be initialized before it can be shutdown")
@@ -153,19 +153,19 @@ class Context:
         self._end()
 
     def try_shutdown(self) -> None:
-        """Shut down, unless that has happened already."""
+        """Shut down, unless it is already shut down."""
         if self._initialized and (self._ok or self._ended_by_signal):
             self.shutdown()
 
     def shutdown_by_signal(self) -> None:
-        """Tell executors to stop. The rest is left to `shutdown`, because a signal may come at any moment."""
+        """Stop the executors; the rest is left to `shutdown`, because a signal may arrive at any moment."""
         if self._ok:
             self._ended_by_signal = True
             self._ok = False
             self._tell()
 
     def destroy(self) -> None:
-        """Shut down, unless that has happened already (rclpy)."""
+        """Shut down, unless it is already shut down (rclpy)."""
         self.try_shutdown()
 
     def __enter__(self) -> Self:
@@ -216,7 +216,7 @@ def _check_security() -> None:
 
 
 def read_ros_arguments(arguments: Sequence[str]) -> RosArguments:
-    """The ROS arguments of a command line.
+    """Return the ROS arguments of a command line.
 
     Raises:
         UnicodeEncodeError: an argument is not text.

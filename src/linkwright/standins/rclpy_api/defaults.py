@@ -1,4 +1,4 @@
-"""The default context, used wherever none is given."""
+"""The default context, which is used if none is given."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class _Default:
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
-    """The default context; a new one after the old one was shut down.
+    """Return the default context, or a new one after a shutdown.
 
     Args:
-        shutting_down: forget it; the next call gives a new one.
+        shutting_down: whether to drop it, so that the next call returns a new one.
 
     Raises:
-        RclError: there is none to be shut down.
+        RclError: there is none to shut down.
     """
     with _lock:
         if shutting_down:
@@ -42,24 +42,24 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 
 def has_default_context() -> bool:
-    """Return whether somebody has asked for the default context and it was not shut down since."""
+    """Return whether the default context has been requested and not shut down since."""
     return _Default.context is not None
 
 
 def is_default(context: Context | None) -> bool:
-    """Return whether a context is the default one, which None stands for too."""
+    """Return whether a context is the default one or None, which means the same."""
     return context is None or context is _Default.context
 
 
 def use_graph(graph: Graph, args: Sequence[str]) -> Context:
-    """Initialise the default context with a graph that exists, as `linkwright.testing` does; it is closed with it.
+    """Initialise the default context with an existing graph, as `linkwright.testing` does; both are closed together.
 
     Args:
         graph: the graph in which the nodes of the default context are.
         args: the command line.
 
     Raises:
-        RuntimeError: the default context was initialised already.
+        RuntimeError: the default context is already initialised.
     """
     with _lock:
         if _Default.context is not None and _Default.context.ok():

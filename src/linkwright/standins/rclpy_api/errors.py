@@ -1,4 +1,4 @@
-"""The exceptions of rclpy: those that nothing in `linkwright.graph` raises, and what all of them are called."""
+"""The exceptions of rclpy that `linkwright.graph` does not raise, and the public names of all."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = [
 ]
 
 _MODULES = ("rclpy.exceptions", "rclpy.executors", "rclpy._rclpy_pybind11")
-"""Where classes of exceptions are defined; what is in the last one is imported from there by the others."""
+"""The modules of exception classes; the others import from the last one."""
 
 
 class NoTypeSupportImportedException(Exception):
@@ -35,19 +35,19 @@ class RCLInvalidROSArgsError(RCLError):
 
 
 class UnknownROSArgsError(RuntimeError):
-    """There are ROS arguments that are not known."""
+    """There are unknown ROS arguments."""
 
 
 class TimerCancelledError(RCLError):
-    """A timer is called that is cancelled."""
+    """A cancelled timer was called."""
 
 
 class UnsupportedEventTypeError(RCLError):
-    """The middleware has no events of a type."""
+    """The middleware does not support an event type."""
 
 
 def name_as_rclpy() -> None:
-    """Have tracebacks and logs of a program with rclpy say ``rclpy.exceptions.InvalidNodeNameException``."""
+    """Name the exceptions as in rclpy for tracebacks and logs: ``rclpy.exceptions.InvalidNodeNameException``."""
     for module in _MODULES:
         described = table.find(module)
         assert described is not None

@@ -10,13 +10,13 @@ from linkwright.standins.rclpy_api.node import Node
 
 
 class LifecycleNode(LifecycleNodeMixin, Node):
-    """A node with a life cycle that others can drive; users' managed nodes derive from it.
+    """A managed node; users' managed nodes derive from it.
 
     Args:
         node_name: its name.
-        enable_communication_interface: whether others can drive it, through services, and hear of it.
-        callback_group: that of the services.
-        arguments: what else `Node` takes.
+        enable_communication_interface: whether it has services for transitions and publishes them.
+        callback_group: the callback group of the services.
+        arguments: further arguments of `Node`.
 
     Raises:
         TypeError: `enable_communication_interface` is not a bool.

@@ -39,7 +39,7 @@ root_logger = Logger("", write, time.time_ns, LEVELS)
 
 
 def get_logger(name: str) -> Logger:
-    """The logger of a name; dots separate levels.
+    """Return the logger with a name; dots separate levels.
 
     Raises:
         ValueError: the name is empty.
@@ -50,7 +50,7 @@ def get_logger(name: str) -> Logger:
 
 
 def initialize() -> None:
-    """Forget all levels that were set."""
+    """Reset all levels."""
     LEVELS.reset()
 
 
@@ -60,7 +60,7 @@ def shutdown() -> None:
 
 
 def clear_config() -> None:
-    """Forget what was configured."""
+    """Reset the configuration."""
     shutdown()
     initialize()
 
@@ -71,20 +71,20 @@ def set_logger_level(name: str, level: int, detailed_error: bool = False) -> Non
 
 
 def get_logger_effective_level(name: str) -> LogLevel:
-    """The level of a logger, its own or inherited."""
+    """Return the level of a logger, its own or inherited."""
     return LEVELS.effective(name)
 
 
 def get_logger_level(name: str) -> LogLevel:
-    """A logger's own level; UNSET where it has none."""
+    """Return a logger's own level, or UNSET."""
     return LEVELS.own(name)
 
 
 def get_logging_severity_from_string(log_severity: str) -> LogLevel:
-    """The severity of a name.
+    """Return the severity with a name.
 
     Raises:
-        RuntimeError: there is none of that name.
+        RuntimeError: there is no such severity.
     """
     level = level_named(log_severity)
     if level is None:
@@ -93,7 +93,7 @@ def get_logging_severity_from_string(log_severity: str) -> LogLevel:
 
 
 def get_logging_directory() -> Path:
-    """Where log files are written: ROS_LOG_DIR, else ``log`` below ROS_HOME, else ``~/.ros/log``."""
+    """Return the folder of log files: ROS_LOG_DIR, else ``log`` below ROS_HOME, else ``~/.ros/log``."""
     folder = os.environ.get("ROS_LOG_DIR")
     if folder:
         return Path(folder).expanduser()

@@ -1,4 +1,4 @@
-"""Checks of names, which rclpy has in a module each."""
+"""Validation of names, which rclpy splits into modules."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ HIDDEN_TOPIC_PREFIX = "_"
 
 
 def validate_node_name(node_name: str) -> bool:
-    """True for a valid node name.
+    """Return True for a valid node name.
 
     Raises:
         InvalidNodeNameError: for any other.
@@ -20,7 +20,7 @@ def validate_node_name(node_name: str) -> bool:
 
 
 def validate_namespace(namespace: str) -> bool:
-    """True for a namespace.
+    """Return True for a valid namespace.
 
     Raises:
         InvalidNamespaceError: for anything else.
@@ -32,7 +32,7 @@ def validate_namespace(namespace: str) -> bool:
 
 
 def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """True for a valid topic or service name, which may be relative or private.
+    """Return True for a valid topic or service name, which may be relative or private.
 
     Raises:
         InvalidTopicNameError, InvalidServiceNameError: for any other.
@@ -42,7 +42,7 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 
 def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
-    """True for the absolute name of a topic or service.
+    """Return True for a valid absolute name of a topic or service.
 
     Raises:
         InvalidTopicNameError, InvalidServiceNameError: for any other.
@@ -55,7 +55,7 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """The absolute form of a topic name that a node uses.
+    """Return the absolute form of a topic name of a node.
 
     Raises:
         ValueError: one of the names is not valid.
@@ -69,12 +69,12 @@ def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> s
 
 
 def topic_or_service_is_hidden(name: str) -> bool:
-    """Whether tools hide a topic or service by default: a part of its name begins with ``_``. Any text is a name."""
+    """Return whether tools hide a topic or service by default: a part of its name begins with ``_``."""
     return names.is_hidden(name)
 
 
 def validate_parameter_name(name: str) -> bool:
-    """True for a valid parameter name: any but the empty one.
+    """Return True for a valid parameter name: any except the empty one.
 
     Raises:
         InvalidParameterException: for that.

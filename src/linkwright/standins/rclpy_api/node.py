@@ -1,4 +1,4 @@
-"""Nodes (rclpy ``node``): nodes of the graph that belong to a context and obey its command line."""
+"""Nodes (rclpy ``node``): nodes of the graph that belong to a context and follow its command line."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.standins.rclpy_api.defaults import check_initialized, get_defaul
 def _overrides(
     node_name: str, namespace: str, remappings: Sequence[tuple[str, str]], command_lines: Sequence[RosArguments]
 ) -> dict[str, Any]:
-    """The parameters that command lines give a node, by the name that they give it; the first of them wins."""
+    """Return the parameter overrides of command lines for a node and its remapped name; the first takes precedence."""
     rules = Remappings(remappings)
     full_name = join(absolute_namespace(rules.namespace(namespace, node_name)), rules.node_name(node_name))
     overrides: dict[str, Any] = {}
@@ -33,14 +33,14 @@ class Node(GraphNode):
 
     Args:
         node_name: its name, which the command line may change.
-        context: what it belongs to; the default context when None.
+        context: its context; None for the default context.
         cli_args: a command line for this node alone.
-        namespace: where it lives, which the command line may change.
-        use_global_arguments: whether the command line of the context holds for it.
-        enable_rosout: whether what it logs is published on ``/rosout``.
-        rosout_qos_profile: the quality of service of that.
+        namespace: its namespace, which the command line may change.
+        use_global_arguments: whether the command line of the context applies to it.
+        enable_rosout: whether it publishes its log messages on ``/rosout``.
+        rosout_qos_profile: the QoS profile of ``/rosout``.
         start_parameter_services: whether others can read and set its parameters.
-        parameter_overrides: values that take the place of defaults, and of what the command lines say.
+        parameter_overrides: values that replace defaults and those of the command lines.
         allow_undeclared_parameters: whether parameters can be set and read without being declared.
         automatically_declare_parameters_from_overrides: whether all parameters with overrides are declared.
         enable_logger_service: whether others can read and set the levels of its loggers.
@@ -66,7 +66,7 @@ class Node(GraphNode):
         automatically_declare_parameters_from_overrides: bool = False,
         enable_logger_service: bool = False,
     ) -> None:
-        # The name is mangled: users' nodes have attributes of their own.
+        # The name is mangled, because users' nodes have attributes too.
         self.__context = get_default_context() if context is None else context
         check_initialized(self.__context, "cannot create node")
         own = read_ros_arguments(cli_args or [])
@@ -96,5 +96,5 @@ class Node(GraphNode):
 
     @property
     def context(self) -> Context:
-        """What the node belongs to."""
+        """The node's context."""
         return self.__context

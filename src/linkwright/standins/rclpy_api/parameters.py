@@ -22,9 +22,9 @@ class ParameterService(ParameterServices):
 
 
 def get_parameter_value(string_value: str) -> Any:
-    """A text as a parameter's value: rcl_interfaces/msg/ParameterValue.
+    """Convert a text to a parameter's value (rcl_interfaces/msg/ParameterValue).
 
-    It is read as YAML; what that cannot be a parameter's value stays a text.
+    It is read as YAML; a result that is invalid for a parameter stays a string.
     """
     if not string_value.strip():
         return Parameter("", value=string_value).get_parameter_value()
@@ -40,19 +40,19 @@ def parameter_dict_from_yaml_file(
     target_nodes: Sequence[str] | None = None,
     namespace: str = "",
 ) -> dict[str, Any]:
-    """The parameters in a file, as rcl_interfaces/msg/Parameter by name.
+    """Return the parameters in a file, as rcl_interfaces/msg/Parameter by name.
 
     Args:
         parameter_file: the file.
         use_wildcard: whether those of ``/**`` count.
-        target_nodes: the full names of the nodes whose parameters are wanted; all when None.
-        namespace: put before each name, with a dot.
+        target_nodes: the full names of the nodes to read parameters for; None for all.
+        namespace: a prefix of each name, with a dot.
 
     Raises:
         RuntimeError: none of the nodes is in the file.
         LinkwrightError: the file cannot be read.
     """
-    # A node may be written with its slash or without, here and in the file.
+    # Node names may omit the leading slash, here and in the file.
     rules: dict[str, dict[str, Any]] = {}
     for pattern, values in read_parameter_file(parameter_file):
         rules.setdefault(_absolute(pattern), {}).update(values)

@@ -18,7 +18,7 @@ from linkwright.graph.qos.profile import (
 
 
 class _OldName:
-    """A policy's deprecated name, which gives the value with a warning that has the new name."""
+    """A policy's deprecated name, which returns the value with a warning about the new name."""
 
     def __init__(self, policy: type[QoSPolicyEnum], old: str, new: str) -> None:
         self._policy = policy
@@ -51,13 +51,13 @@ def declare_qos_parameters(
         node: declares them.
         topic_name: the absolute name of the topic.
         qos: the profile; it is changed.
-        options: what may be overridden.
+        options: the policies that may be overridden.
 
     Returns:
         The same profile.
 
     Raises:
-        InvalidQosOverridesError: the profile is refused, or a value is none that its policy has.
+        InvalidQosOverridesError: the profile is rejected, or a value is invalid for its policy.
     """
     entity: Literal["publisher", "subscription"] = "publisher" if issubclass(entity_type, Publisher) else "subscription"
     overridden = override_qos(node, entity, topic_name, qos, options)

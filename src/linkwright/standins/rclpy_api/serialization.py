@@ -10,7 +10,7 @@ M = TypeVar("M")
 
 
 def serialize_message(message: Any) -> bytes:
-    """The bytes of a message: CDR with its header.
+    """Serialize a message to CDR with its header.
 
     Raises:
         TypeError: it is not a message.
@@ -21,7 +21,7 @@ def serialize_message(message: Any) -> bytes:
 
 
 def deserialize_message(serialized_message: bytes, message_type: type[M]) -> M:
-    """The message that bytes encode.
+    """Deserialize a message.
 
     Raises:
         TypeError: the type is not that of a message.

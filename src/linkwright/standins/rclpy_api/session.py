@@ -1,4 +1,4 @@
-"""The functions of the package ``rclpy`` itself: initialise, shut down, spin."""
+"""The functions of the package ``rclpy`` itself: initialisation, shutdown, spinning."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class _Global:
 
 
 class InitContextManager:
-    """What `init` returns: as a context manager it shuts the context down at the end of the block.
+    """The result of `init`; as a context manager it shuts the context down at the end of the block.
 
     Attributes:
         context: the context that was initialised.
@@ -54,16 +54,16 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> InitContextManager:
-    """Initialise a context, before which there can be no nodes.
+    """Initialise a context, which nodes need.
 
     Args:
-        args: the command line; ``sys.argv`` when None.
-        context: what is initialised; the default context when None.
-        domain_id: the network's domain; that of ROS_DOMAIN_ID, else 0, when None.
-        signal_handler_options: which signals shut it down; all for the default context, else none, when None.
+        args: the command line; None for ``sys.argv``.
+        context: the context; None for the default context.
+        domain_id: the network's domain; None for that of ROS_DOMAIN_ID, or else 0.
+        signal_handler_options: the signals that shut it down; None for all with the default context, else none.
 
     Raises:
-        RuntimeError: it was initialised already.
+        RuntimeError: it is already initialised.
     """
     chosen = get_default_context() if context is None else context
     if signal_handler_options is None:
@@ -82,11 +82,11 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
     """Shut a context down.
 
     Args:
-        context: what is shut down; the default context when None.
-        uninstall_handlers: whether signals are handled as before `init` again; when None, with the default context.
+        context: the context; None for the default context.
+        uninstall_handlers: whether to restore the previous signal handlers; None for yes with the default context.
 
     Raises:
-        RclError: it is not initialised, or shut down already.
+        RclError: it is not initialised, or already shut down.
     """
     _end_global_executor(context)
     default = is_default(context)
@@ -111,7 +111,7 @@ def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | N
 
 
 def get_global_executor() -> Executor:
-    """The executor used where none is given; it belongs to the default context."""
+    """Return the default executor, which belongs to the default context."""
     with _lock:
         if _Global.executor is None:
             _Global.executor = SingleThreadedExecutor()
@@ -119,7 +119,7 @@ def get_global_executor() -> Executor:
 
 
 def create_node(node_name: str, **arguments: Any) -> Node:
-    """A node; see `Node` for the arguments.
+    """Create a node; see `Node` for the arguments.
 
     Raises:
         NotInitializedError: its context is not initialised.
@@ -132,7 +132,7 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
 
     Args:
         node: the node.
-        executor: what runs it; the global executor when None.
+        executor: the executor; None for the global executor.
         timeout_sec: the longest wait, in seconds; no limit when None.
     """
     runner = get_global_executor() if executor is None else executor
@@ -140,7 +140,7 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
     try:
         runner.spin_once(timeout_sec=timeout_sec)
     finally:
-        # Within a callback of the node it is the executor's already, and is to stay so.
+        # Within a callback of the node, it already belongs to the executor, and must stay there.
         if added is not False:
             runner.remove_node(node)
 
@@ -150,14 +150,14 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
     Args:
         node: the node.
-        executor: what runs them; the global executor when None.
+        executor: the executor; None for the global executor.
     """
     runner = get_global_executor() if executor is None else executor
     added = runner.add_node(node)
     try:
         runner.spin()
     finally:
-        # Within a callback of the node it is the executor's already, and is to stay so.
+        # Within a callback of the node, it already belongs to the executor, and must stay there.
         if added is not False:
             runner.remove_node(node)
 
@@ -169,8 +169,8 @@ def spin_until_future_complete(
 
     Args:
         node: the node.
-        future: what is waited for.
-        executor: what runs them; the global executor when None.
+        future: the future to wait for.
+        executor: the executor; None for the global executor.
         timeout_sec: the longest wait, in seconds; no limit when None.
     """
     runner = get_global_executor() if executor is None else executor
@@ -178,7 +178,7 @@ def spin_until_future_complete(
     try:
         runner.spin_until_future_complete(future, timeout_sec)
     finally:
-        # Within a callback of the node it is the executor's already, and is to stay so.
+        # Within a callback of the node, it already belongs to the executor, and must stay there.
         if added is not False:
             runner.remove_node(node)
 

@@ -12,7 +12,7 @@ from typing import Any
 
 
 class SignalHandlerOptions(IntEnum):
-    """Which signals shut the contexts down."""
+    """The signals that shut contexts down."""
 
     NO = 0
     SIGINT = 1
@@ -27,14 +27,14 @@ _previous: dict[int, Any] = {}
 
 
 def shut_down_on_signal(context: Any) -> None:
-    """Call ``shutdown_by_signal`` of a context when a signal comes."""
+    """Call ``shutdown_by_signal`` of a context on a signal."""
     _on_signal.add(context)
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
-    """Shut all contexts down when one of the signals comes, then run the handler that was there before.
+    """Shut all contexts down on one of the signals, then run the previous handler.
 
-    So Ctrl-C still raises KeyboardInterrupt. Outside of the main thread nothing is done: Python allows it there only.
+    So Ctrl-C still raises KeyboardInterrupt. Outside the main thread, which Python requires, nothing is done.
     """
     if threading.current_thread() is not threading.main_thread():
         return
@@ -44,7 +44,7 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
 
 
 def uninstall_signal_handlers() -> None:
-    """Put back the handlers that were there before."""
+    """Restore the previous handlers."""
     if threading.current_thread() is not threading.main_thread():
         return
     for number in tuple(_previous):
@@ -54,7 +54,7 @@ def uninstall_signal_handlers() -> None:
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
-    """Which signals are handled."""
+    """Return the handled signals."""
     return SignalHandlerOptions(sum(option for number, option in _OPTIONS.items() if number in _previous))
 
 

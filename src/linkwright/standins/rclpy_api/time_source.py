@@ -1,4 +1,4 @@
-"""Sets clocks by ``/clock`` (rclpy ``time_source``). A node's own clock does not need it."""
+"""Sets clocks from ``/clock`` (rclpy ``time_source``); a node's own clock does not need it."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ USE_SIM_TIME_NAME = "use_sim_time"
 
 
 class TimeSource:
-    """Sets clocks by ``/clock`` while the parameter ``use_sim_time`` of a node is true.
+    """Sets clocks from ``/clock`` while the parameter ``use_sim_time`` of a node is true.
 
     Args:
-        node: whose parameter counts, and who subscribes; may be attached later.
+        node: the node with the parameter and the subscription; may be attached later.
     """
 
     def __init__(self, *, node: Node | None = None) -> None:
@@ -54,7 +54,7 @@ class TimeSource:
             self._unsubscribe()
 
     def attach_node(self, node: Node) -> None:
-        """Follow the parameter of this node, in place of any other."""
+        """Follow the parameter of this node, instead of any other."""
         self.detach_node()
         self._node = weakref.ref(node)
         if not node.has_parameter(USE_SIM_TIME_NAME):
@@ -63,7 +63,7 @@ class TimeSource:
         node.add_post_set_parameters_callback(self._on_set_parameters)
 
     def detach_node(self) -> None:
-        """Follow no node's parameter; the clocks stay as they are."""
+        """Stop following a node's parameter; the clocks stay as they are."""
         node = self._get_node()
         if node is not None:
             self._unsubscribe()
@@ -74,7 +74,7 @@ class TimeSource:
         """Set this clock too.
 
         Raises:
-            ValueError: it is none of ROS time.
+            ValueError: it is not a clock of ROS time.
         """
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")  # noqa: TRY004 - as in rclpy
@@ -83,7 +83,7 @@ class TimeSource:
         self._clocks.add(clock)
 
     def clock_callback(self, msg: Any) -> None:
-        """Set the clocks by a message of ``/clock``."""
+        """Set the clocks from a message of ``/clock``."""
         self._last = Time.from_msg(msg.clock)
         for clock in self._clocks:
             clock.set_ros_time_override(self._last)

@@ -11,28 +11,28 @@ _NANOSECONDS_PER_SECOND = 1_000_000_000
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
-    """The arguments of a command line that are not for ROS.
+    """Return the arguments of a command line that are not for ROS.
 
     Args:
-        args: the command line with the program's name; ``sys.argv`` when None.
+        args: the command line with the program's name; None for ``sys.argv``.
     """
     return ros_arguments.remove_ros_arguments(sys.argv if args is None else args)
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
-    """A timeout in nanoseconds; -1 for one without limit, which None and negative numbers stand for."""
+    """Convert a timeout to nanoseconds; None and negative numbers mean no limit and give -1."""
     if timeout_sec is None or timeout_sec < 0:
         return -1
     return int(float(timeout_sec) * _NANOSECONDS_PER_SECOND)
 
 
 def get_rmw_implementation_identifier() -> str:
-    """The name of the middleware that ours is compatible with."""
+    """Return the name of the middleware that ours is compatible with."""
     from linkwright.wire.joining import middleware
 
     return middleware()
 
 
 def get_available_rmw_implementations() -> set[str]:
-    """The names of the available middlewares."""
+    """Return the names of the available middlewares."""
     return {get_rmw_implementation_identifier()}

@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 @dataclass
 class NumberOfEntities:
-    """How many entities of each kind something consists of; counts can be added."""
+    """The numbers of entities of each kind; counts can be added."""
 
     num_subscriptions: int = 0
     num_guard_conditions: int = 0

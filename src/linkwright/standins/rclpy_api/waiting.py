@@ -1,4 +1,4 @@
-"""Waiting for one message (rclpy ``wait_for_message``)."""
+"""Waits for one message (rclpy ``wait_for_message``)."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ def wait_for_message(
     qos_profile: QoSProfile | int = DEFAULT_QOS,
     time_to_wait: float = -1,
 ) -> tuple[bool, Any]:
-    """Wait for the next message of a topic. It is received whether or not the node is spun.
+    """Wait for the next message of a topic, whether or not the node is spun.
 
     Args:
         msg_type: the message class.
-        node: subscribes meanwhile.
+        node: the node that subscribes.
         topic: the topic.
         args: Humble's fourth and only positional argument: `time_to_wait`.
-        qos_profile: what is asked for.
+        qos_profile: the requested profile.
         time_to_wait: the longest wait, in seconds; no limit when negative.
 
     Returns:
-        Whether one came, and the message, None without one.
+        Whether a message arrived, and the message or None.
     """
     if args:
         (time_to_wait,) = args

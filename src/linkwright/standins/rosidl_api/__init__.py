@@ -1,1 +1,1 @@
-"""What the stand-in of rosidl_runtime_py does."""
+"""The stand-in for rosidl_runtime_py."""

@@ -17,7 +17,7 @@ def message_to_yaml(
     no_str: bool = False,
     flow_style: bool = False,
 ) -> str:
-    """A message as YAML; raw bytes become YAML's ``!!binary``."""
+    """Convert a message to YAML; raw bytes become YAML's ``!!binary``."""
     if isinstance(msg, bytes):
         import yaml
 
@@ -26,7 +26,7 @@ def message_to_yaml(
 
 
 def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False) -> str:
-    """The values of a message separated by commas; raw bytes as Python's ``repr``."""
+    """Convert a message to comma-separated values; raw bytes become Python's ``repr``."""
     if isinstance(msg, bytes):
         return str(msg)
     return to_csv(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
@@ -35,26 +35,26 @@ def message_to_csv(msg: Any, *, truncate_length: int | None = None, no_arr: bool
 def message_to_ordereddict(
     msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> OrderedDict[str, Any]:
-    """The fields of a message as plain values; its bytes as the field ``bytes``."""
+    """Return the fields of a message as plain values; its bytes as the field ``bytes``."""
     if isinstance(msg, bytes):
         return OrderedDict(bytes=msg)
     return to_dict(msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
 
 
 def get_message_slot_types(msg: Any) -> OrderedDict[str, Any]:
-    """The names and types of a message's fields."""
+    """Return the names and types of a message's fields."""
     return OrderedDict(zip((slot[1:] for slot in msg.__slots__), msg.SLOT_TYPES, strict=True))
 
 
 def convert_value(
     value: Any,
     *,
-    field_type: Any = None,  # noqa: ARG001 - as rosidl_runtime_py has it
+    field_type: Any = None,  # noqa: ARG001 - as in rosidl_runtime_py
     truncate_length: int | None = None,
     no_arr: bool = False,
     no_str: bool = False,
 ) -> Any:
-    """A value as plain Python; texts and containers, and the items in them, are cut to a length."""
+    """Convert a value to plain Python; strings and containers, and their items, are truncated to a length."""
 
     def convert(item: Any) -> Any:
         return convert_value(item, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)

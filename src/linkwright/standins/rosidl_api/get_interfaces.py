@@ -16,7 +16,7 @@ def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Package -> its messages, services and actions, such as ``msg/String``.
 
     Raises:
-        LookupError: there is no package of one of the names.
+        LookupError: one of the packages does not exist.
     """
     return _by_package(("msg", "srv", "action"), package_names)
 
@@ -40,8 +40,8 @@ def get_interface_path(interface_name: str) -> str:
     """The file that defines an interface.
 
     Raises:
-        ValueError: the text is no name of an interface.
-        LookupError: there is no file of it.
+        ValueError: the text is not the name of an interface.
+        LookupError: it has no file.
     """
     parts = interface_name.split("/")
     if len(parts) != 3:

@@ -8,10 +8,10 @@ from linkwright.messages import set_fields
 def set_message_fields(
     msg: Any, values: dict[str, Any], expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[Any]:
-    """Set fields; returns functions that fill in the stamps given as ``now`` when the message is sent.
+    """Set fields, and return functions that fill in the stamps given as ``now`` when the message is sent.
 
     Raises:
-        AttributeError: a field that there is not.
-        TypeError: a value that a field cannot have.
+        AttributeError: a field does not exist.
+        TypeError: a value is invalid for its field.
     """
     return list(set_fields(msg, values, expand_header_auto=expand_header_auto, expand_time_now=expand_time_now))

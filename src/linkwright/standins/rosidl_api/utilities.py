@@ -34,7 +34,7 @@ def import_message_from_namespaced_type(message_type: Any) -> Any:
 
 
 def _found(getter: Any, identifier: str, what: str) -> Any:
-    # Callers look for the exceptions that an import of the generated module raises.
+    # Callers expect the exceptions that an import of the generated module raises.
     name = split_name(identifier)
     if name is None or name.kind is None:
         raise ValueError(f"Expected the full name of a {what}, got '{identifier}'")

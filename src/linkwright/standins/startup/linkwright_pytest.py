@@ -1,6 +1,6 @@
-"""A pytest plugin that brings ``launch_pytest`` and ``launch_testing`` to the tests that import them.
+"""A pytest plugin that provides ``launch_pytest`` and ``launch_testing`` to the tests that import them.
 
-pytest finds it where the stand-ins are. It imports nothing else before that, and steps back where the real ones are
+pytest finds it beside the stand-ins. It imports nothing before it is needed, and does nothing if the real ones are
 installed.
 """
 
@@ -38,7 +38,7 @@ def pytest_addhooks(pluginmanager: pytest.PytestPluginManager) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the markers known, since a module's own markers are looked at while it is imported."""
+    """Register the markers, because a module's markers are checked while it is imported."""
     for marker in _MARKERS:
         config.addinivalue_line("markers", marker)
 
@@ -46,7 +46,7 @@ def pytest_configure(config: pytest.Config) -> None:
 class _Hooks:
     @pytest.hookspec(firstresult=True)
     def pytest_launch_collect_makemodule(self, path: Path, parent: pytest.Collector, entrypoint: object) -> Any:
-        """Make a collector of the tests of a file."""
+        """Create a collector of the tests of a file."""
 
 
 @pytest.hookimpl(tryfirst=True)

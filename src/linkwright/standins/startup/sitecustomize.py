@@ -1,11 +1,10 @@
-"""Run by every Python that has this folder on its ``PYTHONPATH``: lets it import the stand-ins, should it ask for them.
+"""Run by every Python that has this folder on its ``PYTHONPATH``; makes the stand-ins importable.
 
-Nothing of Linkwright is imported here before the program imports a module that no other finder knows and that we
-have. Where a real rclpy can be imported nothing of ours is offered at all: its nodes take only the real message
-classes, and the real ones only its nodes.
+Linkwright is imported only when the program imports a module of ours that no other finder has. If a real rclpy is
+importable, none of ours is offered: its nodes accept only the real message classes, and vice versa.
 """
 
-# Every Python process pays for what is imported here, and pathlib is dear.
+# Every Python process pays for the imports here, and pathlib is slow to import.
 # ruff: noqa: PTH100, PTH109, PTH113, PTH118, PTH120, PTH208
 
 from __future__ import annotations
@@ -20,11 +19,11 @@ _LINKWRIGHT = os.path.dirname(os.path.dirname(os.path.dirname(_HERE)))
 
 _OURS = os.path.join(_LINKWRIGHT, "linkwright", "")
 _SIGNALS = os.path.join("rclpy_api", "signals.py")
-"""The handler of signals, which is called wherever the program is."""
+"""The name of the signal handler, which may run at any point of the program."""
 _STANDARD_LIBRARY = os.path.join(os.path.dirname(os.__file__), "")
 
 _WITH_ANY_ROS = frozenset({"tf_transformations"})
-"""Stand-ins that touch neither messages nor nodes, so that they may go with a real ROS."""
+"""Stand-ins that use neither messages nor nodes, so that they work with a real ROS."""
 
 _INTERFACE_KINDS = ("msg", "srv", "action")
 _INTERFACE_ENDINGS = ("_msgs", "_interfaces", "_srvs", "_msg", "_srv", "_action", "_actions")
@@ -41,7 +40,7 @@ class StandIns:
         self._searching = False
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
-        """The stand-in of a module that nobody else has."""
+        """Return the stand-in for a module that no other finder has."""
         if self._searching or name.startswith("_"):
             return None
         top, _, rest = name.partition(".")
@@ -58,7 +57,7 @@ class StandIns:
         return self.interface(name) if _may_hold_interfaces(top) else None
 
     def interface(self, name: str) -> ModuleSpec | None:
-        """The module of interfaces of this name, or None when it is none."""
+        """Return the interface module with a name, or None."""
         if self._searching or self.has_real_ros():
             return None
         self._searching = True
@@ -71,7 +70,7 @@ class StandIns:
             self._searching = False
 
     def has(self, name: str) -> bool:
-        """Return whether there is a stand-in of this name."""
+        """Return whether there is a stand-in with a name."""
         if self._names is None:
             try:
                 self._names = frozenset(name.removesuffix(".txt") for name in os.listdir(_TABLES))
@@ -88,16 +87,16 @@ class StandIns:
 
 
 class SourceFolders:
-    """A finder that comes before all others, where Python would take folders of a package's sources for modules.
+    """A finder that comes before all others, because Python would import the source folders of packages as modules.
 
-    ``my_msgs/msg`` would else be a module without anything in it, and so would ``launch`` beside ``package.xml``.
+    ``my_msgs/msg`` would be an empty module otherwise, and so would ``launch`` beside ``package.xml``.
     """
 
     def __init__(self, stand_ins: StandIns) -> None:
         self._stand_ins = stand_ins
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
-        """The stand-in, or the module of interfaces in a package, that is nothing but a folder."""
+        """Return the stand-in or interface module for a name that is otherwise only a folder."""
         package, _, kind = name.rpartition(".")
         if not package:
             return self._stand_ins.find_spec(name) if self._is_hidden(name) else None
@@ -106,7 +105,7 @@ class SourceFolders:
         return None if getattr(sys.modules[package], "__file__", None) else self._stand_ins.interface(name)
 
     def _is_hidden(self, name: str) -> bool:
-        """Return whether a stand-in has the name of a folder that is no package."""
+        """Return whether a stand-in has the name of a folder that is not a package."""
         if not self._stand_ins.has(name):
             return False
         found = PathFinder.find_spec(name)
@@ -114,7 +113,7 @@ class SourceFolders:
 
 
 def _may_hold_interfaces(package: str) -> bool:
-    """Return whether it is worth loading Linkwright to see if a name is that of a package with interface files."""
+    """Return whether a name may be a package with interface files, so that loading Linkwright is worthwhile."""
     if _is_loaded("linkwright.messages") or package.endswith(_INTERFACE_ENDINGS) or package in _OTHER_INTERFACES:
         return True
     shares = [os.path.join(prefix, "share") for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
@@ -122,13 +121,13 @@ def _may_hold_interfaces(package: str) -> bool:
 
 
 def _is_loaded(name: str) -> bool:
-    """Whether a module is there, and not just being imported: what that imports in turn is none of our business."""
+    """Return whether a module is completely imported; imports during its own import are not ours to handle."""
     module = sys.modules.get(name)
     return module is not None and not getattr(module.__spec__, "_initializing", False)
 
 
 def _near_folders() -> list[str]:
-    """The folders in which packages of the program's own workspace lie."""
+    """Return the folders with packages of the program's own workspace."""
     current = os.getcwd()
     folders = [current, os.path.join(current, "src")]
     program = os.path.abspath(sys.argv[0]) if getattr(sys, "argv", [""])[0] else current
@@ -139,16 +138,16 @@ def _near_folders() -> list[str]:
 
 
 def _make_importable() -> None:
-    """Have Linkwright and what it needs on the path, behind everything that the program has itself."""
+    """Append Linkwright and its dependencies to the path, behind the program's own entries."""
     for folder in (_LINKWRIGHT, *os.environ.get("LINKWRIGHT_SITE", "").split(os.pathsep)):
         if folder and folder not in sys.path:
             sys.path.append(folder)
 
 
 def _for_a_program(spec: ModuleSpec | None) -> ModuleSpec | None:
-    """A module that a user's program has found; messages are checked from then on as in the ROS that it is written for.
+    """Return a module for a user's program, and check messages from then on as its ROS distribution does.
 
-    A command of Linkwright that runs in the shell is no such program: our own nodes are in it.
+    A command of Linkwright in the shell is not such a program, because it runs our own nodes.
     """
     named = "ROS_DISTRO" in os.environ or "ROS_PYTHON_CHECK_FIELDS" in os.environ
     if spec is not None and named and not _is_loaded("linkwright.cli"):
@@ -165,7 +164,7 @@ def _run_next_sitecustomize() -> None:
     spec = PathFinder.find_spec("sitecustomize", others)
     if spec is None or spec.loader is None:
         return
-    from importlib.util import module_from_spec  # not imported by every program: it is not small
+    from importlib.util import module_from_spec  # imported late, because it is large
 
     module = module_from_spec(spec)
     sys.modules["sitecustomize"] = module
@@ -173,10 +172,10 @@ def _run_next_sitecustomize() -> None:
 
 
 def _tell_how_to_get(kind: type[BaseException], error: BaseException, traceback: object) -> None:
-    """Python's own last words about an error; where a module of ROS, or a name in it, is missing, what to do too.
+    """Print an uncaught error as Python does, with a hint if a module of ROS, or a name in it, is missing.
 
-    Ctrl-C ends a node that waits for messages, or is still being imported, without a traceback. In the user's own code
-    the traceback is printed: it shows where the program was.
+    Ctrl-C ends a node that waits for messages, or is still being imported, without a traceback. In the user's own code,
+    the traceback is printed, to show the location.
     """
     if kind is KeyboardInterrupt and _is_between_messages(traceback):
         return
@@ -189,14 +188,14 @@ def _tell_how_to_get(kind: type[BaseException], error: BaseException, traceback:
             from linkwright.launch.errors.user_code import where_it_is
 
             hint = known_provider_hint(name) if isinstance(error, ModuleNotFoundError) else where_it_is(error)
-        except Exception:  # noqa: BLE001 - the error that is told is the program's
+        except Exception:  # noqa: BLE001 - the program's own error is reported
             return
         if hint:
             print(f"hint: {hint}", file=sys.stderr)
 
 
 def _is_between_messages(traceback: object) -> bool:
-    """Return whether a traceback ends in code of ours and what that calls, or in a module that is being imported."""
+    """Return whether a traceback ends in our code and its callees, or in a module that is being imported."""
     is_ours, modules = False, 0
     while traceback is not None:
         code = traceback.tb_frame.f_code  # type: ignore[attr-defined]  # as above
@@ -211,6 +210,6 @@ def _is_between_messages(traceback: object) -> bool:
 _stand_ins = StandIns()
 sys.meta_path.insert(0, SourceFolders(_stand_ins))
 sys.meta_path.append(_stand_ins)
-if __name__ == "sitecustomize":  # not where `linkwright.pytest_plugin` runs it, later than Python's start
+if __name__ == "sitecustomize":  # not if `linkwright.pytest_plugin` runs it after Python's start
     sys.excepthook = _tell_how_to_get
     _run_next_sitecustomize()

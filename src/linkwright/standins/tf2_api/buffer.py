@@ -12,8 +12,8 @@ class Buffer(transform_waiting.Buffer, BufferInterface):
     """Stores transforms, waits for them, and transforms messages from one frame to another.
 
     Args:
-        cache_time: how far back transforms are kept; 10 seconds when left out.
-        node: where given, it offers the service ``tf2_frames``, and its clock empties the buffer when it jumps back.
+        cache_time: the duration for which transforms are kept; 10 seconds by default.
+        node: if given, it offers the service ``tf2_frames``, and the buffer is cleared when its clock jumps back.
     """
 
     def __init__(self, cache_time: Any = None, node: Any = None) -> None:

@@ -1,4 +1,4 @@
-"""Transforms looked up by another process (tf2_ros ``BufferClient``)."""
+"""Transform lookups in another process (tf2_ros ``BufferClient``)."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ _ERRORS: dict[int, type[TransformException]] = {
     5: TimeoutException,
     6: TransformException,
 }
-"""By the numbers of tf2_msgs/msg/TF2Error."""
+"""The exceptions by the numbers of tf2_msgs/msg/TF2Error."""
 
 _NO_ERROR = 0
 
 
 class BufferClient(BufferInterface):
-    """Asks a buffer server, an action, for transforms. Another thread must spin the node.
+    """Requests transforms from a buffer server, an action; another thread must spin the node.
 
     Args:
-        node: asks.
-        ns: name of the action.
-        check_frequency: not needed here: answers are taken when they come.
-        timeout_padding: how much longer than the timeout of a lookup its answer is waited for; seconds, if a number.
+        node: the node of the client.
+        ns: the name of the action.
+        check_frequency: not needed here, because there is no polling.
+        timeout_padding: how much longer than the timeout of a lookup to wait for its response; a number is in seconds.
     """
 
     def __init__(
@@ -65,10 +65,10 @@ class BufferClient(BufferInterface):
         self.action_client.destroy()
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Duration = NO_TIME) -> Any:
-        """The pose of the source frame in the target frame.
+        """Return the pose of the source frame in the target frame.
 
         Raises:
-            TransformException: there is none, or no answer.
+            TransformException: there is no transform or no response.
         """
         return self._ask(
             self._lookup.Goal(
@@ -90,10 +90,10 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Duration = NO_TIME,
     ) -> Any:
-        """The pose of the source frame at one time in the target frame at another.
+        """Return the pose of the source frame at one time in the target frame at another.
 
         Raises:
-            TransformException: there is none, or no answer.
+            TransformException: there is no transform or no response.
         """
         return self._ask(
             self._lookup.Goal(

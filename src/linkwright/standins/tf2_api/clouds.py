@@ -16,7 +16,7 @@ _AXES = ("x", "y", "z")
 
 
 def transform_points(point_cloud: ArrayLike, transform: Any) -> NDArray[np.float64]:
-    """Points in the frame that a transform leads to.
+    """Transform points into the parent frame of a transform.
 
     Args:
         point_cloud: shape (n, 3), in the child frame of the transform.
@@ -33,11 +33,11 @@ def transform_points(point_cloud: ArrayLike, transform: Any) -> NDArray[np.float
 
 
 def do_transform_cloud(cloud: Any, transform: Any) -> Any:
-    """A cloud in the frame that a transform leads to; fields besides x, y and z stay as they are.
+    """Transform a cloud into the parent frame of a transform; fields other than x, y and z stay unchanged.
 
     Args:
         cloud: sensor_msgs/msg/PointCloud2.
-        transform: geometry_msgs/msg/TransformStamped, whose header the new cloud has.
+        transform: geometry_msgs/msg/TransformStamped, whose header is that of the new cloud.
     """
     points = read_points(cloud).copy()
     moved = transform_points(np.stack([points[axis] for axis in _AXES], axis=-1), transform)
@@ -47,7 +47,7 @@ def do_transform_cloud(cloud: Any, transform: Any) -> Any:
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """The message itself."""
+    """Return the message itself."""
     return msg
 
 
@@ -55,7 +55,7 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Let all buffers transform clouds."""
+    """Register the transformation of clouds with all buffers."""
     kind = get_message("sensor_msgs/msg/PointCloud2")
     TransformRegistration().add(kind, do_transform_cloud)
     ConvertRegistration().add_to_msg(kind, to_msg_msg)

@@ -1,4 +1,4 @@
-"""Which types can be transformed and converted into each other (tf2_ros ``buffer_interface``)."""
+"""The registries of types that can be transformed and converted (tf2_ros ``buffer_interface``)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class TypeException(Exception):
     """A type has not been registered.
 
     Attributes:
-        errstr: what is missing.
+        errstr: the error message.
     """
 
     def __init__(self, errstr: str) -> None:
@@ -32,7 +32,7 @@ class NotImplementedException(Exception):
 
 
 class TransformRegistration:
-    """How each type is transformed from one frame to another; one registry for all objects of this class."""
+    """The functions that transform each type; one registry for all objects of this class."""
 
     _by_type: ClassVar[dict[Any, Transformation]] = {}
 
@@ -41,7 +41,7 @@ class TransformRegistration:
         self._by_type[key] = callback
 
     def get(self, key: Any) -> Transformation:
-        """The function for a type.
+        """Return the function for a type.
 
         Raises:
             TypeException: there is none.
@@ -49,47 +49,47 @@ class TransformRegistration:
         return _found(self._by_type, key)
 
     def print_me(self) -> None:
-        """Print what is registered."""
-        print(self._by_type)  # what the method is for
+        """Print the registry."""
+        print(self._by_type)  # the purpose of the method
 
 
 class ConvertRegistration:
-    """How each type is converted to and from messages, or to another type; one registry for all objects."""
+    """The functions that convert each type to and from messages, or to another type; one registry for all objects."""
 
     _to_msg: ClassVar[dict[Any, Conversion]] = {}
     _from_msg: ClassVar[dict[Any, Conversion]] = {}
     _direct: ClassVar[dict[Any, Conversion]] = {}
 
     def add_from_msg(self, key: Any, callback: Conversion) -> None:
-        """Register how a message is converted to a type."""
+        """Register the conversion of a message to a type."""
         self._from_msg[key] = callback
 
     def add_to_msg(self, key: Any, callback: Conversion) -> None:
-        """Register how a type is converted to a message."""
+        """Register the conversion of a type to a message."""
         self._to_msg[key] = callback
 
     def add_convert(self, key: tuple[Any, Any], callback: Conversion) -> None:
-        """Register how the first type is converted to the second."""
+        """Register the conversion of the first type to the second."""
         self._direct[key] = callback
 
     def get_from_msg(self, key: Any) -> Conversion:
-        """How a message is converted to a type; TypeException where that is not registered."""
+        """Return the conversion of a message to a type; TypeException if it is not registered."""
         return _found(self._from_msg, key)
 
     def get_to_msg(self, key: Any) -> Conversion:
-        """How a type is converted to a message; TypeException where that is not registered."""
+        """Return the conversion of a type to a message; TypeException if it is not registered."""
         return _found(self._to_msg, key)
 
     def get_convert(self, key: tuple[Any, Any]) -> Conversion:
-        """How one type is converted to another; TypeException where that is not registered."""
+        """Return the conversion of one type to another; TypeException if it is not registered."""
         return _found(self._direct, key)
 
 
 def convert(a: Any, b_type: Any) -> Any:
-    """A value converted to another type, by way of a message if need be; a copy where the type is the same.
+    """Convert a value to another type, through a message if necessary; return a copy for the same type.
 
     Raises:
-        TypeException: it is not registered how.
+        TypeException: the conversion is not registered.
     """
     registration = ConvertRegistration()
     try:

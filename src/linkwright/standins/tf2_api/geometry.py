@@ -19,7 +19,7 @@ _TRANSFORMATIONS = {
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """The message itself."""
+    """Return the message itself."""
     return msg
 
 
@@ -27,7 +27,7 @@ from_msg_msg = to_msg_msg
 
 
 def register() -> None:
-    """Let all buffers transform them."""
+    """Register their transformation with all buffers."""
     for name, transformation in _TRANSFORMATIONS.items():
         kind = get_message(f"geometry_msgs/msg/{name}")
         TransformRegistration().add(kind, transformation)

@@ -1,4 +1,4 @@
-"""What all buffers of tf2_ros have in common (tf2_ros ``BufferInterface``)."""
+"""The common interface of buffers of tf2_ros (tf2_ros ``BufferInterface``)."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ class BufferInterface:
     def transform(
         self, object_stamped: Any, target_frame: str, timeout: Duration = NO_TIME, new_type: Any = None
     ) -> Any:
-        """A stamped object in another frame.
+        """Transform a stamped object into another frame.
 
         Args:
-            object_stamped: the thing, of a registered type: ``import tf2_geometry_msgs`` registers those of
+            object_stamped: the object, of a registered type: ``import tf2_geometry_msgs`` registers those of
                 geometry_msgs.
             target_frame: the other frame.
             timeout: how long to wait for the transform.
-            new_type: what the result is converted to; left as it is when None.
+            new_type: the type to convert the result to; None for no conversion.
 
         Raises:
             TypeException: the type is not registered.
@@ -47,7 +47,7 @@ class BufferInterface:
         timeout: Duration = NO_TIME,
         new_type: Any = None,
     ) -> Any:
-        """A stamped object in another frame at another time, by way of a fixed frame.
+        """Transform a stamped object into another frame at another time, through a fixed frame.
 
         Raises:
             TypeException: the type is not registered.
@@ -62,11 +62,11 @@ class BufferInterface:
         return result if new_type is None else convert(result, new_type)
 
     def lookup_transform(self, *_question: Any, **_options: Any) -> Any:
-        """The pose of the source frame in the target frame."""
+        """Return the pose of the source frame in the target frame."""
         raise NotImplementedException
 
     def lookup_transform_full(self, *_question: Any, **_options: Any) -> Any:
-        """The pose of a source frame at a time in a target frame at another, by way of a fixed frame."""
+        """Return the pose of a source frame at a time in a target frame at another, through a fixed frame."""
         raise NotImplementedException
 
     def can_transform(self, *_question: Any, **_options: Any) -> Any:

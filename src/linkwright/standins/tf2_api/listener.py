@@ -16,19 +16,19 @@ _AUTHORITY = "default_authority"
 
 
 class TransformListener:
-    """Puts the transforms of ``/tf`` and ``/tf_static`` into a buffer.
+    """Adds the transforms of ``/tf`` and ``/tf_static`` to a buffer.
 
     Its callbacks are in a reentrant group, so that another callback of the node may wait for a transform.
 
     Args:
-        buffer: what is filled.
-        node: subscribes; a node of the listener's own when None.
-        spin_thread: whether a thread of the listener's own spins the node.
-        qos: for ``/tf``.
-        static_qos: for ``/tf_static``.
-        tf_topic: instead of ``/tf``.
-        tf_static_topic: instead of ``/tf_static``.
-        static_only: whether only ``/tf_static`` is listened to.
+        buffer: the buffer to fill.
+        node: the node that subscribes; None for a separate node.
+        spin_thread: whether a separate thread spins the node.
+        qos: the profile for ``/tf``.
+        static_qos: the profile for ``/tf_static``.
+        tf_topic: the topic instead of ``/tf``.
+        tf_static_topic: the topic instead of ``/tf_static``.
+        static_only: whether to subscribe only to ``/tf_static``.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class TransformListener:
             self.dedicated_listener_thread.start()
 
     def unregister(self) -> None:
-        """Stop listening."""
+        """Unsubscribe."""
         subscriptions, self._subscriptions = self._subscriptions, []
         for subscription in subscriptions:
             self.node.destroy_subscription(subscription)
@@ -75,11 +75,11 @@ class TransformListener:
             self.executor = None
 
     def callback(self, data: Any) -> None:
-        """Take in a message of ``/tf``."""
+        """Handle a message of ``/tf``."""
         self.buffer.update(data, static=False, authority=_AUTHORITY)
 
     def static_callback(self, data: Any) -> None:
-        """Take in a message of ``/tf_static``."""
+        """Handle a message of ``/tf_static``."""
         self.buffer.update(data, static=True, authority=_AUTHORITY)
 
     def _spin(self) -> None:
@@ -92,13 +92,13 @@ class TransformListener:
 
 
 class StaticTransformListener(TransformListener):
-    """Puts the transforms of ``/tf_static`` into a buffer.
+    """Adds the transforms of ``/tf_static`` to a buffer.
 
     Args:
-        buffer: what is filled.
-        node: subscribes.
-        spin_thread: whether a thread of the listener's own spins the node.
-        qos: for ``/tf_static``.
+        buffer: the buffer to fill.
+        node: the node that subscribes.
+        spin_thread: whether a separate thread spins the node.
+        qos: the profile for ``/tf_static``.
     """
 
     def __init__(

@@ -1,1 +1,1 @@
-"""What the Python module ``xacro`` offers, on the engine of `linkwright.xacro`."""
+"""The API of the Python module ``xacro``, on the engine of `linkwright.xacro`."""

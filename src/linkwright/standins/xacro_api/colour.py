@@ -1,4 +1,4 @@
-"""Printing remarks to standard error, as ``xacro.color`` does."""
+"""Messages on standard error, as in ``xacro.color``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def is_tty(stream: object) -> bool:
 
 
 def colorize(msg: object, color: str | int | None, file: IO[str] | None = None, alt_text: str | None = None) -> str:
-    """A text in a colour for a terminal; elsewhere with `alt_text` before it."""
+    """Return a text in a colour for a terminal; otherwise with `alt_text` before it."""
     code = _CODES.get(color, 0) if isinstance(color, str) else color
     if code and is_tty(sys.stderr if file is None else file):
         return f"\x1b[{code}m{msg}\x1b[0m"

@@ -1,4 +1,4 @@
-"""The words of the command ``xacro``, as ``xacro.cli`` reads them for programs."""
+"""The arguments of the command ``xacro``, as ``xacro.cli`` parses them."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ REMAP = ":="
 
 
 def load_mappings(argv: Iterable[str]) -> dict[str, str]:
-    """Names and values of the words ``name:=value``; empty values and names that begin with one ``_`` are left out.
+    """Parse the arguments ``name:=value``; empty values and names with one leading ``_`` are skipped.
 
     Raises:
-        RuntimeError: a word has two signs.
+        RuntimeError: an argument contains ``:=`` twice.
     """
     mappings = {}
     for word in argv:
@@ -29,17 +29,17 @@ def load_mappings(argv: Iterable[str]) -> dict[str, str]:
 
 
 def process_args(argv: Sequence[str], require_input: bool = True) -> tuple[argparse.Namespace, str | None]:
-    """The options that words stand for, and the file.
+    """Parse the options and the file.
 
     Args:
-        argv: the words, without the command.
-        require_input: whether exactly one file is needed; if not and there is none, None is returned for it.
+        argv: the arguments, without the command.
+        require_input: whether exactly one file is required; otherwise None is returned for a missing file.
 
     Returns:
         ``output``, ``just_deps``, ``in_order``, ``root_dir``, ``verbosity`` and ``mappings``, and the file.
 
     Raises:
-        SystemExit: the words are wrong.
+        SystemExit: a usage error.
     """
     parser = argparse.ArgumentParser(prog="xacro", usage="%(prog)s [options] <input>")
     parser.add_argument("-o", dest="output", metavar="FILE", help="write to this file instead of standard output")

@@ -1,7 +1,7 @@
-"""Between the trees of `linkwright.xmltree` and documents of ``xml.dom.minidom``.
+"""Conversion between the trees of `linkwright.xmltree` and documents of ``xml.dom.minidom``.
 
-The nodes made here are minidom's, but for two things: elements are written as ros/xacro writes them, which replaces
-minidom's method for the whole process instead, and elements and texts know where they were written.
+The nodes created here are minidom's, with two differences: elements are written as ros/xacro writes them, which instead
+replaces minidom's method for the entire process, and elements and texts record their locations.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ class DomElement(minidom.Element):
     """An element.
 
     Attributes:
-        place: the text it was read from and its offset there, or None.
+        place: its source text and offset, or None.
     """
 
     place: tuple[SourceText, int] | None = None
 
     def writexml(self, writer: Any, indent: str = "", addindent: str = "", newl: str = "") -> None:
-        """Write it with its attributes in order, without blank text, and on one line if it holds nothing but text."""
+        """Write the element with sorted attributes, without blank text, and on one line if it contains only text."""
         attributes = dict(self.attributes.items())
         written = "".join(f' {name}="{escaped(attributes[name])}"' for name in sorted(attributes))
         writer.write(f"{indent}<{self.tagName}{written}")
@@ -44,27 +44,27 @@ class DomElement(minidom.Element):
 
 
 class DomText(minidom.Text):
-    """Character data, written alike on every version of Python.
+    """Character data with the same output in all versions of Python.
 
     Attributes:
-        place: the text it was read from and its offset there, or None.
+        place: its source text and offset, or None.
     """
 
     __slots__ = ("place",)
     place: tuple[SourceText, int] | None
 
     def writexml(self, writer: Any, indent: str = "", _addindent: str = "", newl: str = "") -> None:
-        """Write it."""
+        """Write the text."""
         writer.write(f"{indent}{escaped(self.data)}{newl}")
 
 
 def escaped(text: str) -> str:
-    """A text as it is written between tags and in attributes."""
+    """Escape a text for element content and attributes."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;").replace(">", "&gt;")
 
 
 def fill(target: minidom.Document, document: Document) -> None:
-    """Put what a tree holds into a document; its root element stays the same object if it is one of ours."""
+    """Fill a document from a tree; its root element stays the same object if it is one of ours."""
     old = target.documentElement
     kept = old if isinstance(old, DomElement) else None
     for node in list(target.childNodes):
@@ -80,7 +80,7 @@ def fill(target: minidom.Document, document: Document) -> None:
 
 
 def read(document: minidom.Document) -> Document:
-    """The tree of a document; what was made by `fill` keeps its places."""
+    """Return the tree of a document; nodes that `fill` created keep their places."""
     root = document.documentElement
     element = _element(root)
     pending: list[tuple[Any, Element]] = [(root, element)]
@@ -111,7 +111,7 @@ def read(document: minidom.Document) -> Document:
 
 
 def is_same(document: minidom.Document, tree: Document) -> bool:
-    """Whether a document still holds the elements and attributes of a tree, so that the tree's places hold for it."""
+    """Return whether a document still matches a tree, so that the tree's places are valid."""
     pending = [(document.documentElement, tree.root)]
     while pending:
         theirs, ours = pending.pop()
@@ -146,7 +146,7 @@ def _tree(owner: minidom.Document, root: Element, kept: DomElement | None) -> Do
 def _made(
     owner: minidom.Document, element: Element, spaces: Mapping[str, str], kept: DomElement | None
 ) -> tuple[DomElement, Mapping[str, str]]:
-    """The node of an element without what it holds, and the namespaces that are declared inside it."""
+    """Return the node of an element without its children, and the namespaces that its content declares."""
     declared = {name: value for name, value in element.attributes.items() if name.startswith("xmlns")}
     if declared:
         spaces = {**spaces, **{name.partition(":")[2]: value for name, value in declared.items()}}
@@ -182,7 +182,7 @@ def _leaf(owner: minidom.Document, node: Node) -> Any:
         return owner.createCDATASection(node.data)
     if isinstance(node, Comment):
         return owner.createComment(node.data)
-    assert isinstance(node, ProcessingInstruction), "elements are no leaves"
+    assert isinstance(node, ProcessingInstruction), "elements are not leaves"
     return owner.createProcessingInstruction(node.target, node.data)
 
 

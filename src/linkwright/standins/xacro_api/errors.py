@@ -1,4 +1,4 @@
-"""The exceptions of the module ``xacro``: those that programs catch, with the diagnostics that ours carry."""
+"""The exceptions of the module ``xacro`` that programs catch, with our diagnostics."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from linkwright.hosting.xacro_calls import DescriptionError, XacroCall
 
 
 class XacroException(LinkwrightError):
-    """What is wrong with a description.
+    """An error in a description.
 
     Args:
-        msg: what is wrong.
-        suffix: more of it, put at the end.
-        exc: the exception behind it.
-        macro: the macro that it happened in.
+        msg: the message.
+        suffix: a suffix of the message.
+        exc: the cause.
+        macro: the macro with the error.
 
     Attributes:
         suffix: as given.
         exc: as given.
-        macros: the macro given, in a list, and those around it.
+        macros: the macro and those around it.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class ExpansionError(XacroException, DescriptionError):
     """A description that cannot be expanded.
 
     Attributes:
-        call: the file that was to be expanded.
+        call: the file to expand.
     """
 
     def __init__(self, call: XacroCall, diagnostics: Iterable[Diagnostic]) -> None:
@@ -48,7 +48,7 @@ class ExpansionError(XacroException, DescriptionError):
 
 
 class TextError(XacroException):
-    """A description that is no file and cannot be expanded."""
+    """A description in a text that cannot be expanded."""
 
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         LinkwrightError.__init__(self, *diagnostics)
@@ -71,7 +71,7 @@ class MalformedFileError(MalformedError, DescriptionError):
     """A file that is not XML, or that includes one.
 
     Attributes:
-        call: the file that was to be expanded.
+        call: the file to expand.
     """
 
     def __init__(self, call: XacroCall, diagnostics: Iterable[Diagnostic]) -> None:
@@ -80,11 +80,11 @@ class MalformedFileError(MalformedError, DescriptionError):
 
 
 def translated(error: LinkwrightError, call: XacroCall | None) -> LinkwrightError:
-    """An error of the engine as one that programs for ``xacro`` expect.
+    """Convert an error of the engine to one that programs for ``xacro`` expect.
 
     Args:
-        error: what the engine raised.
-        call: the file that was to be expanded; None for a text.
+        error: the error of the engine.
+        call: the file to expand; None for a text.
     """
     diagnostics = error.diagnostics
     if isinstance(error, (XacroException, MalformedError)):

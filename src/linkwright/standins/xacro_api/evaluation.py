@@ -1,4 +1,4 @@
-"""Texts and expressions as the module ``xacro`` evaluates them for programs."""
+"""Evaluation of texts and expressions, as in the module ``xacro``."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ _Result = TypeVar("_Result")
 
 
 def eval_text(text: str, symbols: Mapping[str, Any] | None) -> Any:
-    """The value of a text with ``${...}`` and ``$(...)`` in it; of one token, with its type.
+    """Evaluate a text with ``${...}`` and ``$(...)``; a single token keeps its type.
 
     Args:
         text: the text.
-        symbols: the names that expressions may use besides those of the language.
+        symbols: names for expressions, in addition to those of the language.
 
     Raises:
-        XacroException: it has none.
+        XacroException: it has no value.
     """
     session = _session()
     return _checked(lambda: session.evaluate(text, _scope(session, symbols)))
 
 
 def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str, Any] | None = None) -> Any:
-    """The value of an expression; see `eval_text`. Only what descriptions may use is evaluated.
+    """Evaluate an expression with the names that descriptions may use; see `eval_text`.
 
     Raises:
-        XacroException: it has none, or may not be used.
+        XacroException: it has no value, or is not allowed.
     """
     from linkwright.xacro.expressions.expression import compile_expression
 
@@ -52,17 +52,17 @@ def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str,
 
 
 def eval_extension(s: str) -> str:
-    """The value of a substitution such as ``$(find package)``.
+    """Evaluate a substitution such as ``$(find package)``.
 
     Raises:
-        XacroException: it has none.
+        XacroException: it has no value.
     """
     session = _session()
     return _checked(lambda: substitute(s.removeprefix("$(").removesuffix(")"), session))
 
 
 def load_yaml(filename: str) -> Any:
-    """The value of a YAML file; the keys of its mappings are attributes too.
+    """Load a YAML file; the keys of its mappings are attributes too.
 
     Raises:
         XacroException: there is no such file, or it is not YAML.
@@ -73,20 +73,20 @@ def load_yaml(filename: str) -> Any:
 
 
 def dotify(mapping: Any = (), **items: Any) -> YamlDictWrapper:
-    """A mapping whose keys are attributes too, and so are those of mappings in it."""
+    """Return a mapping whose keys, at all levels, are attributes too."""
     result: YamlDictWrapper = YamlListWrapper.wrap(dict(mapping, **items))
     return result
 
 
 def get_boolean_value(value: Any, condition: object = None) -> bool:
-    """What a condition that has this value says.
+    """Convert the value of a condition to a boolean.
 
     Args:
         value: the value.
         condition: the text of the condition, for the message.
 
     Raises:
-        XacroException: the value is a text that is neither true, false nor a whole number.
+        XacroException: the value is a string that is neither true, false nor an integer.
     """
     try:
         return truth(value)
@@ -96,17 +96,17 @@ def get_boolean_value(value: Any, condition: object = None) -> bool:
 
 
 def is_valid_name(name: str) -> bool:
-    """Return whether a name can be that of a property or macro: a Python identifier that is no keyword."""
+    """Return whether a name is valid for a property or macro: a Python identifier that is not a keyword."""
     return name.isidentifier() and not keyword.iskeyword(name)
 
 
 def create_global_symbols() -> dict[str, Any]:
-    """The names that the language provides to expressions."""
+    """Return the names that the language provides to expressions."""
     return dict(_session().globals.values)
 
 
 class ConstructUnits(enum.Enum):
-    """The tags of YAML values with a unit, and what one of each is in metres or radians."""
+    """The tags of YAML values with a unit, and the unit's value in metres or radians."""
 
     radians = ("!radians", yamldata.UNITS["!radians"])
     degrees = ("!degrees", yamldata.UNITS["!degrees"])
@@ -127,11 +127,11 @@ class YamlDictWrapper(dict[Any, Any]):
 
 
 class YamlListWrapper(list[Any]):
-    """A sequence of such mappings."""
+    """A sequence that wraps its mappings in `YamlDictWrapper`."""
 
     @staticmethod
     def wrap(item: Any) -> Any:
-        """A value with all mappings in it made `YamlDictWrapper`, and all sequences lists of this kind."""
+        """Wrap all mappings in a value in `YamlDictWrapper`, and all sequences in lists of this class."""
         if isinstance(item, dict):
             return YamlDictWrapper({key: YamlListWrapper.wrap(value) for key, value in item.items()})
         if isinstance(item, list):
@@ -140,7 +140,7 @@ class YamlListWrapper(list[Any]):
 
 
 class _View(dict[str, Any]):
-    """The names of a table, which may evaluate its values when they are asked for."""
+    """A view of a table's names, which may evaluate its values on access."""
 
     __slots__ = ("_session", "_table")
 

@@ -1,4 +1,4 @@
-"""Macros as the module ``xacro`` shows them."""
+"""Macros in the API of the module ``xacro``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Macro:
         name: its name.
         body: the element that defines it.
         params: the names of its parameters.
-        defaultmap: parameter -> whether the caller's property is taken, and the text of its default.
+        defaultmap: parameter -> whether to use the caller's property, and the text of its default.
         history: for each definition, the files that were being processed.
     """
 
@@ -30,14 +30,14 @@ class Macro:
 
 
 def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, str]:
-    """The first parameter in a list of them.
+    """Parse the first parameter in a list of parameters.
 
     Returns:
-        Its name; its default as the name of the caller's property to take (or None) and a text (or None), and None in
-        place of both for a parameter without a sign; and the rest of the list.
+        Its name; its default as the name of the caller's property to use (or None) and a text (or None), or None for a
+        parameter without a default; and the rest of the list.
 
     Raises:
-        XacroException: a quote is never closed.
+        XacroException: a quote is not closed.
         IndexError: the list is empty.
     """
     try:
@@ -54,7 +54,7 @@ def parse_macro_arg(s: str) -> tuple[str, tuple[str | None, str | None] | None, 
 
 
 def resolve_macro(fullname: str, macros: Mapping[str, Any], symbols: Mapping[str, Any]) -> tuple[Any, Any, Any]:
-    """The macro of a name, which may have namespaces before it, with the tables that it is in.
+    """Return the macro with a name, which may have namespace prefixes, and its tables.
 
     Returns:
         The table of macros, the table of properties and the macro.

@@ -17,16 +17,16 @@ from linkwright.standins.xacro_api.tables import NameSpace, Table
 
 _ELEMENT, _TEXT, _COMMENT = minidom.Node.ELEMENT_NODE, minidom.Node.TEXT_NODE, minidom.Node.COMMENT_NODE
 _MARKER = minidom.Document().createTextNode("\n\n")
-"""Stands where the comments above a tag were looked through; there is one, and it moves."""
+"""The marker below the comments that were checked above a tag; the only one moves."""
 
 
 def first_child_element(elt: Any) -> Any:
-    """The first element inside a node, or None."""
+    """Return the first child element of a node, or None."""
     return next((child for child in elt.childNodes if child.nodeType == _ELEMENT), None)
 
 
 def next_sibling_element(node: Any) -> Any:
-    """The next element after a node, or None."""
+    """Return the next sibling element of a node, or None."""
     node = node.nextSibling
     while node is not None and node.nodeType != _ELEMENT:
         node = node.nextSibling
@@ -34,12 +34,12 @@ def next_sibling_element(node: Any) -> Any:
 
 
 def replace_node(node: Any, by: Any, content_only: bool = False) -> None:
-    """Put nodes in the place of one.
+    """Replace a node.
 
     Args:
-        node: the one that goes.
-        by: a node, a list of them, or None.
-        content_only: whether what they hold is put there in place of themselves.
+        node: the node to replace.
+        by: a node, a list of nodes, or None.
+        content_only: whether to insert their children instead.
     """
     parent = node.parentNode
     for new in by if isinstance(by, list) else [] if by is None else [by]:
@@ -49,20 +49,20 @@ def replace_node(node: Any, by: Any, content_only: bool = False) -> None:
 
 
 def attribute(tag: Any, a: str) -> str | None:
-    """The value of an attribute, or None."""
+    """Return the value of an attribute, or None."""
     return tag.getAttribute(a) if tag.hasAttribute(a) else None
 
 
 def opt_attrs(tag: Any, attrs: Sequence[str]) -> list[str | None]:
-    """The values of attributes; None for those that are not there."""
+    """Return the values of attributes; None for missing ones."""
     return [attribute(tag, name) for name in attrs]
 
 
 def reqd_attrs(tag: Any, attrs: Sequence[str]) -> list[str]:
-    """The values of attributes.
+    """Return the values of required attributes.
 
     Raises:
-        RuntimeError: one is not there.
+        RuntimeError: one is missing.
     """
     for name in attrs:
         if not tag.hasAttribute(name):
@@ -71,13 +71,13 @@ def reqd_attrs(tag: Any, attrs: Sequence[str]) -> list[str]:
 
 
 def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> list[Any]:
-    """The values of the attributes that a tag may have; a warning is printed of others.
+    """Return the values of the attributes that a tag may have, and print warnings about others.
 
     Raises:
-        RuntimeError: a required one is not there.
+        RuntimeError: a required one is missing.
     """
     values = [*reqd_attrs(tag, required), *opt_attrs(tag, optional)]
-    others = [name for name in tag.attributes.keys() if name not in (*required, *optional)]  # noqa: SIM118 - no dict
+    others = [name for name in tag.attributes.keys() if name not in (*required, *optional)]  # noqa: SIM118 - not a dict
     others = [name for name in others if not name.startswith("xmlns:")]
     if others:
         colour.warning(f"'{tag.nodeName}' knows no attribute {', '.join(map(repr, others))}")
@@ -87,7 +87,7 @@ def check_attrs(tag: Any, required: Sequence[str], optional: Sequence[str]) -> l
 
 
 def import_xml_namespaces(parent: Any, attributes: Any) -> None:
-    """Declare on an element the namespaces among some attributes; a warning is printed of contradictions."""
+    """Declare the namespaces among some attributes on an element, and print warnings about contradictions."""
     for name, value in attributes.items():
         if not name.startswith("xmlns:"):
             continue
@@ -105,7 +105,7 @@ def import_xml_namespaces(parent: Any, attributes: Any) -> None:
 
 
 def remove_previous_comments(node: Any) -> None:
-    """Take away the comments just above a node, as far as no blank line or text stands between."""
+    """Remove the comments directly above a node, without a blank line or text in between."""
     following, previous = node.nextSibling, node.previousSibling
     while previous is not None:
         if previous.nodeType == _TEXT and previous.data.isspace() and previous.data.count("\n") <= 1:
@@ -121,10 +121,10 @@ def remove_previous_comments(node: Any) -> None:
 
 
 def grab_macro(elt: Any, macros: dict[str, Any]) -> None:
-    """Take a definition of a macro out of a document and into a table.
+    """Move a definition of a macro from a document to a table.
 
     Raises:
-        XacroException: the name or the parameters are wrong.
+        XacroException: the name or the parameters are invalid.
     """
     remove_previous_comments(elt)
     name, params = check_attrs(elt, ["name"], ["params"])
@@ -147,10 +147,10 @@ def grab_macro(elt: Any, macros: dict[str, Any]) -> None:
 
 
 def grab_property(elt: Any, table: Table) -> None:
-    """Take a definition of a property out of a document and into a table.
+    """Move a definition of a property from a document to a table.
 
     Raises:
-        XacroException: the name or the attributes are wrong.
+        XacroException: the name or the attributes are invalid.
     """
     remove_previous_comments(elt)
     name, value, default, remove, scope, lazy = check_attrs(
@@ -184,10 +184,10 @@ def grab_property(elt: Any, table: Table) -> None:
 
 
 def eval_default_arg(forward_variable: str | None, default: str | None, symbols: Mapping[str, Any], macro: Any) -> Any:
-    """The value of a macro's parameter that the call does not give.
+    """Return the value of a macro's parameter that the call omits.
 
     Raises:
-        XacroException: there is no property to take, and no default.
+        XacroException: there is neither a property nor a default.
     """
     if forward_variable is not None and forward_variable in symbols:
         return symbols[forward_variable]

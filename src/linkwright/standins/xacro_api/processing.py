@@ -1,4 +1,4 @@
-"""Expanding files, texts and documents, as the functions of the module ``xacro`` do."""
+"""Expansion of files, texts and documents, as in the module ``xacro``."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ _FAILED = 2
 
 
 class XacroDocument(minidom.Document):
-    """A document that knows which file it was read from, and what it expanded to.
+    """A document that records its file and its expansion.
 
-    The texts that it gives are those that a running launch keeps positions and live reload for.
+    A running launch tracks the locations of its text and supports live reload.
     """
 
     call: XacroCall | None = None
     expansion: Expansion | None = None
 
     def toprettyxml(self, *arguments: Any, **named: Any) -> Any:
-        """The document as text; see ``xml.dom.minidom``."""
+        """Return the document as text; see ``xml.dom.minidom``."""
         text = super().toprettyxml(*arguments, **named)
         descriptions, expansion = current_descriptions(), self.expansion
         if descriptions is None or self.call is None or expansion is None or not isinstance(text, str):
@@ -49,7 +49,7 @@ class XacroDocument(minidom.Document):
 
 
 def parse(inp: Any, filename: str | Path | None = None) -> minidom.Document:
-    """A description as a document, not expanded.
+    """Parse a description into a document, without expansion.
 
     Args:
         inp: its text, an open file, or a document, which is returned; None to open `filename`.
@@ -58,7 +58,7 @@ def parse(inp: Any, filename: str | Path | None = None) -> minidom.Document:
     Raises:
         xml.parsers.expat.ExpatError: it is not XML.
         XacroException: the file cannot be read.
-        TypeError: `inp` is nothing that can be read.
+        TypeError: `inp` is not readable.
     """
     if isinstance(inp, minidom.Document):
         return inp
@@ -91,10 +91,10 @@ def process_doc(doc: minidom.Document, mappings: Mapping[str, Any] | None = None
     Args:
         doc: the document.
         mappings: name -> value of the arguments; they are not changed.
-        options: `verbosity`; whatever else is given has no effect.
+        options: `verbosity`; other options have no effect.
 
     Raises:
-        XacroException: what is wrong with the description.
+        XacroException: an error in the description.
         xml.parsers.expat.ExpatError: a file that it includes is not XML.
     """
     STATE.verbosity = options.get("verbosity", STATE.verbosity)
@@ -118,13 +118,13 @@ def process_file(
     Args:
         input_file_name: the file.
         mappings: name -> value of the arguments; they are not changed.
-        options: `verbosity`; whatever else is given has no effect.
+        options: `verbosity`; other options have no effect.
 
     Returns:
         The document, with the comments before it that name the file.
 
     Raises:
-        XacroException: what is wrong with the description.
+        XacroException: an error in the description.
         xml.parsers.expat.ExpatError: the file, or one that it includes, is not XML.
     """
     STATE.verbosity = options.get("verbosity", STATE.verbosity)
@@ -147,17 +147,17 @@ def process_file(
 def process(
     input_file_name: str | Path,
     just_deps: bool = False,
-    xacro_ns: bool = True,  # noqa: ARG001 - accepted for those who give it
+    xacro_ns: bool = True,  # noqa: ARG001 - accepted for compatibility
     verbosity: int = 1,
     mappings: Mapping[str, Any] | None = None,
 ) -> str:
-    """The text that a file expands to, or the names of the files that it includes; see `process_file`.
+    """Return the expanded text of a file, or the names of its includes; see `process_file`.
 
     Args:
         input_file_name: the file.
-        just_deps: whether the names are wanted.
+        just_deps: whether to return the names.
         xacro_ns: without effect.
-        verbosity: how much is printed.
+        verbosity: the amount of output.
         mappings: name -> value of the arguments.
     """
     document = process_file(input_file_name, mappings=mappings, verbosity=verbosity)
@@ -165,7 +165,7 @@ def process(
 
 
 def open_output(output_filename: str | Path | None) -> IO[str]:
-    """A file to write to, its folder made if need be; standard output for None.
+    """Open a file for writing, creating its folder if needed; standard output for None.
 
     Raises:
         XacroException: it cannot be opened.
@@ -181,7 +181,7 @@ def open_output(output_filename: str | Path | None) -> IO[str]:
 
 
 def main(words: Sequence[str] | None = None) -> None:
-    """The command ``xacro``; ends the process when something is wrong."""
+    """Run the command ``xacro``; exits on errors."""
     options, file = process_args(sys.argv[1:] if words is None else list(words))
     assert file is not None, "the options say that a file is needed"
     if options.root_dir:
@@ -227,7 +227,7 @@ def _words(mappings: Mapping[str, Any] | None) -> tuple[tuple[str, str], ...]:
 
 
 def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None, call: XacroCall | None) -> Expansion:
-    """Expand a tree; what is remarked is printed, unless a launch is running, which tells it itself."""
+    """Expand a tree, and print the remarks, unless a running launch reports them itself."""
     descriptions = current_descriptions()
     packages = descriptions.finder if descriptions is not None else None
     root = "" if str(STATE.root_dir) == os.curdir else str(STATE.root_dir)
@@ -259,5 +259,5 @@ def _tell(diagnostics: Sequence[Diagnostic]) -> None:
 
 
 def _is_said(diagnostic: Diagnostic) -> bool:
-    """Return whether the description itself says it, with ``xacro.message`` or its like."""
+    """Return whether the description itself printed it, with ``xacro.message`` or similar."""
     return diagnostic.code.startswith("XAC7")

@@ -27,12 +27,12 @@ class State:
     """The variables of the module ``xacro``.
 
     Attributes:
-        filestack: the files being processed, the innermost last; None stands for a text.
+        filestack: the files being processed, the innermost last; None for a text.
         macrostack: the macros being called, the innermost last.
-        root_dir: the folder that relative paths are in.
+        root_dir: the base folder of relative paths.
         verbosity: 0 to 4.
         all_includes: the files that were included or loaded since the process began.
-        arguments: the arguments of the expansion that is going on.
+        arguments: the arguments of the current expansion.
     """
 
     def __init__(self) -> None:
@@ -55,7 +55,7 @@ def _of_state(name: str) -> property:
 
 
 class LiveModule(ModuleType):
-    """A module whose variables are those of `STATE`, so that programs can read and set them."""
+    """A module with the variables of `STATE`, so that programs can read and set them."""
 
     filestack = _of_state("filestack")
     macrostack = _of_state("macrostack")
@@ -65,19 +65,19 @@ class LiveModule(ModuleType):
 
 
 def share_state() -> None:
-    """Have the module ``xacro`` hold the variables of `STATE`."""
+    """Give the module ``xacro`` the variables of `STATE`."""
     sys.modules["xacro"].__class__ = LiveModule
 
 
 def init_stacks(file: str | Path | None) -> None:
-    """Begin with a file; None stands for a text."""
+    """Reset the stacks for a file; None for a text."""
     STATE.filestack = [None if file is None else str(file)]
     STATE.macrostack = []
 
 
 def abs_filename_spec(filename_spec: str) -> str:
-    """A file name with the folder of the file being processed before it, unless it is absolute."""
-    if os.path.isabs(filename_spec):  # noqa: PTH117 - kept as it is written
+    """Return a file name relative to the folder of the current file, unless it is absolute."""
+    if os.path.isabs(filename_spec):  # noqa: PTH117 - as written
         return filename_spec
     current = STATE.filestack[-1] if STATE.filestack else None
     folder = os.path.dirname(current) if current else os.curdir  # noqa: PTH120
@@ -85,7 +85,7 @@ def abs_filename_spec(filename_spec: str) -> str:
 
 
 def print_location() -> None:
-    """Print to standard error which macros and files are being processed, innermost first."""
+    """Print the macros and files being processed to standard error, innermost first."""
     words = "when instantiating macro:"
     for macro in reversed(STATE.macrostack or []):
         file = macro.history[-1][-1] if macro.history and macro.history[-1] else None
@@ -98,12 +98,12 @@ def print_location() -> None:
 
 
 class StackExpander(Expander):
-    """An expander that tells its session when it finds an error."""
+    """An expander that notifies its session of errors."""
 
     session: StackSession
 
     def note(self, fault: Fault) -> None:
-        """Keep an error, and where it was."""
+        """Record an error and its location."""
         self.session.keep_place()
         super().note(fault)
 
@@ -112,7 +112,7 @@ class StackSession(Session):
     """A session that keeps `STATE` up to date.
 
     Attributes:
-        directives: what the expansion is to be done with.
+        directives: the directives of the expansion.
     """
 
     def __init__(self, inputs: Inputs) -> None:
@@ -129,28 +129,28 @@ class StackSession(Session):
         self.globals.values["xacro"].values["print_location"] = self._print_location
 
     def read(self, path: str) -> Document:
-        """The document of a file, which is the one being processed from then on."""
+        """Return the document of a file, which is the current one from then on."""
         if STATE.filestack is not None and self._files:
             del STATE.filestack[self._files :]
             STATE.filestack.append(path)
         return super().read(path)
 
     def call(self, expander: Expander, site: Site) -> None:
-        """What expands macro calls."""
+        """Expand a macro call."""
         self._within(call_macro, expander, site, site.node.tag[len(_PREFIX) :])
 
     def depends_on(self, file: str) -> None:
-        """Remember that a file was read; see `Session.depends_on`."""
+        """Record that a file was read; see `Session.depends_on`."""
         super().depends_on(file)
         STATE.all_includes.append(file)
 
     def keep_place(self) -> None:
-        """Remember the place of the first error; expansion goes on after it."""
+        """Record the place of the first error; expansion continues after it."""
         if self._mistake is None:
             self._mistake = (list(STATE.filestack or []), list(STATE.macrostack or []))
 
     def return_to_mistake(self) -> None:
-        """Leave the stacks as they were at the first error, because the expansion has failed."""
+        """Restore the stacks at the first error, because the expansion has failed."""
         if self._mistake is not None:
             STATE.filestack, STATE.macrostack = self._mistake
 
@@ -185,7 +185,7 @@ class StackSession(Session):
             return
         stack.append(known[1])
         directive(expander, site)
-        stack.pop()  # only if all went well: an error leaves its place behind
+        stack.pop()  # only on success: an error leaves its place behind
 
     def _print_location(self, *_: Any) -> str:
         print_location()

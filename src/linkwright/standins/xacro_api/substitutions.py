@@ -22,12 +22,12 @@ class ArgException(SubstitutionException):
 def resolve_args(
     arg_str: str | None, context: Mapping[str, Any] | None = None, filename: str | None = None
 ) -> str | None:
-    """A text with every ``$(...)`` in it replaced.
+    """Return a text with every ``$(...)`` replaced.
 
     Args:
         arg_str: the text; None or an empty one is returned as it is.
         context: ``arg`` in it is name -> value of the arguments.
-        filename: the file that the text is in, to whose folder ``$(dirname)`` refers.
+        filename: the file of the text, to whose folder ``$(dirname)`` refers.
 
     Raises:
         ArgException: an argument is missing.

@@ -1,4 +1,4 @@
-"""Tables of properties and macros as the module ``xacro`` shows them to programs."""
+"""Tables of properties and macros in the API of the module ``xacro``."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from linkwright.standins.xacro_api.stacks import STATE, print_location
 from linkwright.xacro.expressions.literals import literal
 
 _DOCUMENT, _EVERYWHERE = 2, 3
-"""Above these verbosities the properties of the document, and all of them, are logged."""
+"""Above these verbosities, the properties of the document, or all of them, are logged."""
 
 
 class Table(dict[str, Any]):
-    """Names and their values, with a table around it; texts are evaluated when they are first asked for.
+    """Names and their values, with a parent table; texts are evaluated on first access.
 
     Args:
-        parent: the table around; a plain dict is one of the language's own names.
+        parent: the parent table; a plain dict contains the language's own names.
 
     Attributes:
         parent: as given.
         root: the outermost table.
-        depth: how many tables there are around, that one not counted.
-        unevaluated: the names whose texts are not evaluated yet.
-        recursive: the names being evaluated because of one another.
+        depth: the number of parent tables, without that of the language.
+        unevaluated: the names with unevaluated texts.
+        recursive: the names whose evaluation is in progress.
     """
 
     def __init__(self, parent: dict[str, Any] | None = None) -> None:
