@@ -150,7 +150,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
         try:
             result = await session.answer(handle.get_result_async())
         except asyncio.CancelledError:
-            await _call_off(session, handle)
+            await _cancel(session, handle)
             raise
         if result is None:
             return await session.finished() or 0
@@ -161,7 +161,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
     return run_in_graph(arguments, job)
 
 
-async def _call_off(session: Session, handle: Any) -> None:
+async def _cancel(session: Session, handle: Any) -> None:
     print("Canceling goal...")
     response = await session.answer(handle.cancel_goal_async(), _LONGEST_CANCEL)
     if response is None:

@@ -61,11 +61,11 @@ def run(arguments: argparse.Namespace) -> int:
         )
     names = NameFilter(arguments.allow, arguments.deny)
 
-    def tell() -> None:
+    def report() -> None:
         print(f"Carrying between {first.label} and {second.label}. Ctrl-C ends it", file=sys.stderr)
 
     async def main() -> int:
-        await run_bridge((first, second), names, new_bridge_id(), print_to_console, tell)
+        await run_bridge((first, second), names, new_bridge_id(), print_to_console, report)
         return 0
 
     with TerminationEnds():

@@ -222,12 +222,12 @@ def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Chec
         checked, trouble = _examine(file, words, targets, contexts=contexts)
         examined.append(Examined.of(checked, file))
         of_settings.append(trouble)
-    for each, trouble in zip(examined, of_settings, strict=True):
-        _add(found, (*trouble, *reported(each, examined, targets, paths)))
+    for result, trouble in zip(examined, of_settings, strict=True):
+        _add(found, (*trouble, *reported(result, examined, targets, paths)))
     for folder in targets.packages:
         settings, trouble = words.settings(folder)
-        said = examine_package(folder, settings, words.finder(folder / MANIFEST), contexts=contexts).diagnostics
-        _add(found, (*trouble, *reported_of_package(said, paths)))
+        diagnostics = examine_package(folder, settings, words.finder(folder / MANIFEST), contexts=contexts).diagnostics
+        _add(found, (*trouble, *reported_of_package(diagnostics, paths)))
     return list(found.values()), checked if len(paths) == 1 and not paths[0].is_dir() else None
 
 
@@ -308,10 +308,10 @@ def _fix(paths: Sequence[Path], words: _Words, *, unsafe: bool, write: bool) -> 
 def _print_diff(paths: Sequence[Path], words: _Words, *, unsafe: bool) -> int:
     mended = _fix(paths, words, unsafe=unsafe, write=False)
     seen: set[str] = set()
-    for each in mended:
-        each.texts = {file: text for file, text in each.texts.items() if file not in seen}
-        seen.update(each.texts)
-        sys.stdout.write(each.diff())
+    for fixes in mended:
+        fixes.texts = {file: text for file, text in fixes.texts.items() if file not in seen}
+        seen.update(fixes.texts)
+        sys.stdout.write(fixes.diff())
     return 1 if seen else 0
 
 

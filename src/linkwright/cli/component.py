@@ -227,8 +227,8 @@ async def _load_component(session: Session, container: str, arguments: argparse.
         extra_arguments=_assigned(arguments.extra_arguments or []),
     )
     if not response.success:
-        said = response.error_message
-        reason = foreign(said) if said else phrase("the container gives no reason")
+        error_message = response.error_message
+        reason = foreign(error_message) if error_message else phrase("the container gives no reason")
         hint = phrase("`linkwright component types` lists the components that come with Linkwright")
         raise LinkwrightError(
             Diagnostic("CLI433", phrase("Failed to load component: {reason}", reason=reason), hint=hint)
@@ -250,12 +250,12 @@ async def _unload_component(session: Session, container: str, uid: int) -> None:
             container=container,
             error_message=foreign(response.error_message),
         )
-        there = ", ".join(f"{number} {name}" for number, name in await held_nodes(session, container))
+        nodes = ", ".join(f"{number} {name}" for number, name in await held_nodes(session, container))
         raise LinkwrightError(
             Diagnostic(
                 "CLI434",
                 message,
-                hint=phrase("its nodes: {there}", there=there) if there else phrase("the container is empty"),
+                hint=phrase("its nodes: {there}", there=nodes) if nodes else phrase("the container is empty"),
             )
         )
 

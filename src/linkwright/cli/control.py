@@ -88,13 +88,15 @@ async def _list_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
     if not found:
         print("No controllers are currently loaded!")
         return 0
-    names, types, states = (max(len(getattr(each, part)) for each in found) for part in ("name", "type", "state"))
-    for each in found:
-        print(f"{each.name:<{names}} {each.type:<{types}}  {each.state:<{states}}")
-        for section, said in _SECTIONS.items():
+    names, types, states = (
+        max(len(getattr(controller, part)) for controller in found) for part in ("name", "type", "state")
+    )
+    for controller in found:
+        print(f"{controller.name:<{names}} {controller.type:<{types}}  {controller.state:<{states}}")
+        for section, title in _SECTIONS.items():
             if arguments.verbose or getattr(arguments, section):
-                print(f"\t{said}:")
-                for interface in _interfaces(each, section):
+                print(f"\t{title}:")
+                for interface in _interfaces(controller, section):
                     print(f"\t\t{interface}")
     return 0
 
@@ -119,15 +121,15 @@ def _configure_list_hardware(parser: argparse.ArgumentParser) -> None:
 
 
 async def _list_components(arguments: argparse.Namespace, ask: Ask) -> int:
-    for number, each in enumerate((await ask("list_hardware_components")).component, start=1):
-        print(f"Hardware Component {number}\n\tname: {each.name}\n\ttype: {each.type}")
-        print(f"\tplugin name: {each.plugin_name}\n\tstate: id={each.state.id} label={each.state.label}")
+    for number, component in enumerate((await ask("list_hardware_components")).component, start=1):
+        print(f"Hardware Component {number}\n\tname: {component.name}\n\ttype: {component.type}")
+        print(f"\tplugin name: {component.plugin_name}\n\tstate: id={component.state.id} label={component.state.label}")
         print("\tcommand interfaces")
-        for command in each.command_interfaces:
+        for command in component.command_interfaces:
             print(f"\t\t{command.name} {_availability(command)} {_claim(command)}")
         if arguments.verbose:
             print("\tstate interfaces")
-            for state in each.state_interfaces:
+            for state in component.state_interfaces:
                 print(f"\t\t{state.name} {_availability(state)}")
     return 0
 
@@ -257,7 +259,9 @@ def _configure_set_state(parser: argparse.ArgumentParser) -> None:
 
 async def _set_state(arguments: argparse.Namespace, ask: Ask) -> int:
     name, wanted = arguments.controller_name, arguments.state
-    found = next((each for each in (await ask("list_controllers")).controller if each.name == name), None)
+    found = next(
+        (controller for controller in (await ask("list_controllers")).controller if controller.name == name), None
+    )
     if found is None:
         return _fail(f"controller {name} does not seem to be loaded")
     steps: dict[tuple[str, str], tuple[str, str, Callable[[], Coroutine[Any, Any, Any]]]] = {
@@ -323,7 +327,7 @@ async def _set_hardware(arguments: argparse.Namespace, ask: Ask) -> int:
     from linkwright.messages import get_message
 
     name = arguments.hardware_component_name
-    if name not in [each.name for each in (await ask("list_hardware_components")).component]:
+    if name not in [component.name for component in (await ask("list_hardware_components")).component]:
         return _fail(f"component {name} does not seem to be loaded")
     wanted = get_message("lifecycle_msgs/msg/State")(label=arguments.state)
     answer = await ask("set_hardware_component_state", name=name, target_state=wanted)

@@ -129,7 +129,7 @@ def _take_images_out(spec: Any, model: Any) -> None:
 
     means: dict[str, Any] = {}
     for material in spec.materials:
-        (texture,) = {int(each) for each in np.atleast_1d(model.mat_texid[model.material(material.name).id])} - {
+        (texture,) = {int(number) for number in np.atleast_1d(model.mat_texid[model.material(material.name).id])} - {
             -1
         } or {-1}
         if texture >= 0:

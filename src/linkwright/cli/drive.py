@@ -143,8 +143,8 @@ def _listed(found: Inference) -> str:
 
     lines: list[str] = []
     for finding in found.findings:
-        told = finding.diagnostic
-        place = f"{told.span.file}:{told.span.line}: " if told.span else ""
-        lines.append(f"{place}{told.code} {localized(told.message)}")
+        diagnostic = finding.diagnostic
+        place = f"{diagnostic.span.file}:{diagnostic.span.line}: " if diagnostic.span else ""
+        lines.append(f"{place}{diagnostic.code} {localized(diagnostic.message)}")
         lines += [f"    {line}" for element in finding.added for line in block(element).splitlines()]
     return "".join(f"{line}\n" for line in lines)

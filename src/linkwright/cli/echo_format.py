@@ -130,7 +130,7 @@ def select(message: Any, path: Sequence[str]) -> Any:
     for name in path:
         fields: dict[str, str] = getattr(part, "get_fields_and_field_types", dict)()
         if name not in fields:
-            whole = ".".join(path)
+            full_path = ".".join(path)
             what = getattr(part, "TYPE_NAME", type(part).__name__)
             nothing = (
                 phrase("its fields are {fields}", fields=", ".join(fields)) if fields else phrase("it has no fields")
@@ -138,7 +138,9 @@ def select(message: Any, path: Sequence[str]) -> Any:
             raise LinkwrightError(
                 Diagnostic(
                     "CLI414",
-                    phrase("Invalid field '{whole}': {what} has no field '{name}'", whole=whole, what=what, name=name),
+                    phrase(
+                        "Invalid field '{whole}': {what} has no field '{name}'", whole=full_path, what=what, name=name
+                    ),
                     hint=did_you_mean(name, fields) or nothing,
                 )
             )

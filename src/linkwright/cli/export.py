@@ -54,9 +54,9 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.against or any(map(names_file, arguments.words)):
             pair = asked_pair(arguments, stack)
             if pair is None or not arguments.out.lower().endswith(".html"):
-                told = "give one file, two to compare, or one and --against COMMIT"
+                usage = "give one file, two to compare, or one and --against COMMIT"
                 html = f"'{arguments.out}' should end with .html, as two descriptions are compared"
-                print(f"linkwright export: {told if pair is None else html}", file=sys.stderr)
+                print(f"linkwright export: {usage if pair is None else html}", file=sys.stderr)
                 return 2
         try:
             return _write(arguments, pair)

@@ -56,7 +56,7 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
 
     host = socket.gethostname()
     counts = Greetings(host)
-    _tell_of_range()
+    _warn_about_range()
     publisher = session.node.create_publisher(String, arguments.topic, 10)
     session.node.create_subscription(
         String, arguments.topic, session.receiver(lambda message: counts.heard_on_topic(message.data)), 10
@@ -70,17 +70,17 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
             multicast.send(sender, greeting(host).encode())
             counts.sent += 1
 
-        def tell() -> None:
+        def print_table() -> None:
             print(counts.take_table(arguments.topic, arguments.print_period))
 
         try:
             emit()
             if arguments.once:
                 await session.finished(arguments.emit_period)
-                tell()
+                print_table()
                 return 0
             session.every(arguments.emit_period, emit)
-            session.every(arguments.print_period, tell)
+            session.every(arguments.print_period, print_table)
             return await session.finished() or 0
         finally:
             listening.close()
@@ -96,7 +96,7 @@ class _Listener(asyncio.DatagramProtocol):
         self._counts.heard_by_multicast(data.decode(errors="replace"))
 
 
-def _tell_of_range() -> None:
+def _warn_about_range() -> None:
     """Warn if the topic does not leave this computer, which is the default."""
     from linkwright.wire.dds.settings import Range, read_settings
     from linkwright.wire.joining import middleware

@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
     if robot is None:
         return 1
     masses = _masses(arguments.mass, robot)
-    wanted = _wanted(arguments.link, robot)
+    wanted = _selected_links(arguments.link, robot)
     meshes = MeshLibrary(finder, folder)
     estimates = [
         estimate(
@@ -117,7 +117,7 @@ def _positive(text: str) -> float:
     return value
 
 
-def _wanted(names: Sequence[str], robot: Robot) -> list[str]:
+def _selected_links(names: Sequence[str], robot: Robot) -> list[str]:
     """Return the selected links, in file order.
 
     Raises:

@@ -24,17 +24,17 @@ def take_language(words: Sequence[str]) -> list[str]:
         UnknownLanguageError: there is no such language.
     """
     left: list[str] = []
-    asked: str | None = None
+    requested: str | None = None
     pending = iter(words)
     for word in pending:
         name, sign, value = word.partition("=")
         if name == _OPTION:
-            asked = _language(value if sign else next(pending, ""))
+            requested = _language(value if sign else next(pending, ""))
         else:
             left.append(word)
         if word == "--":
             left += pending
-    set_language(asked)
+    set_language(requested)
     return left
 
 

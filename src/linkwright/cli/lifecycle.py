@@ -70,9 +70,9 @@ def run_get(arguments: argparse.Namespace) -> int:
             print(f"{found.label} [{found.id}]")
             return 0
         nodes = managed_nodes(session, hidden=hidden)
-        asked = [state(session, node, arguments.timeout or _LONGEST_ANSWER) for node in nodes]
+        requests = [state(session, node, arguments.timeout or _LONGEST_ANSWER) for node in nodes]
         status = 0
-        for node, found in zip(nodes, await asyncio.gather(*asked, return_exceptions=True), strict=True):
+        for node, found in zip(nodes, await asyncio.gather(*requests, return_exceptions=True), strict=True):
             if isinstance(found, NoAnswerError):
                 print(f"Exception while calling service of node '{node}': {found}", file=sys.stderr)
                 status = 1
@@ -119,9 +119,11 @@ def run_set(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
         available = [transition.transition for transition in await transitions(session, node)]
-        wanted = next((each for each in available if arguments.transition in (each.label, str(each.id))), None)
+        wanted = next(
+            (candidate for candidate in available if arguments.transition in (candidate.label, str(candidate.id))), None
+        )
         if wanted is None:
-            listed = "\n".join(f"- {each.label} [{each.id}]" for each in available)
+            listed = "\n".join(f"- {candidate.label} [{candidate.id}]" for candidate in available)
             raise LinkwrightError(
                 Diagnostic(
                     "CLI431",
@@ -131,7 +133,7 @@ def run_set(arguments: argparse.Namespace) -> int:
                         transition=arguments.transition,
                     ),
                     notes=(Note(phrase("available transitions:\n{listed}", listed=listed)),),
-                    hint=did_you_mean(arguments.transition, [each.label for each in available]),
+                    hint=did_you_mean(arguments.transition, [candidate.label for candidate in available]),
                 )
             )
         if await change(session, node, wanted):

@@ -74,7 +74,7 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
         return types
     print(f"WARNING: topic [{name}] does not appear to be published yet", file=sys.stderr)
     if not wait:
-        known = [each for each, _ in session.node.get_topic_names_and_types()]
+        known = [topic for topic, _ in session.node.get_topic_names_and_types()]
         nothing = phrase("give the message type to wait for the topic, or see `linkwright topic list`")
         message = phrase("Could not determine the type for the passed topic '{name}'", name=name)
         raise unknown("CLI411", message, name, known, nothing)

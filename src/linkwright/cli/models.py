@@ -105,13 +105,13 @@ def run_get(arguments: argparse.Namespace) -> int:
 
 
 def _progress(entry: ModelEntry, done: int, total: int | None) -> Phrase:
-    whole = total or entry.megabytes * _MEGA
-    filled = min(_BAR, done * _BAR // max(whole, 1))
+    size = total or entry.megabytes * _MEGA
+    filled = min(_BAR, done * _BAR // max(size, 1))
     return phrase(
         "{bar} {done} of {total} MB",
         bar="#" * filled + "." * (_BAR - filled),
         done=f"{done / _MEGA:.1f}",
-        total=f"{whole / _MEGA:.1f}",
+        total=f"{size / _MEGA:.1f}",
     )
 
 

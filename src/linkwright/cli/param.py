@@ -70,7 +70,7 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 def run_list(arguments: argparse.Namespace) -> int:
     """Print the parameters' names below the name of their node."""
     try:
-        wanted = re.compile(arguments.filter or "")
+        pattern = re.compile(arguments.filter or "")
     except re.error as error:
         hint = phrase("names are matched as regular expressions; write '\\.' for a dot")
         raise LinkwrightError(
@@ -88,7 +88,7 @@ def run_list(arguments: argparse.Namespace) -> int:
         if arguments.node_name is not None:
             node = await find_node(session, arguments.node_name, hidden=hidden, timeout=arguments.timeout)
             print(
-                "\n".join(await _listed(RemoteParameters(session, node, arguments.service_timeout), arguments, wanted))
+                "\n".join(await _listed(RemoteParameters(session, node, arguments.service_timeout), arguments, pattern))
             )
             return 0
         services = dict(session.node.get_service_names_and_types())
@@ -96,9 +96,9 @@ def run_list(arguments: argparse.Namespace) -> int:
             node for node in dict.fromkeys(node_names(session, hidden=hidden)) if f"{node}/list_parameters" in services
         ]
         timeout = arguments.service_timeout or _LONGEST_ANSWER
-        asked = [_listed(RemoteParameters(session, node, timeout), arguments, wanted) for node in nodes]
+        requests = [_listed(RemoteParameters(session, node, timeout), arguments, pattern) for node in nodes]
         failed = False
-        for node, lines in zip(nodes, await asyncio.gather(*asked, return_exceptions=True), strict=True):
+        for node, lines in zip(nodes, await asyncio.gather(*requests, return_exceptions=True), strict=True):
             if isinstance(lines, NoAnswerError):
                 failed = True
                 print(f"Exception while calling service of node '{node}': {lines}", file=sys.stderr)
@@ -193,8 +193,8 @@ def run_set(arguments: argparse.Namespace) -> int:
     """Set the parameters, and print whether each was set."""
     words = arguments.words
     if len(words) % 2:
-        said = f"Parameters must be provided as name/value pairs: name value [name value ...]. Got {len(words)} word(s)"
-        print(f"linkwright param set: {said}", file=sys.stderr)
+        text = f"Parameters must be provided as name/value pairs: name value [name value ...]. Got {len(words)} word(s)"
+        print(f"linkwright param set: {text}", file=sys.stderr)
         return _USAGE
     wanted = [parameter_of(name, value) for name, value in zip(words[::2], words[1::2], strict=True)]
 

@@ -126,7 +126,7 @@ def parameter_of(name: str, text: str) -> Any:
             (ParameterType.DOUBLE_ARRAY, float),
             (ParameterType.STRING_ARRAY, str),
         ):
-            if all(isinstance(each, element) for each in value):
+            if all(isinstance(item, element) for item in value):
                 return Parameter(name, kind, value).to_parameter_msg()
     return Parameter(name, ParameterType.STRING, text).to_parameter_msg()
 

@@ -141,13 +141,13 @@ def _found_beside(model: Model, folder: Path, finder: PackageFinder) -> Model:
 
     here, beside = ResourceFinder(PackageFinder(start=[Path.cwd()])), ResourceFinder(finder)
 
-    def whole(written: str, written_in: Path) -> str:
+    def resolved(written: str, written_in: Path) -> str:
         if not written or not isinstance(here.file(written, Path.cwd()), Missing):
             return written
         found = beside.file(written, written_in)
         return written if isinstance(found, Missing) else found.absolute().as_uri()
 
-    changed: Model = with_addresses(model, folder, whole)
+    changed: Model = with_addresses(model, folder, resolved)
     return changed
 
 

@@ -78,10 +78,10 @@ def run(arguments: argparse.Namespace) -> int:
     began = time.monotonic()
     sweep = Sweep(scenario, table_path, words)
     progress = _Progress()
-    table = sweep.run(_runner(arguments, path), resume=arguments.resume, progress=progress.tell)
+    table = sweep.run(_runner(arguments, path), resume=arguments.resume, progress=progress.show)
     progress.end()
     missing = len(planned(scenario)) - len(table)
-    _tell(table, time.monotonic() - began, progress.made)
+    _print_summary(table, time.monotonic() - began, progress.made)
     for written in (sweep.table, sweep.page):
         print(localized(phrase("Created file {file}", file=display_path(written))))
     if missing:
@@ -132,7 +132,7 @@ class _Progress:
         self.made = 0
         self._line = ProgressLine()
 
-    def tell(self, done: int, count: int, failed: int) -> None:
+    def show(self, done: int, count: int, failed: int) -> None:
         """Show the number of finished runs."""
         self.made += 1
         self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done, count=count, failed=failed))
@@ -142,13 +142,13 @@ class _Progress:
         self._line.end()
 
 
-def _tell(table: Table, seconds: float, made: int) -> None:
+def _print_summary(table: Table, seconds: float, made: int) -> None:
     """Print a summary to standard error."""
-    told = phrase(
+    summary = phrase(
         "{runs} in {seconds} s, {rate} per second, {failed} failed",
         runs=counted("{count} run", "{count} runs", made),
         seconds=f"{seconds:.1f}",
         rate=f"{made / max(seconds, 1e-9):.1f}",
         failed=len(table.failed),
     )
-    say(localized(told))
+    say(localized(summary))

@@ -102,27 +102,27 @@ class _Trial:
         if not finals:
             print(localized(phrase("{file}: nothing recognized", file=file)))
 
-    def _print(self, file: str, heard: Sequence[Heard], began: float, now: float) -> int:
+    def _print(self, file: str, results: Sequence[Heard], began: float, now: float) -> int:
         """Print the results at a time of the recording, and return the number of final ones."""
-        for each in heard:
-            if each.final or self._partials:
-                times = {"start": f"{max(0.0, each.start - began):.2f}", "end": f"{each.end - began:.2f}"}
+        for result in results:
+            if result.final or self._partials:
+                times = {"start": f"{max(0.0, result.start - began):.2f}", "end": f"{result.end - began:.2f}"}
                 print(localized(phrase(
                     "{file}: {what}, {start} s to {end} s, recognized {latency} s later",
-                    file=file, what=self._what(each), latency=f"{max(0.0, now - each.end):.2f}", **times,
+                    file=file, what=self._what(result), latency=f"{max(0.0, now - result.end):.2f}", **times,
                 )))  # fmt: skip
-        return sum(each.final for each in heard)
+        return sum(result.final for result in results)
 
-    def _what(self, heard: Heard) -> Phrase:
-        if not heard.text:
+    def _what(self, result: Heard) -> Phrase:
+        if not result.text:
             return phrase("none of the phrases")
-        said = {"text": heard.text, "confidence": f"{heard.confidence:.2f}"}
-        if not heard.final:
-            return phrase("partial: '{text}' ({confidence})", **said)
-        understood = self._commands.understand(heard.text)
+        words = {"text": result.text, "confidence": f"{result.confidence:.2f}"}
+        if not result.final:
+            return phrase("partial: '{text}' ({confidence})", **words)
+        understood = self._commands.understand(result.text)
         if understood is None:
-            return phrase("'{text}' ({confidence}), no command", **said)
-        return phrase("'{text}' ({confidence}), command {intent}", intent=understood.command.intent, **said)
+            return phrase("'{text}' ({confidence}), no command", **words)
+        return phrase("'{text}' ({confidence}), command {intent}", intent=understood.command.intent, **words)
 
 
 def configure_enrol(parser: argparse.ArgumentParser) -> None:

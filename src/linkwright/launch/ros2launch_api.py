@@ -51,7 +51,7 @@ def get_share_file_path_from_package(*, package_name: str, file_name: str) -> st
 def get_launch_file_paths(*, path: str) -> list[str]:
     """Return the launch files in a folder and below."""
     inside = (str(Path(folder, name)) for folder, _, files in os.walk(path) for name in files)
-    return [each for each in inside if is_launch_file(each)]
+    return [candidate for candidate in inside if is_launch_file(candidate)]
 
 
 def is_launch_file(path: str) -> bool:

@@ -85,8 +85,8 @@ def has_cuda() -> bool:
 def reason_of(error: Exception) -> Phrase:
     """Return the reason in a message of onnxruntime."""
     lines = str(error).strip().splitlines() or [type(error).__name__]
-    said = _OF_THE_LIBRARY.sub("", lines[0].rpartition(" : ")[2]).strip()
-    return foreign(said or type(error).__name__)
+    reason = _OF_THE_LIBRARY.sub("", lines[0].rpartition(" : ")[2]).strip()
+    return foreign(reason or type(error).__name__)
 
 
 def _unloadable(file: Path, error: Exception) -> UnloadableNetworkError:

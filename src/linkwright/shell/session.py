@@ -154,9 +154,9 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
         elif alone or number != signal.SIGINT:
             child.send_signal(number)
 
-    previous = {number: signal.signal(number, pass_on) for number in _heard_signals()}
+    previous = {number: signal.signal(number, pass_on) for number in _forwarded_signals()}
     try:
-        first = _standing_alone() if alone else None
+        first = _detaching() if alone else None
         # The user's own command (S603); there is only one thread, and `first` imports nothing (PLW1509).
         with subprocess.Popen(words, env=dict(variables), preexec_fn=first) as child:  # noqa: S603, PLW1509
             for number in early:
@@ -180,7 +180,7 @@ def _has_terminal() -> bool:
     return True
 
 
-def _standing_alone() -> Callable[[], None]:
+def _detaching() -> Callable[[], None]:
     """Return the pre-exec function: it leaves our process group, and on Linux ends the command if we are killed."""
     import ctypes
     import signal
@@ -195,7 +195,7 @@ def _standing_alone() -> Callable[[], None]:
     return stand_alone
 
 
-def _heard_signals() -> list[int]:
+def _forwarded_signals() -> list[int]:
     """Return the signals to forward; the command also ignores those that this process was started to ignore."""
     import signal
 

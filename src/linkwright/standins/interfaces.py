@@ -154,17 +154,24 @@ class _InterfaceLoader(Loader):
 
     def exec_module(self, module: ModuleType) -> None:
         try:
-            whole = get_interface(self._type_name)
+            interface = get_interface(self._type_name)
         except LinkwrightError as error:  # an error in the file: reported at the import
             raise ImportError(str(error), name=module.__name__) from None
-        name = whole.__name__
-        found = {name: whole}
-        if issubclass(whole, ServiceType):
-            found |= _parts_of_service(name, whole)
-        elif issubclass(whole, ActionType):
-            found |= {f"{name}_Goal": whole.Goal, f"{name}_Result": whole.Result, f"{name}_Feedback": whole.Feedback}
-            found[f"{name}_FeedbackMessage"] = whole.Impl.FeedbackMessage
-            for part, service in (("SendGoal", whole.Impl.SendGoalService), ("GetResult", whole.Impl.GetResultService)):
+        name = interface.__name__
+        found = {name: interface}
+        if issubclass(interface, ServiceType):
+            found |= _parts_of_service(name, interface)
+        elif issubclass(interface, ActionType):
+            found |= {
+                f"{name}_Goal": interface.Goal,
+                f"{name}_Result": interface.Result,
+                f"{name}_Feedback": interface.Feedback,
+            }
+            found[f"{name}_FeedbackMessage"] = interface.Impl.FeedbackMessage
+            for part, service in (
+                ("SendGoal", interface.Impl.SendGoalService),
+                ("GetResult", interface.Impl.GetResultService),
+            ):
                 found[f"{name}_{part}"] = service
                 found |= _parts_of_service(f"{name}_{part}", service)
         module.__dict__.update(found)

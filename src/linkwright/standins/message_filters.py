@@ -107,15 +107,15 @@ class Cache(SimpleFilter):
     def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:
         """Return the messages in a closed time interval."""
         assert from_stamp <= to_stamp, "the interval ends before it begins"
-        return [msg for msg, time in self._kept() if from_stamp <= time <= to_stamp]
+        return [msg for msg, time in self._stamped_messages() if from_stamp <= time <= to_stamp]
 
     def getElemAfterTime(self, stamp: Time) -> Any:
         """Return the first message that is not older than a time, or None."""
-        return next((msg for msg, time in self._kept() if time >= stamp), None)
+        return next((msg for msg, time in self._stamped_messages() if time >= stamp), None)
 
     def getElemBeforeTime(self, stamp: Time) -> Any:
         """Return the last message that is not newer than a time, or None."""
-        older = [msg for msg, time in self._kept() if time <= stamp]
+        older = [msg for msg, time in self._stamped_messages() if time <= stamp]
         return older[-1] if older else None
 
     def getLatestTime(self) -> Time | None:
@@ -133,7 +133,7 @@ class Cache(SimpleFilter):
         latest = self.getLatestTime()
         return None if latest is None else self.getElemAfterTime(latest)
 
-    def _kept(self) -> Iterator[tuple[Any, Time]]:
+    def _stamped_messages(self) -> Iterator[tuple[Any, Time]]:
         return zip(tuple(self.cache_msgs), tuple(self.cache_times), strict=True)
 
 
@@ -158,20 +158,20 @@ class TimeSynchronizer(SimpleFilter):
         """Synchronize the messages of these filters."""
         self.queues: list[dict[int, Any]] = [{} for _ in fs]
         self.input_connections = [
-            each.registerCallback(self.add, queue, index)
-            for index, (each, queue) in enumerate(zip(fs, self.queues, strict=True))
+            input_filter.registerCallback(self.add, queue, index)
+            for index, (input_filter, queue) in enumerate(zip(fs, self.queues, strict=True))
         ]
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
         """Add a message of one of the filters, and output the set that it completes."""
         with self.lock:
-            self._keep(msg, my_queue, _time(msg.header.stamp).nanoseconds)
+            self._store(msg, my_queue, _time(msg.header.stamp).nanoseconds)
             common = set(self.queues[0]).intersection(*self.queues[1:])
             matches = [[queue.pop(stamp) for queue in self.queues] for stamp in sorted(common)]
         for match in matches:
             self.signalMessage(*match)
 
-    def _keep(self, msg: Any, queue: dict[int, Any], stamp: int) -> None:
+    def _store(self, msg: Any, queue: dict[int, Any], stamp: int) -> None:
         queue[stamp] = msg
         while len(queue) > self.queue_size:
             del queue[min(queue)]
@@ -210,7 +210,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         if time is None:
             return
         with self.lock:
-            self._keep(msg, my_queue, time.nanoseconds)
+            self._store(msg, my_queue, time.nanoseconds)
             stamps = self._match(time.nanoseconds, my_queue_index)
             match = [queue.pop(stamp) for queue, stamp in zip(self.queues, stamps, strict=True)] if stamps else None
         if match is not None:
@@ -221,11 +221,11 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         slop = self.slop.nanoseconds
         choices = []
         for index, queue in enumerate(self.queues):
-            near = [stamp] if index == own else [each for each in queue if abs(each - stamp) <= slop]
-            choices.append(sorted(near, key=lambda each: abs(each - stamp)))
+            near = [stamp] if index == own else [candidate for candidate in queue if abs(candidate - stamp) <= slop]
+            choices.append(sorted(near, key=lambda candidate: abs(candidate - stamp)))
         for stamps in itertools.product(*choices):
             if max(stamps) - min(stamps) < slop and all(
-                each in queue for each, queue in zip(stamps, self.queues, strict=True)
+                candidate in queue for candidate, queue in zip(stamps, self.queues, strict=True)
             ):
                 return stamps
         return None

@@ -243,11 +243,13 @@ def convert_rclcpp_qos_to_rclpy_qos(qos_input: QoSProfile) -> QoSProfile:
 def _metadata(found: Mapping[str, Any]) -> BagMetadata:
     """Return the metadata in a ``metadata.yaml``; older versions lack keys."""
     topics = []
-    for each in found["topics_with_message_count"]:
-        known = dict(each["topic_metadata"])
+    for entry in found["topics_with_message_count"]:
+        known = dict(entry["topic_metadata"])
         known["offered_qos_profiles"] = from_text(known.get("offered_qos_profiles", ""))
-        topics.append(TopicInformation(TopicMetadata(**known), each["message_count"]))
-    files = [FileInformation(each["path"], *_span(each), each["message_count"]) for each in found.get("files") or ()]
+        topics.append(TopicInformation(TopicMetadata(**known), entry["message_count"]))
+    files = [
+        FileInformation(entry["path"], *_span(entry), entry["message_count"]) for entry in found.get("files") or ()
+    ]
     starting_time, duration = _span(found)
     return BagMetadata(
         version=found["version"],

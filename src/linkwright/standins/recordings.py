@@ -196,7 +196,7 @@ class SequentialReader:
             at_once = list(bag.messages((), stamp_ns, stamp_ns + 1))
             if self._reverse:
                 at_once.reverse()
-            rest = [each for each in at_once[at_once.index(self._last) + 1 :] if each[0] in topics]
+            rest = [message for message in at_once[at_once.index(self._last) + 1 :] if message[0] in topics]
             self._stream = chain(rest, self._from(topics, stamp_ns + (-1 if self._reverse else 1)))
         self._advance()
 
@@ -383,7 +383,7 @@ def writer_for(options: StorageOptions, compression: str) -> BagWriter:
     """Create a writer from its options.
 
     Raises:
-        RuntimeError: there is no such storage, or no memory for snapshots.
+        RuntimeError: there is no such storage, or the cache size for snapshots is not positive.
         LinkwrightError: those of `BagWriter`.
     """
     storage = options.storage_id or STORAGES[0]

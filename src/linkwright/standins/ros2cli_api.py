@@ -47,7 +47,7 @@ def get_executable_paths(*, package_name: str) -> list[str]:
         raise PackageNotFound(package_name)
     found: list[str] = []
     for folder, inside, files in os.walk(os.path.join(prefix, "lib", package_name)):  # noqa: PTH118 - strings, as in ros2pkg
-        inside[:] = sorted(each for each in inside if not each.startswith("."))
+        inside[:] = sorted(subfolder for subfolder in inside if not subfolder.startswith("."))
         paths = (os.path.join(folder, name) for name in sorted(files))  # noqa: PTH118
         found += [path for path in paths if os.access(path, os.X_OK)]
     return found
@@ -56,7 +56,7 @@ def get_executable_paths(*, package_name: str) -> list[str]:
 def get_topic_names_and_types(*, node: Any, include_hidden_topics: bool = False) -> list[tuple[str, list[str]]]:
     """Return the topics that a node has discovered, with their types."""
     found: list[tuple[str, list[str]]] = node.get_topic_names_and_types()
-    return [each for each in found if include_hidden_topics or not topic_or_service_is_hidden(each[0])]
+    return [topic for topic in found if include_hidden_topics or not topic_or_service_is_hidden(topic[0])]
 
 
 def get_topic_names(*, node: Any, include_hidden_topics: bool = False) -> list[str]:

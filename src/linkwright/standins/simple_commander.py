@@ -161,20 +161,20 @@ class BasicNavigator(Node):
 
     def getPath(self, start: Any, goal: Any, planner_id: str = "", use_start: bool = False) -> Any:
         """Return a path to a pose (nav_msgs/Path), or None."""
-        told = {"start": start, "goal": goal, "planner_id": planner_id, "use_start": use_start}
-        return getattr(self._done("compute_path_to_pose", **told), "path", None)
+        request = {"start": start, "goal": goal, "planner_id": planner_id, "use_start": use_start}
+        return getattr(self._done("compute_path_to_pose", **request), "path", None)
 
     def getPathThroughPoses(self, start: Any, goals: Any, planner_id: str = "", use_start: bool = False) -> Any:
         """Return a path through poses; see `getPath`."""
-        told = {"start": start, "goals": list(goals), "planner_id": planner_id, "use_start": use_start}
-        return getattr(self._done("compute_path_through_poses", **told), "path", None)
+        request = {"start": start, "goals": list(goals), "planner_id": planner_id, "use_start": use_start}
+        return getattr(self._done("compute_path_through_poses", **request), "path", None)
 
     def smoothPath(
         self, path: Any, smoother_id: str = "", max_duration: float = 2.0, check_for_collision: bool = False
     ) -> Any:
         """Return a smoothed path, or None if that failed."""
-        told = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _duration(max_duration)}
-        return getattr(self._done("smooth_path", **told, check_for_collisions=check_for_collision), "path", None)
+        request = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _duration(max_duration)}
+        return getattr(self._done("smooth_path", **request, check_for_collisions=check_for_collision), "path", None)
 
     # --- maps and costmaps --------------------------------------------------------------------------------------------
 

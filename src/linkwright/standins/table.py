@@ -150,8 +150,8 @@ def parse(text: str) -> dict[str, Module]:
             module.names[what] = Name(VALUE, rest.strip())
         else:
             since = what.removeprefix("since ")
-            for each in rest.split():
-                ours, _, theirs = each.partition("=")
+            for pair in rest.split():
+                ours, _, theirs = pair.partition("=")
                 module.names[ours] = Name(word, theirs or ours, since)
     return modules
 

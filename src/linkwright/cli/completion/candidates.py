@@ -70,7 +70,7 @@ def _is_option(words: list[str], index: int, options: dict[str, Any]) -> bool:
 def _of(argument: dict[str, Any], path: list[str], placed: list[str], table: dict[str, Any]) -> Iterable[str]:
     kind: str = argument["name"]
     if argument.get("choices"):
-        return [str(each) for each in argument["choices"]]
+        return [str(choice) for choice in argument["choices"]]
     if kind == _LAUNCH:
         kind = ("LAUNCH_PACKAGE", "LAUNCH_FILE", "LAUNCH_ARGUMENT")[min(len(placed), 2)]
     return candidates_of(kind, path, placed, table)

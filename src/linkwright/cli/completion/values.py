@@ -103,7 +103,7 @@ def _types(asked: Asked) -> Iterable[str]:
         for kind in kinds
         for file in (share / kind).glob(f"*.{kind}")
     )
-    return sorted({*(each for kind in kinds for each in table["types"][kind]), *own})
+    return sorted({*(name for kind in kinds for name in table["types"][kind]), *own})
 
 
 def _graph(kind: str) -> Callable[[Asked], Iterable[str]]:

@@ -190,9 +190,9 @@ async def _report_until_finished(session: Session, text: Callable[[], str | None
     """Print a text, if there is one, each second until the command ends; return the exit status."""
 
     def report() -> None:
-        said = text()
-        if said is not None:
-            print(said)
+        line = text()
+        if line is not None:
+            print(line)
 
     session.every(_PERIOD, report)
     return await session.finished() or 0

@@ -148,13 +148,13 @@ def rate_table(spreads: Mapping[str, Spread]) -> str:
     rows = [
         (
             topic,
-            f"{each.rate:.3f}",
-            f"{each.least / _SECOND:.3f}",
-            f"{each.most / _SECOND:.3f}",
-            f"{each.deviation / _SECOND:.5f}",
-            str(each.count),
+            f"{spread.rate:.3f}",
+            f"{spread.least / _SECOND:.3f}",
+            f"{spread.most / _SECOND:.3f}",
+            f"{spread.deviation / _SECOND:.5f}",
+            str(spread.count),
         )
-        for topic, each in spreads.items()
+        for topic, spread in spreads.items()
     ]
     widths = [max(len(name), *(len(row[at]) for row in rows)) for at, name in enumerate(_HEADER)]
     head = "   ".join(name.center(width + 2) for name, width in zip(_HEADER, widths, strict=True))

@@ -33,16 +33,16 @@ class Guardian:
 
     def watch(self, pid: int) -> None:
         """Register the process group that a process leads."""
-        self._tell(f"+{pid}\n")
+        self._send(f"+{pid}\n")
 
     def owns(self, folder: Path) -> None:
         """Register a folder of temporary files."""
         self._folder = folder
-        self._tell(f"={folder}\n")
+        self._send(f"={folder}\n")
 
     def release(self, pid: int) -> None:
         """Unregister a group that has ended."""
-        self._tell(f"-{pid}\n")
+        self._send(f"-{pid}\n")
 
     def close(self) -> None:
         """Announce a regular end, and wait for the guardian to exit."""
@@ -50,7 +50,7 @@ class Guardian:
         process = self._process
         if process is None:
             return
-        self._tell(".\n")
+        self._send(".\n")
         assert process.stdin is not None
         with contextlib.suppress(OSError):
             process.stdin.close()
@@ -77,7 +77,7 @@ class Guardian:
         if self._folder is not None:
             self.owns(self._folder)
 
-    def _tell(self, line: str) -> None:
+    def _send(self, line: str) -> None:
         if self._process is not None and self._process.stdin is not None:
             with contextlib.suppress(OSError, ValueError):  # the guardian was killed
                 self._process.stdin.write(line.encode())

@@ -36,7 +36,7 @@ class Omissions:
         self.any = False
         self._untold: list[Note] = []
 
-    def take(self, error: LinkwrightError) -> bool:
+    def skip(self, error: LinkwrightError) -> bool:
         """Skip the part that an error stopped, if missing software allows it, and return whether it was skipped."""
         consequence = self.any and any(diagnostic.code in _CONSEQUENCES for diagnostic in error.diagnostics)
         if not (consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
@@ -45,7 +45,7 @@ class Omissions:
         self._untold += [Note(diagnostic.message, diagnostic.span) for diagnostic in error.diagnostics]
         return True
 
-    def tell(self) -> None:
+    def report(self) -> None:
         """Print the parts skipped since the last call."""
         if not self._untold:
             return

@@ -305,10 +305,10 @@ class _Lines:
         self._length += len(first)
         if not others and self._length < _LONGEST_LINE:
             return []
-        whole = ["".join(self._pieces), *others]
-        rest = whole.pop() if others else ""
+        complete = ["".join(self._pieces), *others]
+        rest = complete.pop() if others else ""
         self._pieces, self._length = [rest], len(rest)
-        return [line.rstrip("\r") for line in whole]
+        return [line.rstrip("\r") for line in complete]
 
     def end(self) -> list[str]:
         """Return the incomplete last line, if any."""

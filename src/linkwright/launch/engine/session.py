@@ -140,12 +140,12 @@ class LaunchSession:
             self.interrupt("user interrupted with ctrl-c (SIGINT)")
         finally:
             self._visiting = False
-            self._omissions.tell()
+            self._omissions.report()
 
     def could_not_start(self, what: object, error: LinkwrightError) -> None:
         """Report why something could not be started; the launch continues without it."""
-        if self._omissions.take(error):
-            self._omissions.tell()
+        if self._omissions.skip(error):
+            self._omissions.report()
             return
         self.log.diagnostics(error.diagnostics)
         self.fail(what)
@@ -273,13 +273,13 @@ class LaunchSession:
         except DescriptionError as error:
             if not (error.missing or self.ending):
                 self._await_repair(entity, context.snapshot(), error)
-            elif not self._omissions.take(located(error, entity.place)):
+            elif not self._omissions.skip(located(error, entity.place)):
                 raise
             return
         except (Exception, SystemExit) as error:
             name = type(entity).__name__
             explained = explain(error, phrase("launch action {name}", name=name), entity.place)
-            if self._omissions.take(explained):
+            if self._omissions.skip(explained):
                 return
             raise explained from error
         future = entity.get_asyncio_future()

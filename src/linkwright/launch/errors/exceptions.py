@@ -64,7 +64,7 @@ def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> Linkw
 
 def _base_of(kind: type[Exception]) -> type[Exception]:
     """Return the nearest base class whose constructor takes only a text."""
-    bases: list[type[Any]] = [each for each in kind.__mro__ if not issubclass(each, LinkwrightError)]
+    bases: list[type[Any]] = [candidate for candidate in kind.__mro__ if not issubclass(candidate, LinkwrightError)]
     for base in bases:
         try:
             base("")

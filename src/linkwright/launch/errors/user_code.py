@@ -171,7 +171,7 @@ def _keyword_hint(error: TypeError) -> Phrase | None:
         return None
     function, name = found.groups()
     called = _called_objects(frame, function.partition(".")[0])
-    names = {parameter for each in called for parameter in _parameter_names(each)}
+    names = {parameter for called_object in called for parameter in _parameter_names(called_object)}
     return did_you_mean(name, names)
 
 
@@ -213,7 +213,7 @@ def _parameter_names(called: Any) -> Iterable[str]:
 
 def _innermost_frame(error: Exception, *, users_only: bool = False) -> FrameType | None:
     frame = None
-    for each, _ in walk_tb(error.__traceback__):
-        if not users_only or is_users(each.f_code.co_filename):
-            frame = each
+    for candidate, _ in walk_tb(error.__traceback__):
+        if not users_only or is_users(candidate.f_code.co_filename):
+            frame = candidate
     return frame

@@ -82,10 +82,10 @@ class IncludeLaunchDescription(Action):
         kwargs["launch_description_source"] = parser.parse_substitution(entity.get_attr("file"))
         arguments = []
         for tag in ("arg", "let"):
-            for each in entity.get_attr(tag, data_type=list[Entity], optional=True) or ():
-                name, value = each.get_attr("name"), each.get_attr("value")
+            for child in entity.get_attr(tag, data_type=list[Entity], optional=True) or ():
+                name, value = child.get_attr("name"), child.get_attr("value")
                 arguments.append((parser.parse_substitution(name), parser.parse_substitution(value)))
-                each.assert_entity_completely_parsed()
+                child.assert_entity_completely_parsed()
         if arguments:
             kwargs["launch_arguments"] = arguments
         return cls, kwargs

@@ -52,8 +52,8 @@ class MarkupEntity(Entity):
         if not unknown:
             return
         name = unknown[0]
-        listed = ", ".join(repr(str(each)) for each in unknown)
-        known = [each for each in self._asked if each not in unknown]
+        listed = ", ".join(repr(str(part)) for part in unknown)
+        known = [part for part in self._asked if part not in unknown]
         hint = did_you_mean(name, known)
         if hint is None and known:
             hint = phrase("'{type_name}' takes {names}", type_name=self._type_name, names=quoted_names(sorted(known)))
@@ -69,7 +69,7 @@ class MarkupEntity(Entity):
         return self._place
 
     def _missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:
-        others = [each for each in present if each not in self._asked]
+        others = [other for other in present if other not in self._asked]
         near = nearest(name, others)
         hint = phrase("it has {names}; did you mean that?", names=quoted_names(near, " or ")) if near else None
         message = phrase("'{type_name}' needs an attribute '{name}'", type_name=self._type_name, name=name)

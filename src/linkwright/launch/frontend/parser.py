@@ -198,10 +198,10 @@ def read_file(file: Any) -> tuple[str, str]:
 
 def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tuple[Diagnostic, ...]:
     """Return the findings on a file that no parser can read, from the parser of the most likely language."""
-    told = [error.diagnostics for error in errors if isinstance(error, LinkwrightError)]
+    reports = [error.diagnostics for error in errors if isinstance(error, LinkwrightError)]
     looks_like_xml = text.lstrip().startswith("<")
-    for diagnostics in told:
-        if len(told) == 1 or diagnostics[0].code.startswith("XML") is looks_like_xml:
+    for diagnostics in reports:
+        if len(reports) == 1 or diagnostics[0].code.startswith("XML") is looks_like_xml:
             return diagnostics
     message = phrase(
         "launch file '{name}' is neither XML nor YAML in the form of a launch file", name=display_path(name)

@@ -76,9 +76,9 @@ class Entity(MarkupEntity):
             raise error_at(place, "LAUNCH118", message, hint, ros_error=RuntimeError(text))
         [(name, element)] = item.items()
         if isinstance(element, str) and name in _BARE:
-            whole = PlacedMapping({_BARE[name]: element})
-            whole.place = place_of(element)
-            element = whole
+            mapping = PlacedMapping({_BARE[name]: element})
+            mapping.place = place_of(element)
+            element = mapping
         return Entity({} if element is None else element, name, parent=self)
 
     def assert_entity_completely_parsed(self) -> None:

@@ -119,7 +119,7 @@ class LaunchConfig:
         self._log_dir = None if new_log_dir is None else str(new_log_dir)
 
     def share(self, folder: Path) -> None:
-        """Use the folder of the running launch, unless there are files in another folder."""
+        """Use the folder of the running launch, unless log files already exist."""
         if not self.file_handlers:
             self._log_dir = str(folder)
 

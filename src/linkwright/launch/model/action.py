@@ -56,10 +56,10 @@ class Action(LaunchDescriptionEntity):
         if self.condition is not None and not self.condition.evaluate(context):
             return None
         following = self.execute(context)
-        self._tell_completion(context)
+        self._emit_completion(context)
         return None if following is None else as_entities(following)
 
-    def _tell_completion(self, context: LaunchContext) -> None:
+    def _emit_completion(self, context: LaunchContext) -> None:
         """Emit the completion event if there is a handler for it; if the action has a future, when that is done."""
         from linkwright.launch.model.events import ExecutionComplete
 

@@ -162,8 +162,8 @@ class DeclaredSubstitution(Substitution):
             cls._shown = shown
         if tag:
             cls._tag = tag
-            for each in tag.split("/"):
-                expose_substitution(each)(cls)
+            for name in tag.split("/"):
+                expose_substitution(name)(cls)
 
     @classmethod
     def parse(cls, data: Sequence[Any]) -> tuple[Any, dict[str, Any]]:

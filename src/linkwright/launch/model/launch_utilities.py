@@ -40,7 +40,7 @@ def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: 
     """
     allowed = [types] if inspect.isclass(types) else types
     listed: list[Any] = list(allowed) if isinstance(allowed, Iterable) and not isinstance(allowed, str) else [None]
-    if not all(inspect.isclass(each) for each in listed):
+    if not all(inspect.isclass(kind) for kind in listed):
         raise TypeError(
             f"'ensure_argument_type()' expected 'types' to be of type "
             f"'type, collections.abc.Iterable of type', but got '{types}' of type '{type(types)}'"
@@ -48,7 +48,7 @@ def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: 
     if isinstance(argument, tuple(listed)):
         return
     by = "" if caller is None else f"'{caller}' "
-    names = " or ".join(f"'{each}'" for each in listed)
+    names = " or ".join(f"'{kind}'" for kind in listed)
     raise TypeError(
         f"{by}expected '{argument_name}' to be one of {names}, but got '{argument}' of type '{type(argument)}'"
     )
@@ -71,7 +71,7 @@ def get_loop() -> asyncio.AbstractEventLoop:
 
 
 _loops: list[asyncio.AbstractEventLoop] = []
-"""The loop of programs that run several launches one after another, once requested."""
+"""The loop for consecutive runs in one program, created on request."""
 
 
 def visit_all_entities_and_collect_futures(

@@ -61,7 +61,7 @@ def normalize_to_list_of_substitutions(value: Any) -> list[Substitution]:
     if isinstance(value, (str, Path)):
         return [TextSubstitution(text=str(value))]
     if isinstance(value, Iterable) and not isinstance(value, bytes):
-        return [_single(each) for each in value]
+        return [_single(item) for item in value]
     raise TypeError(f"expected a text, a substitution or a list of them, got {value!r} of type {type(value).__name__}")
 
 
@@ -87,5 +87,5 @@ def _public_name(kind: type) -> str:
     """Return the name by which users import a class: ours appear under ``launch``."""
     if not kind.__module__.startswith("linkwright."):
         return f"{kind.__module__}.{kind.__qualname__}"
-    module = "".join("_" + each.lower() if each.isupper() else each for each in kind.__name__).lstrip("_")
+    module = "".join("_" + letter.lower() if letter.isupper() else letter for letter in kind.__name__).lstrip("_")
     return f"launch.substitutions.{module}.{kind.__name__}"

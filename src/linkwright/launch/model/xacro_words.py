@@ -46,8 +46,8 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
             files.append(word)
     remark = None
     if len(files) > 1:
-        whole = text.split(":=", 1)[0].rsplit(None, 1)[0] if ":=" in text else text
-        if not (folder / whole.strip()).is_file():
+        joined_path = text.split(":=", 1)[0].rsplit(None, 1)[0] if ":=" in text else text
+        if not (folder / joined_path.strip()).is_file():
             raise _misuse(
                 phrase(
                     "xacro expects exactly one model file, but was given {count}: {files}",
@@ -56,7 +56,7 @@ def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[Xa
                 ),
                 phrase("put quotes around a path with spaces: Command(['xacro \"', path, '\"'])"),
             )
-        files = [whole.strip()]
+        files = [joined_path.strip()]
         remark = phrase(
             "the path '{files}' contains spaces and is not quoted: xacro itself would read it as several files",
             files=files[0],

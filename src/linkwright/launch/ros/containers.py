@@ -211,10 +211,10 @@ class ComposableNodeContainer(Node):
             )
             for composable_node_description in self.__composable_node_descriptions or ()
         ]
-        if not all(each in COMPONENTS for each in wanted):
+        if not all(text in COMPONENTS for text in wanted):
             package, executable = (
-                perform_substitutions(context, normalize_to_list_of_substitutions(each))
-                for each in (self.node_package, self.node_executable)
+                perform_substitutions(context, normalize_to_list_of_substitutions(text))
+                for text in (self.node_package, self.node_executable)
             )
             self.__real = installed_executable(context.session.finder, package, executable)
         return self.__real

@@ -58,7 +58,8 @@ class LifecycleTransition(Action):
                 )
         self._names = [normalize_to_list_of_substitutions(name) for name in lifecycle_node_names]
         self._ids = [
-            normalize_to_list_of_substitutions(str(each) if isinstance(each, int) else each) for each in transition_ids
+            normalize_to_list_of_substitutions(str(transition) if isinstance(transition, int) else transition)
+            for transition in transition_ids
         ]
         self._handlers: dict[str, list[BaseEventHandler]] = {}
 
@@ -69,7 +70,7 @@ class LifecycleTransition(Action):
             LinkwrightError: LAUNCH138, a transition is not a number, or does not end in a state.
         """
         names = [perform_substitutions(context, name) for name in self._names]
-        numbers = [self._number(perform_substitutions(context, each)) for each in self._ids]
+        numbers = [self._number(perform_substitutions(context, text)) for text in self._ids]
         registering: list[Action] = []
         asking: list[Action] = []
         for name in names:

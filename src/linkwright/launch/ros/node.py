@@ -174,7 +174,7 @@ class Node(ExecuteProcess):
     def is_node_name_fully_specified(self) -> bool:
         """Return whether both name and namespace are given."""
         unspecified = (self.UNSPECIFIED_NODE_NAME, self.UNSPECIFIED_NODE_NAMESPACE)
-        return all(each not in self.node_name for each in unspecified)
+        return all(part not in self.node_name for part in unspecified)
 
     # --- the run --------------------------------------------------------------------------------------------
 
@@ -197,7 +197,7 @@ class Node(ExecuteProcess):
             assert package is not None
             process_name = self._host(context, package, executable, added)
         else:
-            self.cmd.extend(normalize_to_list_of_substitutions(each) for each in added)
+            self.cmd.extend(normalize_to_list_of_substitutions(word) for word in added)
             process_name = self._run(context, package, executable)
         if self.is_node_name_fully_specified():
             remark = repeated_name(context, self.node_name)
@@ -296,7 +296,7 @@ class Node(ExecuteProcess):
             node = self.node_name if self.is_node_name_fully_specified() else None
             self.__parameter_words = self.__node_parameters.arguments(node, folder)
         scope = self.__parameter_words[: self.__scope_count]
-        return [*(each for each in scope if each[1]), *self.__parameter_words[self.__scope_count :]]
+        return [*(argument for argument in scope if argument[1]), *self.__parameter_words[self.__scope_count :]]
 
     def __extend_command(self) -> None:
         words: list[Any] = []
@@ -329,10 +329,10 @@ class Node(ExecuteProcess):
         namespace = self.__expanded_node_namespace
         namespace = "/" if namespace == self.UNSPECIFIED_NODE_NAMESPACE else namespace
         name = None if self.__node_name is None else self.__expanded_node_name
-        arguments = [_text(context, each) for each in _listed(self.__arguments)]
+        arguments = [_text(context, word) for word in _listed(self.__arguments)]
         if self.__ros_arguments is not None:
-            arguments += ["--ros-args", *(_text(context, each) for each in _listed(self.__ros_arguments))]
-        arguments += [_text(context, each) for each in added]
+            arguments += ["--ros-args", *(_text(context, word) for word in _listed(self.__ros_arguments))]
+        arguments += [_text(context, word) for word in added]
         base_name = self.process_description.base_name(context, [executable])
         own_name = name or default_name(package, executable)
         full_name = f"{namespace.rstrip('/')}/{own_name or executable}"

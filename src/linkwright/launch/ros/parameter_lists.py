@@ -173,7 +173,7 @@ def _item_kind(item: Any, key: Any) -> type:
     for kind in (Substitution, str, bool, int, float):
         if isinstance(item, kind):
             return kind
-    if isinstance(item, (list, tuple)) and all(isinstance(each, (str, Substitution)) for each in item):
+    if isinstance(item, (list, tuple)) and all(isinstance(part, (str, Substitution)) for part in item):
         return tuple
     shown = key if isinstance(key, str) else "..."
     message = phrase(
@@ -204,7 +204,7 @@ def _evaluated_value(context: LaunchContext, name: str, value: Any) -> Any:
     if isinstance(value[0], Substitution):
         return _evaluated_text(context, name, value)
     if isinstance(value[0], tuple):
-        place = next((each.place for item in value for each in item if each.place is not None), None)
+        place = next((part.place for item in value for part in item if part.place is not None), None)
         return uniform([_evaluated_text(context, name, item) for item in value], name, place)
     return value
 

@@ -78,7 +78,7 @@ class NodeParameters:
             if not isinstance(source, FileSource):
                 continue
             rules = source.file.rules(context)
-            for finding in rules.left_out_for(node) if node else [each for _, each in rules.left_out]:
+            for finding in rules.left_out_for(node) if node else [omission for _, omission in rules.left_out]:
                 context.warn(finding)
             if node is None or not rules or rules.fit(node):
                 continue
@@ -129,15 +129,15 @@ class NodeParameters:
             node: the node's full name; None if it is not known.
             folder: the folder for files with dictionaries; None for the system's temporary folder.
         """
-        told: list[tuple[str, bool]] = []
+        arguments: list[tuple[str, bool]] = []
         for source in self.sources:
             if isinstance(source, FileSource):
-                told.append((str(source.path), True))
+                arguments.append((str(source.path), True))
             elif isinstance(source, tuple):
-                told.append((rule(*source), False))
+                arguments.append((rule(*source), False))
             else:
-                told.append((written(source, node, folder), True))
-        return told
+                arguments.append((write_file(source, node, folder), True))
+        return arguments
 
 
 def _warn(context: LaunchContext, code: str, message: Phrase, hint: Phrase | None, place: Place | None) -> None:
@@ -185,7 +185,7 @@ def rule(name: str, value: Any) -> str:
     return f"{name}:={text.removesuffix(chr(10)).removesuffix(chr(10) + '...')}"
 
 
-def written(parameters: dict[str, Any], node: str | None, folder: Path | None) -> str:
+def write_file(parameters: dict[str, Any], node: str | None, folder: Path | None) -> str:
     """Write a new file with values for a node, or for any node if its name is not known, and return its path."""
     import tempfile
 

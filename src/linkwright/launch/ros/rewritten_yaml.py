@@ -120,7 +120,7 @@ class RewrittenYaml(_OfFile):
                 _add(content, path.split("."), value)
         content = _with_keys(content, _performed(context, self._keys))
         root = "" if self._root_key is None else perform_substitutions(context, self._root_key)
-        return _written(context, yaml.dump({root: content} if root else content), ".yaml")
+        return _write_file(context, yaml.dump({root: content} if root else content), ".yaml")
 
     def _converted(self, text: str) -> Any:
         if text.lower() in ("true", "false"):
@@ -217,7 +217,7 @@ class ReplaceString(_OfFile):
         path, text = self._read(context)
         for old, new in _performed(context, self._replacements).items():
             text = text.replace(old, new)
-        return _written(context, text, path.suffix)
+        return _write_file(context, text, path.suffix)
 
 
 class HasNodeParams(_OfFile):
@@ -316,7 +316,7 @@ def _performed(context: LaunchContext, rewrites: Mapping[str, list[Substitution]
     return {key: perform_substitutions(context, value) for key, value in rewrites.items()}
 
 
-def _written(context: LaunchContext, text: str, suffix: str) -> str:
+def _write_file(context: LaunchContext, text: str, suffix: str) -> str:
     """Return the path of a new file, which is deleted after a running launch."""
     folder = context.session.scratch_folder if context.is_running else None
     with tempfile.NamedTemporaryFile("w", suffix=suffix, dir=folder, delete=False, encoding="utf-8") as file:

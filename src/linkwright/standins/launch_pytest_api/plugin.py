@@ -174,7 +174,7 @@ class LaunchTest(pytest.Function):
         elif self.first_part is not None:
             if self.first_part.begun is None:
                 pytest.skip("the part of the test before the shutdown did not pass")
-            self._go_on(loop, self.first_part.begun)
+            self._resume(loop, self.first_part.begun)
         elif self.is_after_shutdown:
             pytest.fail("a generator or async generator must not be marked with shutdown=True", pytrace=False)
         else:
@@ -185,7 +185,7 @@ class LaunchTest(pytest.Function):
                 loop.run_until_complete(loop.run_in_executor(None, next, generator, _OVER))
             self.begun = generator
             if self.options.scope == "function":
-                self._go_on(loop, generator)
+                self._resume(loop, generator)
 
     @property
     def _loop(self) -> asyncio.AbstractEventLoop:
@@ -198,7 +198,7 @@ class LaunchTest(pytest.Function):
         assert isinstance(service, LaunchService)
         finish(service, f"before test '{self.name}'", ask=self.options.auto_shutdown)
 
-    def _go_on(self, loop: asyncio.AbstractEventLoop, generator: Any) -> None:
+    def _resume(self, loop: asyncio.AbstractEventLoop, generator: Any) -> None:
         """Run the part after the ``yield``."""
         __tracebackhide__ = True
         self._end_launch()

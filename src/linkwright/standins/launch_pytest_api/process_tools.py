@@ -61,7 +61,7 @@ class _Wait:
             deadline = self._deadline()
             while not value:
                 try:
-                    await asyncio.wait_for(event.wait(), _left(deadline))
+                    await asyncio.wait_for(event.wait(), _remaining(deadline))
                 except asyncio.TimeoutError:
                     self._given_up()
                     break
@@ -76,7 +76,7 @@ class _Wait:
             value = self._value()
             deadline = self._deadline()
             while not value:
-                if not event.wait(_left(deadline)):
+                if not event.wait(_remaining(deadline)):
                     self._given_up()
                     break
                 event.clear()
@@ -105,7 +105,7 @@ class _Wait:
             self._context.unregister_event_handler(handler)
 
 
-def _left(deadline: float | None) -> float | None:
+def _remaining(deadline: float | None) -> float | None:
     """Return the seconds until a time on the monotonic clock, at least 0."""
     return None if deadline is None else max(deadline - time.monotonic(), 0.0)
 
@@ -132,7 +132,7 @@ def _for_output(stream: str) -> Callable[..., _Wait]:
         timeout: float | None = None,
     ) -> _Wait:
         """Wait until `validate_output` returns a true value for all output so far; return its last value."""
-        handler, read = _written(execute_process_action, stream)
+        handler, read = _output_reader(execute_process_action, stream)
         return _Wait(launch_context, handler, timeout, lambda: validate_output(read()))
 
     return wait
@@ -146,7 +146,7 @@ def _asserting_output(stream: str) -> Callable[..., _Wait]:
         timeout: float | None = None,
     ) -> _Wait:
         """Wait until `validate_output` no longer raises AssertionError for all output so far; at last, let it raise."""
-        handler, read = _written(execute_process_action, stream)
+        handler, read = _output_reader(execute_process_action, stream)
 
         def holds() -> bool:
             try:
@@ -182,8 +182,8 @@ def _for_exit(
     return _Wait(launch_context, handler, timeout)
 
 
-def _written(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
-    """Return the handler's argument for output to ``stdout`` or ``stderr``, and the function that reads this output."""
+def _output_reader(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
+    """Return a factory of handlers for output to ``stdout`` or ``stderr``, and a function that returns the output."""
 
     def handler(react: Reaction) -> Handler:
         return OnProcessIO(target_action=action, **{f"on_{stream}": react})  # type: ignore[arg-type]  # a keyword by its name

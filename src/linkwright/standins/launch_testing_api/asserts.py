@@ -123,8 +123,8 @@ def assertDefaultStream() -> str:
 
 def text_of(written: Sequence[Any], stream: str | None = None) -> str:
     """Return what a process wrote to a stream, or to both, as one text."""
-    kept = (each for each in written if stream is None or getattr(each, f"from_{stream}"))
-    return b"".join(each.text for each in kept).decode(errors="replace")
+    kept = (event for event in written if stream is None or getattr(event, f"from_{stream}"))
+    return b"".join(event.text for event in kept).decode(errors="replace")
 
 
 @contextmanager
@@ -139,7 +139,7 @@ def assertSequentialStdout(
         cmd_args: arguments of the process, see `resolveProcesses`.
     """
     (found,) = resolveProcesses(proc_output, process=process, cmd_args=cmd_args)
-    yield SequentialTextChecker([text_of([each]) for each in proc_output[found]])
+    yield SequentialTextChecker([text_of([event]) for event in proc_output[found]])
 
 
 class SequentialTextChecker:

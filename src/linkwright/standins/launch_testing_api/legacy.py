@@ -101,7 +101,7 @@ class LaunchTestService:
         def on_stdout(event: Any) -> Any:
             nonlocal written
             written = collate(written, output_filter(event.text) if output_filter else event.text)
-            missing[:] = [each for each in missing if not matches(written, each)]
+            missing[:] = [text for text in missing if not matches(written, text)]
             return None if missing else self._passed(test, side_effect)
 
         def on_exit(*_: Any) -> Any:

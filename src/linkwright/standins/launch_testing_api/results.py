@@ -118,7 +118,7 @@ def unittestResultsToXml(
         counts["failures"] += len(result.failures)
         counts["errors"] += len(result.errors)
     root = ET.Element("testsuites", {"name": name, **_texts(counts), "time": _seconds(seconds)})
-    root.extend(unittestResultToXml(str(run), each) for run, each in results.items())
+    root.extend(unittestResultToXml(str(run), outcome) for run, outcome in results.items())
     return ET.ElementTree(root)
 
 

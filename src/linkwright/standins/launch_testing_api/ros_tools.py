@@ -182,7 +182,7 @@ class DataRepublisher:
         self._count = 0
         self._republished: list[Any] = []
         self._publisher = node.create_publisher(msg_type, publish_topic, _DEPTH)
-        self._subscription = node.create_subscription(msg_type, listen_topic, self._take, _DEPTH)
+        self._subscription = node.create_subscription(msg_type, listen_topic, self._handle, _DEPTH)
 
     def shutdown(self) -> None:
         """Stop."""
@@ -201,7 +201,7 @@ class DataRepublisher:
         """Return the received messages that were republished."""
         return self._republished
 
-    def _take(self, message: Any) -> None:
+    def _handle(self, message: Any) -> None:
         self._count += 1
         made = self._transform(message)
         if made:

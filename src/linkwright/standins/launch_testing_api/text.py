@@ -47,7 +47,7 @@ def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
     if isinstance(expected_text, str) or (hasattr(expected_text, "search") and hasattr(expected_text, "match")):
         return find
     if isinstance(expected_text, Iterable):
-        return _in_order([build_text_match(each) for each in expected_text], strict=strict)
+        return _in_order([build_text_match(part) for part in expected_text], strict=strict)
     raise ValueError("Unknown format for expected text")
 
 

@@ -162,7 +162,7 @@ class Context:
         if self._ok:
             self._ended_by_signal = True
             self._ok = False
-            self._tell()
+            self._notify()
 
     def destroy(self) -> None:
         """Shut down, unless it is already shut down (rclpy)."""
@@ -180,7 +180,7 @@ class Context:
 
     def _end(self) -> None:
         self._ok = False
-        self._tell()
+        self._notify()
         with self._lock:
             graph, self._graph = self._graph, None
         if graph is not None:
@@ -191,7 +191,7 @@ class Context:
             self._logging = None
         _open.discard(self)
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         callbacks, self._callbacks = self._callbacks, []
         for held in callbacks:
             callback = held()

@@ -51,8 +51,8 @@ def name_as_rclpy() -> None:
     for module in _MODULES:
         described = table.find(module)
         assert described is not None
-        for name, said in described.names.items():
-            if said.origin.startswith("linkwright."):
-                found = getattr(import_module(said.origin), said.name)
+        for name, entry in described.names.items():
+            if entry.origin.startswith("linkwright."):
+                found = getattr(import_module(entry.origin), entry.name)
                 if isinstance(found, type) and issubclass(found, Exception):
                     found.__module__, found.__name__, found.__qualname__ = module, name, name

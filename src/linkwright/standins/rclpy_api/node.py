@@ -19,7 +19,7 @@ from linkwright.standins.rclpy_api.defaults import check_initialized, get_defaul
 def _overrides(
     node_name: str, namespace: str, remappings: Sequence[tuple[str, str]], command_lines: Sequence[RosArguments]
 ) -> dict[str, Any]:
-    """Return the parameter overrides of command lines for a node and its remapped name; the first takes precedence."""
+    """Return the parameter overrides of command lines for a node; the first command line takes precedence."""
     rules = Remappings(remappings)
     full_name = join(absolute_namespace(rules.namespace(namespace, node_name)), rules.node_name(node_name))
     overrides: dict[str, Any] = {}

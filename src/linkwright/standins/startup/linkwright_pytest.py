@@ -63,7 +63,10 @@ def pytest_pycollect_makeitem(collector: Any, name: str, obj: object) -> Any:
     manager = collector.config.pluginmanager
     if not _is_ours(sys.modules.get(_PLUGIN)):
         return None
-    if any(manager.has_plugin(each) or manager.is_blocked(each) for each in (_PLUGIN, f"{_PLUGIN}.plugin")):
+    if any(
+        manager.has_plugin(plugin_name) or manager.is_blocked(plugin_name)
+        for plugin_name in (_PLUGIN, f"{_PLUGIN}.plugin")
+    ):
         return None
     plugin = importlib.import_module(f"{_PLUGIN}.plugin")
 

@@ -171,7 +171,7 @@ def _run_next_sitecustomize() -> None:
     spec.loader.exec_module(module)
 
 
-def _tell_how_to_get(kind: type[BaseException], error: BaseException, traceback: object) -> None:
+def _report_with_hint(kind: type[BaseException], error: BaseException, traceback: object) -> None:
     """Print an uncaught error as Python does, with a hint if a module of ROS, or a name in it, is missing.
 
     Ctrl-C ends a node that waits for messages, or is still being imported, without a traceback. In the user's own code,
@@ -211,5 +211,5 @@ _stand_ins = StandIns()
 sys.meta_path.insert(0, SourceFolders(_stand_ins))
 sys.meta_path.append(_stand_ins)
 if __name__ == "sitecustomize":  # not if `linkwright.pytest_plugin` runs it after Python's start
-    sys.excepthook = _tell_how_to_get
+    sys.excepthook = _report_with_hint
     _run_next_sitecustomize()

@@ -128,13 +128,13 @@ def is_same(document: minidom.Document, tree: Document) -> bool:
 
 
 def _tree(owner: minidom.Document, root: Element, kept: DomElement | None) -> DomElement:
-    top, spaces = _made(owner, root, {}, kept)
+    top, spaces = _create(owner, root, {}, kept)
     pending = [(root, top, spaces)]
     while pending:
         original, made, spaces = pending.pop()
         for child in original.children:
             if isinstance(child, Element):
-                below, inner = _made(owner, child, spaces, None)
+                below, inner = _create(owner, child, spaces, None)
                 if child.children:
                     pending.append((child, below, inner))
                 made.appendChild(below)
@@ -143,7 +143,7 @@ def _tree(owner: minidom.Document, root: Element, kept: DomElement | None) -> Do
     return top
 
 
-def _made(
+def _create(
     owner: minidom.Document, element: Element, spaces: Mapping[str, str], kept: DomElement | None
 ) -> tuple[DomElement, Mapping[str, str]]:
     """Return the node of an element without its children, and the namespaces that its content declares."""

@@ -17,7 +17,7 @@ from linkwright.standins.xacro_api.tables import NameSpace, Table
 
 _ELEMENT, _TEXT, _COMMENT = minidom.Node.ELEMENT_NODE, minidom.Node.TEXT_NODE, minidom.Node.COMMENT_NODE
 _MARKER = minidom.Document().createTextNode("\n\n")
-"""The marker below the comments that were checked above a tag; the only one moves."""
+"""Marks where the comments above a tag have been checked; there is only one, which moves."""
 
 
 def first_child_element(elt: Any) -> Any:

@@ -241,21 +241,21 @@ def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None
             expanded = StackExpander(session, session.directives, session.call).document(tree)
     except LinkwrightError as error:
         session.return_to_mistake()
-        _tell(session.diagnostics)
+        _print_remarks(session.diagnostics)
         raise translated(error, call) from None
     finally:
         STATE.arguments = {}
     session.warn_of_unused_arguments()
     if descriptions is None or call is None:
-        _tell(session.diagnostics)
+        _print_remarks(session.diagnostics)
     files = tuple(Path(name) for name in session.dependencies if name != _TEXT)
     return Expansion(expanded, files, session.arguments, tuple(session.diagnostics))
 
 
-def _tell(diagnostics: Sequence[Diagnostic]) -> None:
+def _print_remarks(diagnostics: Sequence[Diagnostic]) -> None:
     quiet = STATE.verbosity <= 0
-    told = [found for found in diagnostics if not quiet or found.severity is Severity.ERROR or _is_said(found)]
-    print_diagnostics(told, sys.stderr)
+    reported = [found for found in diagnostics if not quiet or found.severity is Severity.ERROR or _is_said(found)]
+    print_diagnostics(reported, sys.stderr)
 
 
 def _is_said(diagnostic: Diagnostic) -> bool:

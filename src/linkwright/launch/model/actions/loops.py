@@ -175,5 +175,5 @@ def iteration(children: Sequence[LaunchDescriptionEntity], values: Mapping[str, 
 
     # Three functions, as in ROS, whose users count the entities of a loop. The children are copies, because an action
     # such as a node keeps its state.
-    around = [OpaqueFunction(function=each) for each in (begin, enter, leave)]
+    around = [OpaqueFunction(function=step) for step in (begin, enter, leave)]
     return [*around[:2], *deepcopy(list(children)), around[2]]

@@ -86,11 +86,11 @@ def parse_pairs(entity: Entity, parser: Parser, tag: str) -> dict[Any, Any] | No
     if inside is None:
         return None
     pairs = {
-        tuple(parser.parse_substitution(each.get_attr("name"))): parser.parse_substitution(each.get_attr("value"))
-        for each in inside
+        tuple(parser.parse_substitution(child.get_attr("name"))): parser.parse_substitution(child.get_attr("value"))
+        for child in inside
     }
-    for each in inside:
-        each.assert_entity_completely_parsed()
+    for child in inside:
+        child.assert_entity_completely_parsed()
     return pairs
 
 

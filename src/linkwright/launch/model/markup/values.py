@@ -75,7 +75,7 @@ def is_instance_of_valid_type(value: Any, can_be_str: bool = False) -> bool:
 
 
 def _scalar_type(value: Any) -> type | None:
-    return next((each for each in (bool, int, float, str) if isinstance(value, each)), None)
+    return next((kind for kind in (bool, int, float, str) if isinstance(value, kind)), None)
 
 
 def is_instance_of(value: Any, data_type: Any = None, can_be_str: bool = False) -> bool:
