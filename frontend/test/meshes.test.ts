@@ -87,9 +87,9 @@ describe("STL", () => {
   });
 
   it("that was cut off says how much it lacks", async () => {
-    expect(await error("stl", binaryStl(12, 40_000_000))).toBe("the STL says 40 000 000 triangles and holds 12");
-    expect(await error("stl", binaryStl(1, 3, "solid"))).toBe("the STL says 3 triangles and holds 1");
-    expect(await error("stl", new ArrayBuffer(12))).toContain("this is no STL");
+    expect(await error("stl", binaryStl(12, 40_000_000))).toBe("the STL file declares 40 000 000 triangles and has 12");
+    expect(await error("stl", binaryStl(1, 3, "solid"))).toBe("the STL file declares 3 triangles and has 1");
+    expect(await error("stl", new ArrayBuffer(12))).toContain("it is not an STL file");
     expect(await error("stl", new ArrayBuffer(84))).toBe("the STL file has no triangles");
     expect(await error("stl", "solid nothing\n")).toBe("the STL file has no triangles");
     expect(await error("stl", new ArrayBuffer(0))).toBe("the file is empty");
@@ -130,22 +130,22 @@ describe("vertices that are no numbers", () => {
 describe("other mesh files", () => {
   it("say in words what is wrong with them", async () => {
     expect(await error("obj", "v 0 0 0\n# nothing else\n")).toBe("the OBJ file has no faces");
-    expect(await error("obj", "<html>not here</html>")).toContain("this is no OBJ file");
-    expect(await error("glb", "PK\x03\x04, a zip")).toContain("this is no GLB");
-    expect(await error("glb", glb("{}", 4000))).toBe("the GLB says 4 000 bytes and holds 22");
-    expect(await error("glb", glb("{}", undefined, 1))).toBe("it is glTF 1, and 2.0 is read");
+    expect(await error("obj", "<html>not here</html>")).toContain("it is not an OBJ file");
+    expect(await error("glb", "PK\x03\x04, a zip")).toContain("it is not a GLB file");
+    expect(await error("glb", glb("{}", 4000))).toBe("the GLB file declares 4 000 bytes and has 22");
+    expect(await error("glb", glb("{}", undefined, 1))).toBe("it is glTF 1; only 2.0 is supported");
     expect(await error("glb", glb("{]"))).toBe("the glTF is not valid JSON");
     expect(await error("gltf", "{]")).toBe("the glTF is not valid JSON");
-    expect(await error("gltf", '{"asset": {"version": "1.0"}}')).toBe("it is glTF 1.0, and 2.0 is read");
+    expect(await error("gltf", '{"asset": {"version": "1.0"}}')).toBe("it is glTF 1.0; only 2.0 is supported");
     const draco = '{"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]}';
-    expect(await error("gltf", draco)).toBe("it needs the extension 'KHR_draco_mesh_compression', which is not read");
+    expect(await error("gltf", draco)).toBe("it needs the extension 'KHR_draco_mesh_compression', which is not supported");
     expect(await error("ply", "ply")).toContain("no reader for '.ply'");
   });
 
   it("never tell what JavaScript says", async () => {
     const warn = vi.spyOn(console, "warn").mockImplementation(() => undefined);
     expect(await error("glb", glb('{"asset": {"version": "2.0"}, "meshes": 3, "nodes": [{"mesh": 7}], "scenes": [{"nodes": [0]}]}'))).toContain(
-      "its reader failed",
+      "it cannot be read",
     );
     warn.mockRestore();
   });
@@ -161,8 +161,8 @@ describe("the library of meshes", () => {
   }
 
   it("says why a file cannot be had", async () => {
-    expect(await answering(() => Promise.resolve(new Response("no", { status: 404 })))).toBe("the server has no such file (404)");
-    expect(await answering(() => Promise.reject(new TypeError("Failed to fetch")))).toBe("the connection was lost while it was fetched");
+    expect(await answering(() => Promise.resolve(new Response("no", { status: 404 })))).toBe("the server does not have the file (404)");
+    expect(await answering(() => Promise.reject(new TypeError("Failed to fetch")))).toBe("the connection was lost during the download");
     const refused = new Response("a link leads out of the package\nmore", { status: 403, headers: { "Content-Type": "text/plain" } });
     expect(await answering(() => Promise.resolve(refused))).toBe("a link leads out of the package");
     const large = new Response("", { headers: { "Content-Length": "7000000000" } });

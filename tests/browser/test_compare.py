@@ -82,7 +82,7 @@ def test_both_robots_are_drawn_and_what_differs_has_a_colour(start, open_page, f
     becomes(lambda: looks(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
     becomes(lambda: looks(page, 1), {"arm": (GREY, 0.4), "camera": (RED, 0.63)})
     assert page.locator(".comparison-legend li").all_inner_texts() == ["added", "changed", "removed", "old"]
-    page.get_by_label("Colour what differs").uncheck()
+    page.get_by_label("Colour the differences").uncheck()
     becomes(lambda: set(looks(page, 0).values()), {(green, 1)})
     becomes(lambda: set(looks(page, 1).values()), {(GREY, 0.4)})
 
@@ -129,7 +129,7 @@ def test_each_robot_can_be_shown_alone_and_the_old_one_as_opaque_as_wanted(start
     old_only = pixels(page)
     assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in old_only) == 0
     assert old_only != both
-    page.get_by_label("How opaque the old robot is").fill("1")
+    page.get_by_label("Opacity of the old robot").fill("1")
     becomes(lambda: {alpha for _, alpha in looks(page, 1).values()}, {1})
     opaque = pixels(page)
     assert sum(sum(each) for each in opaque) < sum(sum(each) for each in old_only), (

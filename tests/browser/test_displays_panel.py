@@ -133,7 +133,7 @@ def test_the_filter_finds_properties(grouped):
     page.wait_for_function("() => document.querySelectorAll('.displays-panel .row').length === 2")
     assert page.locator(".displays-panel .row-title").all_inner_texts() == ["Grid", "Cell Size"]
     page.get_by_label("Filter displays and properties").fill("nothing like that")
-    page.get_by_text("Nothing has that in its name.").wait_for()
+    page.get_by_text("No display or property has this in its name.").wait_for()
 
 
 def test_a_menu_of_each_display(grouped):
@@ -144,7 +144,7 @@ def test_a_menu_of_each_display(grouped):
     page.keyboard.press("Escape")
     assert page.evaluate("document.activeElement.dataset.key") == "display-3"
     row(page, "display-3").click(button="right")
-    page.get_by_role("menuitem", name="Put into a new group").click()
+    page.get_by_role("menuitem", name="Move to a new group").click()
     until(page, "lw.displays.length === 5")
     assert names(page) == ["Grid", "Marks", "Group", "Axes", "Radar"]
 

@@ -74,7 +74,7 @@ def test_a_number_is_shown_at_once_written_on_request_and_taken_back(start, open
     until(page, "Math.abs(lw.frames.mast.position[2] - 0.8) < 1e-6")
     until(page, f"Math.abs({MAST}.min[2] - 0.8) < 1e-6")
 
-    page.get_by_role("button", name="Take the last written edit back").click()
+    page.get_by_role("button", name="Undo the last written edit").click()
     until(page, "Math.abs(lw.frames.mast.position[2] - 0.5) < 1e-6")
     assert file.read_text() == ROBOT
     becomes(lambda: number(page, "xyz2").input_value(), "0.5")
@@ -122,7 +122,7 @@ def test_what_a_macro_makes_twice_is_refused_and_changed_together_on_request(sta
     page.get_by_text("would also change joint 'right_joint'", exact=False).wait_for()
     assert page.get_by_role("button", name="Write", exact=True).is_disabled()
     page.get_by_role("button", name="Change all").click()
-    page.get_by_text("Changes with it: joint 'right_joint'").wait_for()
+    page.get_by_text("Also changes: joint 'right_joint'").wait_for()
     page.get_by_role("button", name="Write", exact=True).click()
     until(page, "Math.abs(lw.frames.right.position[2] - 0.1) < 1e-6")
     assert file.read_text() == ROBOT.replace("${y} 0", "${y} 0.1")
@@ -213,12 +213,12 @@ def test_an_axis_is_turned_and_has_no_place_to_be_moved_to(start, open_page, fil
     page = open_page(start("view", str(file)))
     edited(page, "mast")
     tools = page.locator(".editing-tools")
-    frames, lengths = tools.get_by_label("Whose axes the handles have"), tools.get_by_label("Grid, m")
+    frames, lengths = tools.get_by_label("The axes that the handles follow"), tools.get_by_label("Grid, m")
     frames.wait_for()
     page.locator(".editing-part", has_text="Axis").click()
     frames.wait_for(state="hidden")
     lengths.wait_for(state="hidden")
-    assert tools.get_by_role("button", name="Handles that move").count() == 0
+    assert tools.get_by_role("button", name="Handles to move it").count() == 0
     page.locator(".editing-part", has_text="Visual").click()
     frames.wait_for()
 

@@ -235,7 +235,7 @@ def test_files_from_outside_are_named_when_they_go_into_an_export(start, open_pa
     )
     page = open_page(start("view", str(share / "robot.xacro")))
     assert saved(page, "Export glb…", tmp_path).name == "robot.glb"
-    dialog = page.get_by_role("dialog", name="Files outside the packages are in it")
+    dialog = page.get_by_role("dialog", name="The export contains files from outside the packages")
     dialog.wait_for()
     becomes(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
 

@@ -145,7 +145,7 @@ def test_without_webgl_the_page_says_so_and_its_panels_work(start, launch, tmp_p
     browser.goto(program.url)
     browser.until("document.querySelector('.no-webgl')?.checkVisibility()")
     said = browser.evaluate("document.querySelector('.no-webgl').innerText")
-    assert said.startswith("This browser gives no WebGL 2, which the 3D view needs.\n")
+    assert said.startswith("The 3D view needs WebGL 2, which this browser does not provide.\n")
     assert "The other panels work without it." in said
     box, scene = (
         browser.evaluate(f"document.querySelector('{each}').getBoundingClientRect()")

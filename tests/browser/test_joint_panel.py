@@ -80,7 +80,7 @@ def test_poses_are_saved_recalled_and_outlive_a_reload(page):
 
 
 def test_a_sweep_moves_joints_until_it_is_stopped(page):
-    page.get_by_label("Which joints move").select_option("all")
+    page.get_by_label("Order of the joints").select_option("all")
     page.get_by_role("group", name="Sweep").get_by_label("Speed").select_option("4")
     page.get_by_role("button", name="Start the sweep").click()
     seen = set()

@@ -66,7 +66,7 @@ def test_collada_is_read_as_loosely_as_rviz_reads_it(start, open_page, robot, tm
 STL_OF_NAN = b"\0" * 80 + struct.pack("<I12fH", 1, *[0.0] * 3, math.nan, *[0.0] * 8, 0)
 
 BROKEN = {
-    "short.stl": (b"\0" * 80 + struct.pack("<I", 40_000_000) + b"\0" * 600, "says 40 000 000 triangles and holds 12"),
+    "short.stl": (b"\0" * 80 + struct.pack("<I", 40_000_000) + b"\0" * 600, "declares 40 000 000 triangles and has 12"),
     "text.stl": (b"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n", "broken at line 4: 'zero'"),
     "nothing.stl": (b"solid nothing\n", "has no triangles"),
     "nan.stl": (STL_OF_NAN, "1 vertices are not finite numbers"),
@@ -74,7 +74,7 @@ BROKEN = {
     "cut.dae": (b"<?xml version='1.0'?>\n<COLLADA>\n<library_geometries>", "not valid XML, line 3"),
     "other.dae": (b"<robot name='r'/>", "its root is <robot>"),
     "points.obj": (b"v 0 0 0\nv 1 0 0\n", "has no faces"),
-    "torn.glb": (b"glTF" + struct.pack("<II", 2, 1_000) + b"\0" * 12, "says 1 000 bytes and holds 24"),
+    "torn.glb": (b"glTF" + struct.pack("<II", 2, 1_000) + b"\0" * 12, "declares 1 000 bytes and has 24"),
     "zip.glb": (b"PK\x03\x04 and so on", "does not begin with 'glTF'"),
 }
 """Files with what is to be said of them."""

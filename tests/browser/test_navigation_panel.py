@@ -39,7 +39,7 @@ def test_a_file_with_the_panel_opens_it_and_its_buttons_work(live, open_page, tm
     until(page, f"{VALUES}[1] === 'active'")
     viewer.run(lambda: (nav2.log.error("Goal failed: the goal (1.00, 2.00) is in an obstacle"), nav2.goal(6)))
     until(page, f"{VALUES}[2] === 'aborted'")
-    notice = page.get_by_role("alert").filter(has_text="The goal was given up")
+    notice = page.get_by_role("alert").filter(has_text="The goal was aborted")
     notice.filter(has_text="is in an obstacle").wait_for()
     page.screenshot(path=tmp_path / "failed.png")
     assert violations(page, "[data-notice=goal]") == []

@@ -99,7 +99,7 @@ def test_a_point_is_selected_and_its_fields_are_shown(live, open_page):
     page.mouse.click(*middle)
     until(page, "lw.selection.length === 1")
     assert state(page, "selection")[0]["key"] == ":1"
-    tree = page.get_by_role("tree", name="What is selected")
+    tree = page.get_by_role("tree", name="Selection")
     tree.get_by_text("intensity").wait_for()
     text = tree.inner_text()
     assert "Point 1" in text

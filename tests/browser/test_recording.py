@@ -128,7 +128,7 @@ def test_the_last_minutes_are_saved_and_a_part_that_is_marked(page: Page):
     page.get_by_role("dialog").get_by_role("button", name="OK").click()
     page.get_by_role("button", name="Pause (Space)").click()
     until(page, "!lw.timeline.live")
-    box = page.get_by_role("slider", name="Time in the last minutes").bounding_box()
+    box = page.get_by_role("slider", name="Time within the last minutes").bounding_box()
     assert box is not None
     middle = box["y"] + box["height"] / 2
     page.keyboard.down("Shift")
@@ -154,7 +154,7 @@ def test_a_part_is_marked_by_keys_and_unmarked(page: Page):
     page.locator("body").focus()
     page.keyboard.press("]")
     until(page, "lw.recording.mark?.[0] === 0")
-    choose(page, "Mark nothing")
+    choose(page, "Clear the mark")
     becomes(lambda: state(page, "recording")["mark"], None)
 
 

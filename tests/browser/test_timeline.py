@@ -109,13 +109,13 @@ def test_steps_go_from_message_to_message(page: Page):
     seek(page, 9.95)
     shows(page, 9)
     # At each time there are three messages; a step shows all of them.
-    page.get_by_role("button", name="To the next message (→)").click()
+    page.get_by_role("button", name="Next message (→)").click()
     until(page, "Math.abs(lw.timeline.position - 10) < 1e-5")
     shows(page, 10)
     page.keyboard.press("ArrowLeft")
     until(page, "Math.abs(lw.timeline.position - 9.9) < 1e-5")
     shows(page, 9)
-    page.get_by_role("button", name="To the message before (←)").click()
+    page.get_by_role("button", name="Previous message (←)").click()
     until(page, "Math.abs(lw.timeline.position - 9.8) < 1e-5")
 
 
@@ -143,11 +143,11 @@ def test_steps_go_by_the_topic_that_is_chosen(start, open_page, tmp_path: Path):
     until(page, "!lw.timeline.playing")
     page.get_by_role("slider", name="Time in the recording").press("Home")
     until(page, "lw.timeline.position === 0")
-    page.get_by_role("button", name="To the next message (→)").click()
+    page.get_by_role("button", name="Next message (→)").click()
     until(page, "Math.abs(lw.timeline.position - 4) < 1e-5")
-    page.get_by_role("button", name="To the next message (→)").click()
+    page.get_by_role("button", name="Next message (→)").click()
     until(page, "Math.abs(lw.timeline.position - 8) < 1e-5")
-    page.get_by_role("button", name="To the message before (←)").click()
+    page.get_by_role("button", name="Previous message (←)").click()
     until(page, "Math.abs(lw.timeline.position - 4) < 1e-5")
 
 
@@ -174,7 +174,7 @@ def test_at_the_end_it_stays_or_begins_anew(page: Page):
     page.get_by_role("button", name="Play (Space)").click()
     until(page, f"!lw.timeline.playing && lw.timeline.position === {LENGTH}")
     shows(page, LENGTH)
-    page.get_by_role("button", name="Begin anew at the end").click()
+    page.get_by_role("button", name="Repeat from the start").click()
     seek(page, LENGTH - 3)
     page.get_by_role("button", name="Play (Space)").click()
     until(page, "lw.timeline.playing && lw.timeline.position < 20")
@@ -208,9 +208,9 @@ def test_the_last_minutes_are_gone_back_to_and_left_for_the_present(start, open_
     until(page, "!lw.timeline.live && !lw.timeline.playing")
     stood = state(page, "timeline")
     until(page, f"lw.timeline.length > {stood['length'] + 1}")
-    page.get_by_role("slider", name="Time in the last minutes").click(position={"x": 3, "y": 5})
+    page.get_by_role("slider", name="Time within the last minutes").click(position={"x": 3, "y": 5})
     until(page, "lw.timeline.position < 1")
-    live = page.get_by_role("button", name="Live: show the present again")
+    live = page.get_by_role("button", name="Live: follow the newest messages")
     for width in (360, 390):  # phones, on which it stays in its line
         page.set_viewport_size({"width": width, "height": 844})
         box = live.bounding_box()

@@ -110,7 +110,7 @@ def test_a_browser_without_the_token_is_told_where_it_is_and_may_be_given_it(vie
     field = page.get_by_label("Address or token")
     field.fill("hello")
     field.press("Enter")
-    becomes(door.locator(".problem").inner_text, "There is no token in this text.")
+    becomes(door.locator(".problem").inner_text, "This text contains no token.")
     field.fill(f"{bare(viewer)}?token={'x' * 32}")
     field.press("Enter")
     door.get_by_text("does not know this token", exact=False).wait_for()
@@ -129,5 +129,5 @@ def test_the_link_to_the_page_is_in_the_share_menu(viewer, context):
     is_let_in(page)
     page.get_by_role("button", name="Share", exact=True).click()
     page.get_by_role("menuitem", name="Copy link").click()
-    page.get_by_text("The link is on the clipboard").wait_for()
+    page.get_by_text("Link copied").wait_for()
     assert page.evaluate("() => navigator.clipboard.readText()") == viewer.url

@@ -169,7 +169,7 @@ def test_the_selection_panel_tells_where_links_are(scene):
     scene.click(*TIP)
     scene.viewer.place("tip", *TIP, 0.5)
     page.get_by_role("tab", name="Selection", exact=True).click()
-    tree = page.get_by_role("tree", name="What is selected")
+    tree = page.get_by_role("tree", name="Selection")
     tree.get_by_text("Link tip").wait_for()
     position = tree.get_by_role("treeitem").filter(has_text="Position")
     position.get_by_text("3; 1; 0.5").wait_for()

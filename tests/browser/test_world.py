@@ -101,8 +101,8 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     page.get_by_role("button", name="Pause the simulation").click()
     wait_until(lambda: requests("/pause_physics"))
     viewer.publish("/simulation_state", STATE(state=2))
-    page.get_by_role("button", name="Let the simulation go on").wait_for()
-    assert page.get_by_role("button", name="Make one step").is_enabled()
+    page.get_by_role("button", name="Resume the simulation").wait_for()
+    assert page.get_by_role("button", name="Advance one step").is_enabled()
     viewer.settle(page)
     record = page.get_by_role("button", name="Record", exact=True).bounding_box()
     assert record["x"] + record["width"] <= page.viewport_size["width"]

@@ -18,10 +18,10 @@ export const language: Language = preferred();
 /** The page's words in the user's language. */
 export const strings: Strings = language === "zh" ? zh : en;
 
-/** The page is about to be shown anew in another language. */
+/** The page is about to be shown in another language. */
 export const languageChosen = new Signal();
 
-/** Remembers the choice and shows the page anew. */
+/** Remembers the choice and reloads the page. */
 export function chooseLanguage(next: Language): void {
   browserStorage().setItem(LANGUAGE_KEY, next);
   languageChosen.emit();

@@ -1,17 +1,17 @@
 /** What the read-only rows of frames, links and joints mean, by RViz's names of the rows. */
 export const details = {
-  Parent: "The frame that it is attached to.",
-  Position: "Where it is in the Fixed Frame, in metres.",
-  Orientation: "How it is turned in the Fixed Frame: x, y, z, w of a quaternion.",
-  "Relative Position": "Where it is as seen from its parent, in metres.",
-  "Relative Orientation": "How it is turned as seen from its parent: x, y, z, w of a quaternion.",
-  Type: "How the joint moves.",
-  "Lower Limit": "Least position of the joint, in radians or metres.",
-  "Upper Limit": "Greatest position of the joint, in radians or metres.",
-  "Joint Axis": "What the joint turns about or moves along, in its own frame.",
-  Effort: "The last effort of the joint, in newton metres.",
-  "Max Effort": "Greatest effort that the description allows the joint, in newton metres.",
-  Details: "What is known of it.",
+  Parent: "The parent frame.",
+  Position: "The position in the Fixed Frame, in metres.",
+  Orientation: "The orientation in the Fixed Frame, as a quaternion x, y, z, w.",
+  "Relative Position": "The position in the parent frame, in metres.",
+  "Relative Orientation": "The orientation in the parent frame, as a quaternion x, y, z, w.",
+  Type: "The type of the joint.",
+  "Lower Limit": "The lower limit of the joint, in radians or metres.",
+  "Upper Limit": "The upper limit of the joint, in radians or metres.",
+  "Joint Axis": "The axis of motion, in the frame of the joint.",
+  Effort: "The last effort of the joint, in newton metres or newtons.",
+  "Max Effort": "The effort limit in the description, in newton metres or newtons.",
+  Details: "The details of the frame.",
 };
 
 export type DetailName = keyof typeof details;

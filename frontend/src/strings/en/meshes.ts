@@ -1,14 +1,14 @@
-/** What is wrong with mesh files, as parts of a sentence, and how far their loading is. */
+/** The faults of mesh files, as parts of a sentence, and the progress of loading. */
 export const meshes = {
   empty: "the file is empty",
-  gone: "the server has no such file (404)",
-  lost: "the connection was lost while it was fetched",
+  gone: "the server does not have the file (404)",
+  lost: "the connection was lost during the download",
   answered: (status: string): string => `the server answered ${status}`,
   tooLarge: (bytes: string, most: string): string => `the file has ${bytes}, and meshes of at most ${most} are drawn`,
   noReader: (format: string): string => `no reader for '.${format}' meshes; STL, DAE, OBJ, GLB and GLTF are read`,
-  unreadable: (format: string): string => `its reader failed: this is no valid ${format} file, or one with parts that are not known`,
+  unreadable: (format: string): string => `it cannot be read: it is not a valid ${format} file, or has unknown parts`,
   noFaces: (format: string): string => `the ${format} file has no faces`,
-  noVertices: "no line of it says a vertex ('v x y z'): this is no OBJ file",
+  noVertices: "it has no vertex ('v x y z'): it is not an OBJ file",
   missing: (files: string): string => `could not load ${files}`,
   missingTextures: (files: string): string => `could not load texture ${files}`,
   missingMaterials: (file: string): string => `could not load material file '${file}'`,
@@ -16,8 +16,8 @@ export const meshes = {
     `${vertices} vertices are not finite numbers; ${triangles} triangles with them are left out`,
   onlyNotNumbers: (vertices: string): string => `none of its triangles can be drawn: ${vertices} vertices are not finite numbers`,
   stl: {
-    short: (bytes: string): string => `this is no STL: it does not begin with 'solid', and a binary one has 84 bytes or more, this has ${bytes}`,
-    fewer: (said: string, held: string): string => `the STL says ${said} triangles and holds ${held}`,
+    short: (bytes: string): string => `it is not an STL file: it does not begin with 'solid', and has ${bytes} where a binary STL has at least 84 bytes`,
+    fewer: (said: string, held: string): string => `the STL file declares ${said} triangles and has ${held}`,
     none: "the STL file has no triangles",
     line: (line: string, what: string): string => `the ASCII STL is broken at line ${line}: ${what}`,
     word: (found: string, wanted: string): string => `'${found}' instead of ${wanted}`,
@@ -30,11 +30,11 @@ export const meshes = {
     root: (tag: string): string => `the file is XML but not COLLADA: its root is <${tag}>`,
   },
   gltf: {
-    magic: "this is no GLB: it does not begin with 'glTF'",
-    length: (said: string, held: string): string => `the GLB says ${said} bytes and holds ${held}`,
+    magic: "it is not a GLB file: it does not begin with 'glTF'",
+    length: (said: string, held: string): string => `the GLB file declares ${said} bytes and has ${held}`,
     notJson: "the glTF is not valid JSON",
-    version: (version: string): string => `it is glTF ${version}, and 2.0 is read`,
-    extension: (names: string): string => `it needs the extension ${names}, which is not read`,
+    version: (version: string): string => `it is glTF ${version}; only 2.0 is supported`,
+    extension: (names: string): string => `it needs the extension ${names}, which is not supported`,
   },
   progress: {
     title: "Meshes are loading",

@@ -6,7 +6,7 @@ interface ReducedImage {
   quality: number;
 }
 
-/** Export, pictures, videos; and what a slow line leaves out. */
+/** Export, screenshots, videos; and the data that a slow line leaves out. */
 export const sharing = {
   slow: {
     line: "The connection is slow",
@@ -14,19 +14,19 @@ export const sharing = {
     program: "The computer that runs Linkwright is busy",
   },
   slowHints: {
-    line: "The robot's movements go first, the rest comes in less detail. A cable or fewer displays help.",
-    page: "Fewer or simpler displays, a smaller window or a graphics card help.",
+    line: "Robot motion has priority; other data has less detail. A cable or fewer displays help.",
+    page: "Fewer or simpler displays, a smaller window, or a graphics card help.",
     program: "The connection is not the cause. Fewer programs, sensors or displays help.",
   },
-  plainLight: "Where the light is Automatic, it is a soft one at the camera: a studio would be slower.",
+  plainLight: "With the light set to Automatic, a soft light at the camera replaces the slower studio light.",
   software: (name: string): string => `The browser draws without a graphics card (${name}).`,
   points: (step: number): string => `1 in ${step} points`,
   image: ({ columns, rows, width, height, quality }: ReducedImage): string =>
     `WebP ${columns} × ${rows} of ${width} × ${height}, quality ${quality}`,
   share: "Share",
   copyLink: "Copy link",
-  copyLinkHint: "The address with the token: who opens it sees the robot and moves it",
-  linkCopied: "The link is on the clipboard",
+  copyLinkHint: "The address with its token: anyone who opens it can see and move the robot",
+  linkCopied: "Link copied",
   linkHere: "Copy this link",
   screenshot: "Screenshot",
   screenshotScaled: (scale: number): string => `Screenshot, ${scale} times as large`,
@@ -36,8 +36,8 @@ export const sharing = {
   exportHtml: "Export HTML…",
   exportGlb: "Export glb…",
   exportFailed: "The robot could not be exported",
-  exportOutside: "Files outside the packages are in it",
-  exportOutsideHint: "The exported file has in it what these files say. Look whether everybody may see that before you give it away.",
+  exportOutside: "The export contains files from outside the packages",
+  exportOutsideHint: "The exported file contains the contents of these files. Check that you may publish them before you share it.",
   exported: {
     made: (program: string): string => `Made with ${program}`,
     joints: "Joints",
@@ -46,7 +46,7 @@ export const sharing = {
     visual: "Visual",
     collision: "Collision",
     start: "Reset",
-    startHint: "Joints and view as they were in the file",
+    startHint: "Reset the joints and the view to those in the file",
     sides: { start: "Start", front: "Front", left: "Left", top: "Top", iso: "Corner" },
     sidebar: "Panel",
   },

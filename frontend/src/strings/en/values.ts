@@ -1,2 +1,2 @@
-/** What values of properties are called that a file has in RViz's words. */
+/** The shown names of property values, by RViz's words in the file. */
 export const values: Readonly<Record<string, string>> = {};
