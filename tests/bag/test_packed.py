@@ -72,7 +72,7 @@ def test_what_is_wrong_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str
     cut = tmp_path / "cut.db3.zstd"
     cut.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     assert main(["bag", "info", str(cut)]) == 1
-    assert "what it holds is damaged or cut off" in capsys.readouterr().err
+    assert "its content is damaged or cut off" in capsys.readouterr().err
 
 
 def test_files_that_the_metadata_name_and_that_are_missing_are_named(tmp_path: Path) -> None:

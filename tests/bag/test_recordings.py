@@ -413,7 +413,7 @@ def test_overrides() -> None:
         ({"/a": {"reliability": "best_efort"}}, "best_effort"),
         ({"/a": {"reliabilty": "reliable"}}, "reliability"),
         ({"/a": {"depth": 0}}, "'depth'"),
-        ({"/a": {"deadline": 5}}, "no duration"),
+        ({"/a": {"deadline": 5}}, "not a duration"),
     ],
 )
 def test_wrong_overrides_are_told(document: object, said: str) -> None:

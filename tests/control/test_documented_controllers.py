@@ -55,7 +55,7 @@ async def test_the_example_swings_a_joint(stand, page):
     stand.say("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
     await stand.step(controller, count=50)
     assert stand.commands["elbow/position"].value == pytest.approx(0.9)
-    assert "'speed' is no parameter of this controller" in [str(each.text) for each in stand.log]
+    assert "'speed' is not a parameter of this controller" in [str(each.text) for each in stand.log]
 
 
 @pytest.fixture

@@ -1,8 +1,8 @@
-"""MCAP files that hold more than ROS 2, as Foxglove and programs of one's own write them.
+"""MCAP files that hold more than ROS 2, as Foxglove and users' own programs write them.
 
-The library refuses a file as a whole whose profile is not ``ros2``, or which has a schema in a language that is none of
-ROS 2's (JSON, Protobuf, ROS 1 ...). It is therefore shown such records otherwise, in as many bytes: the profile's name,
-and schemas that say nothing. Topics of other encodings are left out by `BagReader`, which says so.
+The library refuses the whole file if its profile is not ``ros2``, or if a schema is in a language other than those of
+ROS 2 (JSON, Protobuf, ROS 1 ...). The library therefore reads substitutes of equal length: the profile ``ros2``, and
+empty schemas. `BagReader` leaves out topics of other encodings, and reports them.
 """
 
 from __future__ import annotations

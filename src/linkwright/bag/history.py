@@ -1,9 +1,8 @@
 """The messages of the last minutes in memory, within a number of bytes, as a recording that can be played.
 
-Three things make minutes of it. What stands still is kept sparsely: of messages that repeat but for their stamps the
-first, and a second one that is always the newest. Of a simulated clock, the messages beside those of other topics are
-kept. Of large messages, pictures and clouds, the older ones are thinned when the room is full: the further back, the
-further apart.
+Three measures make room for minutes. A state that does not change is stored sparsely: of messages that differ only in
+their stamps, the first and the newest are kept. Of a simulated clock, only the messages beside those of other topics
+are kept. Of large messages (images, clouds), older ones are thinned when the memory is full: the older, the sparser.
 """
 
 from __future__ import annotations
@@ -29,13 +28,13 @@ _UNUSED = 1024
 """Places at the beginning of a list that are given back together."""
 
 _STILL_NS = 10_000_000_000
-"""After this time what stands still is kept anew: a state is found without looking further back."""
+"""An unchanged state is stored again after this time, so that a search need not look further back."""
 
 _LARGE = 6000
-"""Mean bytes of a topic's messages, packed, from which on it is thinned before anything is dropped."""
+"""Mean bytes of a topic's packed messages above which it is thinned before any message is dropped."""
 
 _LONGEST_NS = 600_000_000_000
-"""What is thinned goes back no further."""
+"""The maximum age of thinned messages."""
 
 _FREED = 20
 """The part of all room that thinning frees at once is one in so many."""
@@ -77,11 +76,11 @@ class _Track:
         self.size += _size(data)
 
     def repeat(self, stamp_ns: int, number: int, data: bytes, content: Content) -> int | None:
-        """Keep a message in the place of an equal one, if there is such; returns the bytes that it takes more, or None.
+        """Keep a message in place of an equal one, if there is one; return the additional bytes, or None.
 
-        The first message of a run stays, and so does the time of the second, which is always the newest: whoever asks
-        for a time in between gets the state of then, with a stamp that is not too old. Of a clock the second has the
-        newest time, too: between the two it ran evenly, see `clock_at`.
+        The first message of a run stays, and so does the time of the second, which is always the newest: a reader
+        between the two gets the state of that time, with a stamp that is not too old. For a clock, the second message
+        has the newest time, too: the clock ran evenly between the two, see `clock_at`.
         """
         run = self._runs.get(content.what)
         if run is None or not run.content.is_repeated_by(content) or stamp_ns - run.since_ns >= _STILL_NS:
@@ -157,7 +156,7 @@ class _Track:
         return [each for each in self.between(start_ns, end_ns) if each[1] in self._lasting]
 
     def still_at(self, at_ns: int) -> list[_Kept]:
-        """What came again and again up to a time: of transforms all, of other topics the last message alone."""
+        """Return the repeated messages up to a time: all of transforms, only the last one of other topics."""
         lasting = self.lasting(at_ns - _STILL_NS, at_ns)
         if self.name == TRANSFORMS:
             return lasting
@@ -261,7 +260,7 @@ class History:
         self._shrinker.close()
 
     def _as_time_passes(self, content: Content, told_ns: int) -> Content:
-        """The content of a clock: it repeats itself while nothing else comes and time does not begin anew."""
+        """Return the content of a clock, which repeats while no other message arrives and time is not reset."""
         if told_ns < self._told_ns:
             self._changes += 1
         self._told_ns = told_ns
@@ -348,11 +347,11 @@ class History:
             return max((each[0][0] for each in last if each), default=None)
 
     def part(self, start_ns: int, end_ns: int) -> list[Recorded]:
-        """The messages from one time to another, both included, in the order of their times.
+        """Return the messages from one time to another, both included, in the order of their times.
 
-        Before it stands what is needed to show its beginning, see `state_at`, as if that had come then, and after it
-        what still stands still at its end. Messages are as they are kept: many that are packed would be too large
-        together, see `whole`.
+        The messages needed to show the state at the beginning come first (see `state_at`), stamped with that time. The
+        states that are still unchanged at the end follow. Messages stay packed, because many unpacked ones would be too
+        large together, see `whole`.
         """
         with self.lock:
             before = self.state_at(list(self._tracks), start_ns - 1)

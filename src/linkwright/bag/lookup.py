@@ -1,8 +1,8 @@
-"""Finding single messages of an MCAP file by its indexes, without reading what lies between.
+"""Single messages of an MCAP file, found by its indexes without reading the data in between.
 
-The index of chunks at the end of the file tells which chunks have messages of a channel, and where the index of each of
-these is; that gives times and places within the chunk (the MCAP specification). So one chunk is unpacked for a message,
-however long the file is.
+The index of chunks at the end of the file lists the chunks that have messages of a channel, and where the index of each
+chunk is. That index gives the times and offsets within the chunk (the MCAP specification). So one chunk is unpacked for
+a message, however long the file is.
 """
 
 from __future__ import annotations
@@ -73,11 +73,11 @@ class McapLookup:
         return [(stamp, self._message(chunk, offset)) for stamp, chunk, offset in found]
 
     def counts(self, channel: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
-        """The numbers of messages of a channel by parts of the time: beginning and end, nanoseconds, and the number.
+        """Yield the message counts of a channel by intervals: start and end in nanoseconds, and the count.
 
         Args:
             channel: its number.
-            exact: tell of each message by itself, and not of each chunk.
+            exact: yield each message by itself, instead of each chunk.
         """
         for chunk in self._of(channel).chunks:
             if exact:

@@ -16,7 +16,7 @@ from linkwright.bag.names import METADATA, SUFFIXES
 from linkwright.scratch_folders import ScratchFolder
 
 VERSION: Literal[8] = 8
-"""The version of the metadata; Humble reads 8 and below but for unknown fields, Jazzy writes 9."""
+"""The version of the metadata; Humble reads 8 and below, except unknown fields; Jazzy writes 9."""
 
 INFORMATION = "rosbag2_bagfile_information"
 """The key of ``metadata.yaml`` below which everything is."""
@@ -52,7 +52,7 @@ class Part:
 
     @property
     def storage(self) -> Any:
-        """What writes the file; None once it is closed."""
+        """The writer of the file; None once it is closed."""
         return self._writer.storage
 
     @property
@@ -77,7 +77,7 @@ class Part:
         self.start_ns = stamp_ns if self.start_ns is None else min(self.start_ns, stamp_ns)
 
     def flush(self) -> None:
-        """Give what was written to the operating system."""
+        """Hand all written messages to the operating system."""
         storage = self.storage
         if hasattr(storage, "close_chunk"):
             if storage.chunk.msgs:
@@ -118,7 +118,7 @@ def write_information(folder: Path, information: _Metadata) -> None:
 
 
 def _joined(parts: Sequence[_Metadata]) -> _Metadata:
-    """What the metadata say of files together."""
+    """Return the joined metadata of several files."""
     files = [each for part in parts for each in part["files"]]
     spans = [
         (file["starting_time"]["nanoseconds_since_epoch"], file["duration"]["nanoseconds"])

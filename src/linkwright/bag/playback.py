@@ -1,7 +1,7 @@
 """Playing a recording from any of its times: play, pause, seek, step, speed, loop.
 
-The same for a recording in a file and for what came in the last minutes: messages go out as bytes, with the time at
-which they were received, and whoever listens need not know that they are not new.
+A recording in a file and the history of the last minutes are played the same way: messages are published as bytes, with
+the time at which they were received, and subscribers need not know that they are not live.
 """
 
 from __future__ import annotations
@@ -60,22 +60,22 @@ class Output(Protocol):
 
 
 class Playback:
-    """Plays a recording.
+    """A player of a recording.
 
     Args:
-        node: whose dispatcher it runs on.
-        recording: what is played.
-        output: where it goes.
-        failed: called with an error when the recording cannot be read on; it is paused then.
+        node: the node whose dispatcher runs it.
+        recording: the recording to play.
+        output: the output of the messages.
+        failed: called with an error when the recording cannot be read further; playback is then paused.
 
     Attributes:
         position_ns: the time that is shown; all messages up to it were published. Nanoseconds since the epoch.
-        playing: whether time goes on.
+        playing: whether time advances.
         speed: seconds of the recording in a real one.
-        loop: whether it begins anew at the end.
-        seeks: how often another time was gone to, whether or not it could be read.
-        changed: called when one of these has changed but by the passing of time.
-        begin_anew: has whoever listens forget what it knows, because another time is shown.
+        loop: whether playback restarts at the end.
+        seeks: the number of seeks, whether or not the recording could be read there.
+        changed: called when one of these changes other than by the passing of time.
+        begin_anew: makes subscribers forget their state, because another time is shown.
     """
 
     def __init__(
@@ -137,10 +137,10 @@ class Playback:
         self._tell()
 
     def seek(self, stamp_ns: int) -> None:
-        """Jump to another time: once the loop is free, and only to the newest of several.
+        """Jump to another time once the loop is free; of several pending seeks, only the newest counts.
 
-        Time is told at once, and clocks that go back have their listeners forget what they know; so what is to be known
-        then is published a turn of the loop later.
+        The new time is published at once, and subscribers forget their state when the clock goes back. The messages of
+        that state therefore follow one turn of the loop later.
         """
         pending = self._target_ns is not None
         self._target_ns = min(self.end_ns, max(self.start_ns, stamp_ns))
@@ -148,11 +148,11 @@ class Playback:
             asyncio.get_running_loop().call_soon(self._begin_landing)
 
     def step(self, forward: bool, topic: str = "") -> None:
-        """Pause, and step to the next message, or to the one before.
+        """Pause, and step to the next or the previous message.
 
         Args:
-            forward: whether to the next one.
-            topic: whose messages count; all that somebody listens to where it is empty.
+            forward: whether to step to the next one.
+            topic: the topic whose messages count; all subscribed topics if empty.
         """
         self.pause()
         try:
@@ -251,7 +251,7 @@ class Playback:
         self._tell()
 
     def _open_stream(self) -> None:
-        """Continue after all that was published."""
+        """Continue after the last published message."""
         self._stream = self._recording.messages(self._wanted, self.position_ns + 1) if self._wanted else iter(())
         self._next = next(self._stream, None)
 
@@ -262,7 +262,7 @@ class Playback:
         now = self._steady_ns()
         passed, self._ticked_ns = now - self._ticked_ns, now
         if self._target_ns is None:
-            end = self.end_ns  # that of what is still being recorded moves on
+            end = self.end_ns  # it advances while the recording is still being written
             try:
                 self._show_until(min(end, self.position_ns + round(passed * self.speed)))
             except LinkwrightError as error:

@@ -27,20 +27,20 @@ class PlayOptions:
     """Options of playing.
 
     Attributes:
-        rate: how fast; 2.0 is twice as fast as it was recorded.
-        topics: only these; all when empty.
-        without: none of these.
-        pattern: where no topics are named, only those in whose name this regular expression is found.
-        without_pattern: none in whose name this one is found.
-        loop: begin anew at the end, for ever.
-        clock_hz: publish the time of the recording on ``/clock`` so often; 0 for not at all.
-        clock_topics: publish it before each message of these, too.
-        clock_before_all: publish it before each message.
+        rate: the speed; 2.0 is twice the speed of the recording.
+        topics: play only these; all when empty.
+        without: play none of these.
+        pattern: a regular expression; without `topics`, play only topics whose names contain a match.
+        without_pattern: a regular expression; play no topic whose name contains a match.
+        loop: restart at the end, for ever.
+        clock_hz: the rate of the recording's time on ``/clock``; 0 publishes none.
+        clock_topics: publish the time before each message of these, too.
+        clock_before_all: publish the time before each message.
         delay: seconds to wait at the beginning of each round.
         start_offset: seconds from the start of the recording to begin at.
         duration: seconds of the recording to play; None for all.
-        until_ns: play nothing from after this time, nanoseconds since the epoch; None for no end but its own.
-        paused: whether it begins paused.
+        until_ns: play nothing after this time, nanoseconds since the epoch; None plays to the end.
+        paused: whether playback begins paused.
         qos_overrides: topic -> profile to publish with.
     """
 
@@ -250,7 +250,7 @@ class Player:
     def _make_publishers(self) -> dict[str, Publisher[Any]]:
         options = self._options
         topics = {topic.name: topic for topic in self._bag.topics}
-        self._bag.messages(list(options.topics))  # a name that is not there is told before anything is played
+        self._bag.messages(list(options.topics))  # a name that does not exist is reported before playback starts
         selection = TopicSelection(
             everything=not options.pattern,
             names=options.topics,

@@ -15,7 +15,7 @@ from linkwright.messages import TFMessage, Time, get_message
 
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 _LATCHED = frozenset({STATIC_TRANSFORMS, "/robot_description"})
-"""Topics that listeners expect to be kept for them, whether or not the recording says so."""
+"""Topics that subscribers expect to be latched, whatever profile the recording has."""
 _LATCHED_QOS = QoSProfile(100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 

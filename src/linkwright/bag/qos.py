@@ -158,7 +158,7 @@ def _profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSProfile
                 hint = did_you_mean(str(value).lower(), known) or phrase("available: {names}", names=joined(known))
                 raise _wrong(
                     source,
-                    phrase("'{value}' is no {name} (topic '{topic}')", value=value, name=name, topic=topic),
+                    phrase("'{value}' is not a valid {name} (topic '{topic}')", value=value, name=name, topic=topic),
                     hint,
                 )
             values[name] = kind[str(value).upper()]
@@ -166,7 +166,7 @@ def _profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSProfile
             if not isinstance(value, Mapping) or set(value) - {"sec", "nsec"}:
                 raise _wrong(
                     source,
-                    phrase("{name} of topic '{topic}' is no duration", name=name, topic=topic),
+                    phrase("{name} of topic '{topic}' is not a duration", name=name, topic=topic),
                     phrase("write `sec: 1` and `nsec: 0` below it"),
                 )
             values[name] = Duration(seconds=value.get("sec", 0), nanoseconds=value.get("nsec", 0))

@@ -77,7 +77,7 @@ class BagReader:
 
     def __init__(self, path: str | Path, called: str | None = None, parts: Sequence[Path] = ()) -> None:
         try:
-            import rosbags.rosbag2  # noqa: F401  # whether it is there
+            import rosbags.rosbag2  # noqa: F401  # whether it is installed
         except ModuleNotFoundError as error:
             raise missing_extra("BAG107", error) from None
         self.path = Path(path)
@@ -179,8 +179,10 @@ class BagReader:
             hint = phrase("`linkwright topic list` and `linkwright topic hz TOPIC` tell what is published")
             found.append(Diagnostic("BAG113", message, severity=Severity.WARNING, hint=hint))
         if self._is_cut_off:
-            message = phrase("recording '{path}' has no end: it was killed, or cut off in a copy", path=self._called)
-            hint = phrase("what is whole in it is read; what came after that is lost")
+            message = phrase(
+                "recording '{path}' has no end: the recorder was killed, or a copy was cut off", path=self._called
+            )
+            hint = phrase("its complete records are read; everything after them is lost")
             found.append(Diagnostic("BAG109", message, severity=Severity.WARNING, hint=hint))
         if self._others:
             message = phrase(
@@ -203,7 +205,7 @@ class BagReader:
 
     @property
     def compression(self) -> str:
-        """What is compressed besides chunks: ``file``, ``message``, or nothing."""
+        """The compression besides that of chunks: ``file``, ``message``, or nothing."""
         return "file" if self._targets[0].suffix == PACKED else str(self._reader.compression_mode or "")
 
     @property
@@ -218,7 +220,7 @@ class BagReader:
 
     @property
     def definitions(self) -> list[tuple[str, str, str, str]]:
-        """What it has of the types of its topics: name, ``ros2msg`` or ``ros2idl``, definition, hash."""
+        """The definitions of its topics' types: name, ``ros2msg`` or ``ros2idl``, definition, hash."""
         found = {
             connection.msgtype: connection
             for connection in self._reader.connections
@@ -320,9 +322,9 @@ def open_recording(path: str | Path) -> BagReader:
 
 
 def _ignore_profiles_of_files(storage: Any) -> None:
-    """Let the library find the topics of ``metadata.yaml`` in the files, of which it wants the same profiles.
+    """Let the library find the topics of ``metadata.yaml`` in files with other profiles; it requires equal ones.
 
-    Recordings from before rosbag2 kept profiles in files, and some that were converted, would be read without messages.
+    Otherwise recordings from before rosbag2 kept profiles in files, and some converted ones, are read without messages.
     """
     told = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
     for file in storage.storages:

@@ -20,19 +20,19 @@ _POLL_SECONDS = 0.1
 class Recorder:
     """Writes the messages of topics into a recording until it is closed.
 
-    Every second what was received is given to the operating system, so that little is lost when the process is killed.
+    Flushes the received messages to the operating system every second, so that a killed process loses little.
 
     Args:
-        node: the node that subscribes; its log tells what happens.
-        selection: which topics.
-        writer: where the messages go; it is closed together with the recorder.
+        node: the node that subscribes; its log reports events.
+        selection: the topics to record.
+        writer: the destination of the messages; it is closed together with the recorder.
         overrides: topic -> the profile to subscribe with, instead of one that suits the publishers.
         discover: whether topics that appear later are recorded too.
-        polling_seconds: how often it is looked for them.
+        polling_seconds: the interval between two searches for new topics.
         without_publishers: whether topics that have subscriptions only are recorded too.
-        without_subscriptions: whether topics that nobody subscribes to are recorded too.
+        without_subscriptions: whether topics without a subscription are recorded too.
         paused: whether messages are dropped until `toggle_paused`.
-        guarded: wraps what the node calls back; the place to end when the disk is full. Otherwise the node logs it.
+        guarded: wraps the node's callbacks, so that the caller can stop when the disk is full; else the node logs it.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class Recorder:
 
     def _look(self) -> None:
         if self._by_clock and self._looking is not None and self._now() == 0:
-            return  # nobody has told the time yet; what is kept for late subscribers is not lost then
+            return  # no clock has published yet; subscribing later keeps latched messages
         for name, types in self._node.get_topic_names_and_types():
             if name in self._writer.topics or name in self._refused:
                 continue
@@ -133,7 +133,7 @@ class Recorder:
             return
         stamp = self._now() if self._by_clock else info.received_timestamp
         if self._by_clock and stamp == 0:
-            return  # nobody has told the time yet
+            return  # no clock has published yet
         self._writer.write(name, stamp, data)
         self._count += 1
 

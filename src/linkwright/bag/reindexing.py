@@ -1,4 +1,4 @@
-"""Making the ``metadata.yaml`` of a recording anew, from its files: what ``ros2 bag reindex`` does."""
+"""Recreates the ``metadata.yaml`` of a recording from its files, as ``ros2 bag reindex`` does."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from linkwright.messages import type_hash
 
 
 def reindex(folder: Path) -> None:
-    """Write the ``metadata.yaml`` of a recording, whatever stands in it before.
+    """Write the ``metadata.yaml`` of a recording, and replace an existing one.
 
-    Files that were not finished are listed with the messages that are whole in them.
+    Unfinished files are listed with their complete messages.
 
     Args:
-        folder: with the files of one recording, whose names end with _0, _1 and so on.
+        folder: the folder with the files of one recording, whose names end with _0, _1 and so on.
 
     Raises:
-        LinkwrightError: BAG117, the folder holds no such files; BAG105, the disk refuses; those of `BagReader`.
+        LinkwrightError: BAG117, the folder has no such files; BAG105, the disk refuses; those of `BagReader`.
     """
     from linkwright.bag.parts import write_metadata
 
@@ -43,7 +43,7 @@ def reindex(folder: Path) -> None:
 
 
 def _metadata_of(bag: BagReader, file: Path) -> dict[str, Any]:
-    """What the metadata say of a file alone."""
+    """Return the metadata of a single file."""
     from linkwright.bag.parts import VERSION
 
     span = {

@@ -1,4 +1,4 @@
-"""Writing recordings anew, with other files, topics or compression: what ``ros2 bag convert`` does.
+"""Rewrites recordings with other files, topics or compression, as ``ros2 bag convert`` does.
 
 The keys of its YAML file are those of rosbag2's ``StorageOptions`` and ``RecordOptions``; those that only tune the
 writing of rosbag2 change nothing here.
@@ -25,11 +25,11 @@ def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Pat
     """Write one or more recordings with the messages of others, in the order of their times.
 
     Args:
-        sources: the recordings that are read.
-        options_file: a YAML file with the key ``output_bags``: a list with the options of each recording to be made.
+        sources: the recordings to read.
+        options_file: a YAML file with the key ``output_bags``: a list with the options of each output recording.
 
     Returns:
-        What was made.
+        The paths of the new recordings.
 
     Raises:
         LinkwrightError: BAG115, the options cannot be read; those of `BagReader` and `BagWriter`.

@@ -1,7 +1,7 @@
-"""Finding single messages of an SQLite recording, without reading what lies between.
+"""Single messages of an SQLite recording, found without reading the data in between.
 
-rosbag2's files have an index of times and none of topics. One pass over the rows, which reads no message, tells in
-which parts of the time each topic has messages; whoever looks for one looks into a part that has one.
+rosbag2's files have an index of times but none of topics. One pass over the rows, which reads no message, determines
+the intervals in which each topic has messages; a search then reads only such an interval.
 """
 
 from __future__ import annotations
@@ -48,11 +48,11 @@ class RowLookup:
         return sorted(found, key=lambda row: row[0])
 
     def counts(self, topic: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
-        """The numbers of messages of a topic by parts of the time: beginning and end, nanoseconds, and the number.
+        """Yield the message counts of a topic by intervals: start and end in nanoseconds, and the count.
 
         Args:
             topic: its number.
-            exact: tell of each message by itself.
+            exact: yield each message by itself.
         """
         if exact:
             for (stamp_ns,) in self._rows("SELECT timestamp FROM messages WHERE topic_id = ?", topic):

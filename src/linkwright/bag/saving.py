@@ -66,9 +66,9 @@ def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
 
 
 def in_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
-    """The messages with the times of ``/clock`` when they came, in place of the system's.
+    """Return the messages with the current times of ``/clock`` in place of the system's times.
 
-    What came before the first of ``/clock`` has its time; where there is none, all stay as they are.
+    Messages before the first one of ``/clock`` get its time; without ``/clock``, all stay as they are.
     """
     now = next((_told_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
     if now is None:

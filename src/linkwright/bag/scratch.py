@@ -7,7 +7,7 @@ from pathlib import Path
 
 from linkwright.scratch_folders import ScratchFolder
 
-_ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder is made below it, under a name that nobody knows before
+_ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder below it gets an unpredictable name
 """The system's folder for large temporary files; ``/tmp`` may be memory (file-hierarchy(7))."""
 
 

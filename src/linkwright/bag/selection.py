@@ -18,14 +18,14 @@ class TopicSelection:
         everything: every topic that is not hidden.
         names: these topics, absolute names.
         types: every topic of one of these types.
-        pattern: every topic, and every service, in whose name this regular expression is found.
-        without_names: none of these, whatever else says.
+        pattern: a regular expression; every topic and service whose name contains a match.
+        without_names: none of these, whatever the other options select.
         without_types: none of these types.
-        without_pattern: none in whose name this regular expression is found.
-        hidden: hidden topics, those with a name that begins with an underscore, count as others.
-        every_service: the events of every service that tells of its requests.
+        without_pattern: a regular expression; no topic whose name contains a match.
+        hidden: treat hidden topics, whose names begin with an underscore, as others.
+        every_service: the events of every service that publishes its requests (introspection).
         services: the events of these services, absolute names.
-        without_services: of none of these.
+        without_services: none of these services.
 
     Raises:
         LinkwrightError: BAG104, a regular expression is not valid.

@@ -19,7 +19,7 @@ class SeveralReader(Reader):
     """Reads several files as if they were one.
 
     Args:
-        readers: of each file, open; whoever opened them closes them.
+        readers: the open readers of the files; the caller closes them.
     """
 
     def __init__(self, readers: Sequence[Reader]) -> None:  # what the library's own does is for a path

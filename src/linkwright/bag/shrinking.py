@@ -1,7 +1,7 @@
-"""Compressing large messages in memory by Zstandard in a thread, where they become clearly smaller.
+"""Zstandard compression of large messages in memory, in a thread, where it makes them clearly smaller.
 
-Pictures and clouds of a simulation shrink to a tenth or a hundredth, those with the noise of a real sensor hardly;
-which is which the quickest level finds out at once.
+Images and clouds of a simulation shrink to a tenth or a hundredth; those with the noise of a real sensor hardly shrink.
+The quickest level finds out at once which kind a message is.
 """
 
 from __future__ import annotations

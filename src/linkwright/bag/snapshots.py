@@ -1,4 +1,4 @@
-"""The last messages of all topics, kept until somebody wants them written: rosbag2's snapshot mode."""
+"""The last messages of all topics, kept until a snapshot is requested: rosbag2's snapshot mode."""
 
 from __future__ import annotations
 

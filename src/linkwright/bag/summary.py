@@ -24,11 +24,11 @@ def summary_text(bag: BagReader, *, topic_names_only: bool = False) -> str:
 
 
 def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, int], topics: Sequence[BagTopic]) -> str:
-    """The summary of a recording of which this is known.
+    """Return the summary of a recording as text.
 
     Args:
-        files: their names.
-        size: bytes of all.
+        files: the names of its files.
+        size: the bytes of all files.
         storage: one of `linkwright.bag.STORAGES`.
         span_ns: the times of the first and the last message, nanoseconds since the epoch.
         topics: the topics with their types and message counts.

@@ -1,8 +1,8 @@
-"""MCAP files without an end, or without an index: of a recording that was killed, cut off in a copy, or streamed.
+"""MCAP files without an end or an index: of a recorder that was killed, cut off in a copy, or streamed.
 
-A file is a row of records, each with its kind and length (the MCAP specification). All that are whole are good. What is
-missing, the summary that lists the chunks, is made in memory; readers see it after the file's own bytes. So nothing is
-copied, and such a file is as fast to seek in as others. What is not ROS 2's in a file is hidden the same way.
+A file is a sequence of records, each with its kind and length (the MCAP specification). All complete records are good.
+The missing summary, which lists the chunks, is made in memory; readers see it after the file's own bytes. So nothing is
+copied, and such a file is as fast to seek in as others. Records that do not belong to ROS 2 are hidden the same way.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = range(0x01, 0x09)
 _STATISTICS, _DATA_END = 0x0B, 0x0F
 _SUMMARY_KINDS = frozenset({_FOOTER, _CHUNK_INDEX, _STATISTICS, 0x0D, 0x0E, _DATA_END})
-"""Records that only the end of a file has; a damaged end is left out and made anew."""
+"""Records that only the end of a file has; a damaged end is left out and made again."""
 
 _CHUNK_HEAD = struct.Struct("<QQQII")
 """The head of a chunk: times of first and last message, unpacked size, checksum, length of the compression's name."""
@@ -92,7 +92,7 @@ class ReadableFile:
         return str(self._path)
 
     def exists(self) -> bool:
-        """Whether it is there."""
+        """Whether the file exists."""
         return self._path.exists()
 
     def is_dir(self) -> bool:

@@ -16,7 +16,7 @@ _HEAD = 64
 
 
 class Verdict(NamedTuple):
-    """The reason why a file is no recording, a hint, and notes."""
+    """The reason why a file is not a readable recording, a hint, and notes."""
 
     reason: Phrase
     hint: Phrase | None
@@ -27,14 +27,14 @@ def verdict_on(path: Path, error: Exception) -> Verdict:
     """Find out why a recording cannot be read.
 
     Args:
-        path: of its file or folder.
-        error: what the library says, which is told where the file itself tells nothing.
+        path: the path of its file or folder.
+        error: the library's error, which is reported if the file itself shows no reason.
     """
     if path.suffix == ROS1:
         return _ros1()
     if missing := _missing_files(path):
         names = ", ".join(missing)
-        hint = phrase("copy them, too; a single file that is there can be opened by its name")
+        hint = phrase("copy them too; each existing file can be opened by its own name")
         return Verdict(phrase("files that its metadata.yaml names are missing: {names}", names=names), hint)
     try:
         with path.open("rb") as file:
@@ -43,7 +43,7 @@ def verdict_on(path: Path, error: Exception) -> Verdict:
         head = None
     said = foreign(str(error).strip().rstrip(".") or type(error).__name__)
     if head is not None and (found := _by_its_beginning(path, head)) is not None:
-        is_mcap = head.startswith(_MCAP)  # of which the library knows what is wrong
+        is_mcap = head.startswith(_MCAP)  # the library knows what is wrong with an MCAP file
         return found._replace(note=phrase("the reader says: {words}", words=said)) if is_mcap else found
     return Verdict(said, None)
 
@@ -62,13 +62,13 @@ def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:
         hint = phrase("copy it again; 'mcap recover FILE -o OUT.mcap' saves what is whole of it")
         return Verdict(phrase("it is an MCAP file that is damaged or cut off"), hint)
     if head.lstrip().lower().startswith((b"<!doctype html", b"<html")):
-        hint = phrase("what was downloaded is not the file: open it in a browser, which shows what the server said")
+        hint = phrase("the download is not the file: open it in a browser to see the server's answer")
         return Verdict(phrase("it is a web page"), hint)
     if head.startswith(b"version https://git-lfs"):
         return Verdict(phrase("it is a pointer of Git LFS to the real file"), phrase("fetch that by 'git lfs pull'"))
     if path.suffix == PACKED and head.startswith(_ZSTD):
-        hint = phrase("copy it again; 'unzstd' tells whether it is whole")
-        return Verdict(phrase("what it holds is damaged or cut off"), hint)
+        hint = phrase("copy it again; 'unzstd -t' checks whether it is complete")
+        return Verdict(phrase("its content is damaged or cut off"), hint)
     for begin, kind in ((_ZSTD, "zstd"), (b"\x1f\x8b", "gzip"), (b"PK\x03\x04", "zip")):
         if head.startswith(begin):
             return Verdict(phrase("it is compressed with {kind}", kind=foreign(kind)), phrase("unpack it first"))
@@ -81,7 +81,7 @@ def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:
 
 
 def _missing_files(folder: Path) -> list[str]:
-    """The names of files that a recording's metadata name and that are not there."""
+    """Return the names of the files that a recording's metadata lists and that do not exist."""
     try:
         metadata = yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))
         paths = metadata["rosbag2_bagfile_information"]["relative_file_paths"]

@@ -27,7 +27,7 @@ STORAGES = ("mcap", "sqlite3")
 """The file formats; the first is the default, as in ROS 2 from Iron on."""
 
 COMPRESSIONS = ("none", "file", "message", "storage")
-"""What is compressed with zstd: nothing, whole files, single messages, or the chunks of an MCAP file."""
+"""The parts that are compressed with zstd: none, whole files, single messages, or the chunks of an MCAP file."""
 
 _SMALLEST_SPLITS = {"mcap": 1024, "sqlite3": 86016}
 """The least bytes of a file that rosbag2's storages let be asked for."""
@@ -44,27 +44,26 @@ _LONGEST_WRITE = 30.0
 class BagWriter:
     """A recording that is being written; close it, or use it in a ``with`` statement.
 
-    It gets its end however a signal ends the process, but for SIGKILL (`unfinished`). Files are named and divided as
-    rosbag2's ``SequentialWriter`` does.
+    The recording is finished when a signal other than SIGKILL ends the process (`unfinished`). Files are named and
+    divided as rosbag2's ``SequentialWriter`` does.
 
     Args:
         path: the folder to make; of a single file, the file.
         storage: one of `STORAGES`.
         compression: one of `COMPRESSIONS`.
-        single_file: whether there is an MCAP file alone, which needs no metadata beside it; rosbag2 makes a folder.
+        single_file: whether to write only an MCAP file, which needs no metadata beside it; rosbag2 makes a folder.
         max_size: bytes after which another file is begun; 0 for one file.
         max_seconds: seconds after which another file is begun; 0 for one file.
-        snapshot_size: where positive, nothing is written but by `take_snapshot`, and the last messages are kept in so
-            many bytes.
-        custom_data: what the metadata have besides.
+        snapshot_size: where positive, only `take_snapshot` writes, and the last messages are kept in this many bytes.
+        custom_data: additional entries of the metadata.
 
     Raises:
         LinkwrightError: BAG105, the folder exists already or cannot be made; BAG107, `rosbags` is not installed;
-            BAG116, files are to be smaller than they can be.
+            BAG116, files are to be smaller than possible.
 
     Attributes:
-        path: as given.
-        on_split: called with the names of the file that was closed and the one that was begun.
+        path: the given path.
+        on_split: called with the names of the closed file and the new one.
     """
 
     def __init__(
@@ -80,7 +79,7 @@ class BagWriter:
         custom_data: Mapping[str, str] | None = None,
     ) -> None:
         try:
-            import rosbags.rosbag2  # noqa: F401  # whether it is there
+            import rosbags.rosbag2  # noqa: F401  # whether it is installed
         except ModuleNotFoundError as error:
             raise missing_extra("BAG107", error) from None
 
@@ -138,9 +137,9 @@ class BagWriter:
             data: CDR bytes with their header of four.
 
         Raises:
-            LinkwrightError: BAG108, the disk refuses; what was written until then can be played.
+            LinkwrightError: BAG108, the disk refuses; the messages before can still be played.
         """
-        if self._is_ending:  # who finishes it waits for the lock, and who writes all the time might always get it
+        if self._is_ending:  # the ending thread waits for the lock, which a constant writer might always get first
             return
         with self._lock:
             if self._part is None:
@@ -173,7 +172,7 @@ class BagWriter:
             return True
 
     def split(self) -> None:
-        """Go on in another file; a single file, and a recording that is closed, go on as they are.
+        """Continue in another file; a single file and a closed recording stay as they are.
 
         Raises:
             LinkwrightError: BAG108, the disk refuses.
@@ -185,7 +184,7 @@ class BagWriter:
                 raise self._ended(error) from error
 
     def flush(self) -> None:
-        """Flush, so that what was written survives the end of this process, however it ends.
+        """Flush, so that the written messages survive the end of this process, however it ends.
 
         Raises:
             LinkwrightError: BAG108, the disk refuses.
@@ -224,7 +223,7 @@ class BagWriter:
         if not self._lock.acquire(timeout=_LONGEST_WRITE):
             return
         try:
-            with contextlib.suppress(LinkwrightError):  # nobody can be told any more
+            with contextlib.suppress(LinkwrightError):  # nothing remains that could report it
                 self.close()
         finally:
             self._lock.release()
@@ -285,7 +284,7 @@ class BagWriter:
         message = phrase(
             "recording '{path}' ends here: {reason}", path=display_path(self.path), reason=foreign(reason or error)
         )
-        hint = phrase("what was written until then is kept, and `linkwright bag play` plays it")
+        hint = phrase("the messages written so far are kept; `linkwright bag play` plays them")
         return LinkwrightError(Diagnostic("BAG108", message, hint=hint))
 
     def __enter__(self) -> Self:

@@ -330,4 +330,4 @@ async def test_a_wheel_that_tells_no_number_is_named(wheels):
 
 def test_what_is_no_parameter_is_named(wheels):
     wheels.start(DiffDriveController, NAME, **ROBOT, open_lop=True)
-    assert warnings(wheels) == ["'open_lop' is no parameter of this controller; did you mean 'open_loop'?"]
+    assert warnings(wheels) == ["'open_lop' is not a parameter of this controller; did you mean 'open_loop'?"]

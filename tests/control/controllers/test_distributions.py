@@ -57,4 +57,4 @@ async def test_a_file_for_the_other_one_is_read_as_it_is(stand, monkeypatch, log
     assert (axis.has_velocity_limits, axis.max_deceleration) == (True, -2.0)
     assert {"linear.x.has_velocity_limits", "linear.x.max_deceleration"} <= declared(controller)
     assert "angular.z.has_velocity_limits" in declared(controller) or distribution == "jazzy"
-    assert not [each.text for each in log if "is no parameter" in str(each.text)]
+    assert not [each.text for each in log if "is not a parameter" in str(each.text)]

@@ -159,7 +159,7 @@ async def test_the_older_names_of_parameters_are_those_of_humble(stand):
     told(stand, 1.0, 0.5)
     await stand.step(controller)
     assert commanded(stand, "left", "steer_left") == pytest.approx([10.0, atan(BASE / 1.8)])
-    assert not [warning for warning in warnings(stand) if "no parameter" in warning]
+    assert not [warning for warning in warnings(stand) if "not a parameter" in warning]
 
 
 async def test_wheels_are_slow_until_they_are_steered_where_that_is_asked_for(stand):

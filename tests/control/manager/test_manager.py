@@ -279,7 +279,7 @@ async def test_initial_states_of_hardware(graph, said):
 async def test_hardware_of_others_is_stood_in_for(graph, said):
     it = manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
     assert it.resources.components["arm"].state is ACTIVE
-    assert said("WARN")[0].startswith("hardware 'arm': 'acme/Driver' is not for Linkwright; mock_components")
+    assert said("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver'; mock_components")
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])

@@ -41,7 +41,7 @@ async def test_what_a_controller_says_is_said_by_the_node_that_runs_it(launch: A
     assert done.succeeded, done.err
     (line,) = [line for line in done.err.splitlines() if "open_lop_control" in line]
     assert re.match(r"\[ros2_control_node-1\] \[WARN\] \[[0-9.]+\] \[arm\]: ", line)
-    assert line.endswith("'open_lop_control' is no parameter of this controller; did you mean 'open_loop_control'?")
+    assert line.endswith("'open_lop_control' is not a parameter of this controller; did you mean 'open_loop_control'?")
 
 
 async def test_a_spawner_hands_on_the_parameter_files_that_its_action_has(

@@ -50,7 +50,7 @@ class ControllerError(LinkwrightError):
     """Raised by a controller that refuses to be configured or activated; its text is logged.
 
     Args:
-        message: what is wrong, and how it is mended.
+        message: what is wrong, and how to fix it.
     """
 
     def __init__(self, message: str) -> None:
@@ -123,7 +123,7 @@ class Controller(ABC, Generic[P]):
 
     @property
     def parameters(self) -> P:
-        """Its parameters now: those that may change while it runs are to be read anew."""
+        """Its current parameters; read those that may change at run time again for each use."""
         return self._parameters.values
 
     @cached_property

@@ -1,7 +1,7 @@
 """``diff_drive_controller/DiffDriveController``: differential drive by two sides of wheels.
 
-Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics, texts). Other than there odometry in open
-loop is that of the velocity within its limits, wheels may stand at any angle when it begins, and a command that is no
+Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics, texts). Three things differ from it:
+open-loop odometry integrates the velocity within its limits, wheels may start at any angle, and a command that is not a
 number stops the robot.
 """
 

@@ -29,12 +29,12 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
 
 
 def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
-    """The prefix of frames' names: empty, or a name with a slash at its end and none at its beginning.
+    """Return the prefix of frame names: empty, or a name with a slash at its end and none at its beginning.
 
     Args:
-        node: the controller's.
-        prefix: as asked for; ``~`` stands for the namespace of the node, and nothing for that as well.
-        enabled: whether anything is to stand there.
+        node: the controller's node.
+        prefix: the requested prefix; ``~`` and an empty one represent the namespace of the node.
+        enabled: whether frames have a prefix.
 
     Source: diff_drive_controller (``tf_frame_prefix``, ``tf_frame_prefix_enable``).
     """
@@ -49,19 +49,19 @@ class DriveOdometry:
     """The odometry of a drive: an odometer and its topics.
 
     Args:
-        node: the controller's.
+        node: the controller's node.
         odometry: the topic of odometry.
         transforms: the topic of transforms.
         frame: the frame that the robot moves in.
         child: the robot's frame.
         of_pose, of_velocity: variances.
-        tells_transforms: whether transforms are published; their topic is there in any case.
+        tells_transforms: whether transforms are published; their topic exists in any case.
         tells_pose: whether odometry has the pose; else it has velocities only.
         window: that of the odometer.
-        rate: how often it is told, in Hz; 0 for at each update.
+        rate: the rate of publishing in Hz; 0 publishes at each update.
 
     Attributes:
-        odometer: where the robot is.
+        odometer: the source of the robot's pose.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class DriveOdometry:
         self._told: int | None = None
 
     def tell(self, time_ns: int) -> None:
-        """Publish, where that is due at a time in nanoseconds and anybody subscribes."""
+        """Publish if that is due at a time in nanoseconds and a subscriber exists."""
         if not self._is_due(time_ns):
             return
         wanted = self._topics.is_wanted

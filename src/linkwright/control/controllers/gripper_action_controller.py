@@ -50,8 +50,8 @@ class EffortGripperParameters(GripperParameters):
 class ParallelGripperParameters(GripperParameters):
     """Parameters of the gripper with interfaces for the greatest effort and velocity."""
 
-    max_effort: float = parameter(10.0, description="N, where a goal says nothing", check=at_least(0.0))
-    max_velocity: float = parameter(0.1, description="m/s, where a goal says nothing", check=at_least(0.0))
+    max_effort: float = parameter(10.0, description="N, for goals without an effort", check=at_least(0.0))
+    max_velocity: float = parameter(0.1, description="m/s, for goals without a velocity", check=at_least(0.0))
     state_interfaces: tuple[str, ...] = (POSITION, VELOCITY)
     max_effort_interface: str = parameter("", description="the command interface that gets the greatest effort")
     max_velocity_interface: str = parameter("", description="the command interface that gets the greatest velocity")
@@ -166,7 +166,9 @@ class Gripper(Controller[P]):
 
     def _objection(self, request: Any) -> str | None:
         """The reason for refusing a goal; None for a valid one."""
-        return None if isfinite(request.command.position) else "Received action goal with a position that is no number"
+        if isfinite(request.command.position):
+            return None
+        return "Received action goal with a position that is not a number"
 
     def _take(self, request: Any) -> None:
         """Take over the values of a goal."""
@@ -239,7 +241,7 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
         positions = request.command.position
         if len(positions) != 1:
             return f"Received action goal with wrong number of position values, expects 1, got {len(positions)}"
-        return None if isfinite(positions[0]) else "Received action goal with a position that is no number"
+        return None if isfinite(positions[0]) else "Received action goal with a position that is not a number"
 
     def _take(self, request: Any) -> None:
         said, command = self.parameters, request.command

@@ -1,7 +1,7 @@
 """``joint_trajectory_controller/JointTrajectoryController``: joints follow trajectories.
 
-Source: ros2_controllers (parameters, topics, action, service, what is commanded when, tolerances, texts). What is
-commanded is what is due at the next update, and what is judged is what is due now.
+Source: ros2_controllers (parameters, topics, action, service, times of commands, tolerances, texts). The controller
+commands the point that is due at the next update, and checks the tolerances at the point that is due now.
 """
 
 from __future__ import annotations
@@ -266,7 +266,7 @@ class JointTrajectoryController(Controller[Parameters]):
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the point that is due at the next update, and check the errors of now against the tolerances."""
         if time_ns < self._following_ns - self._period_ns:
-            self._give_up("Time has begun anew.")
+            self._give_up("Time jumped backwards.")
             self._hold()
         self._current = self._read()
         trajectory = self._trajectory

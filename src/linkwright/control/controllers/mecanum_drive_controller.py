@@ -1,7 +1,7 @@
 """``mecanum_drive_controller/MecanumDriveController``: four wheels with rollers at 45 degrees.
 
-Source: ros2_controllers for Jazzy (parameters, defaults, topics, the order of wheels). Other than there odometry
-follows arcs, and a command that is no number stops the robot.
+Source: ros2_controllers for Jazzy (parameters, defaults, topics, the order of wheels). Two things differ from it:
+odometry follows arcs, and a command that is not a number stops the robot.
 """
 
 from __future__ import annotations
@@ -59,10 +59,10 @@ class Parameters:
     front_right_wheel_command_joint_name: str = ""
     rear_right_wheel_command_joint_name: str = ""
     rear_left_wheel_command_joint_name: str = ""
-    front_left_wheel_state_joint_name: str = parameter("", description="what is measured, where it is another joint")
-    front_right_wheel_state_joint_name: str = parameter("", description="what is measured, where it is another joint")
-    rear_right_wheel_state_joint_name: str = parameter("", description="what is measured, where it is another joint")
-    rear_left_wheel_state_joint_name: str = parameter("", description="what is measured, where it is another joint")
+    front_left_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
+    front_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
+    rear_right_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
+    rear_left_wheel_state_joint_name: str = parameter("", description="the measured joint, if it is another one")
     kinematics: Kinematics = _NO_SIZES
     tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
     tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace where it is empty")

@@ -12,18 +12,18 @@ from linkwright.simulation.plugins.node import PluginNode
 class ControllerNode(PluginNode):
     """Publishers, subscriptions and services of a controller (`PluginNode`), and calls between its two threads.
 
-    Callbacks come in the thread of the updates, between two of them; what is published goes out after the update.
+    Callbacks run in the thread of the updates, between two updates; messages are sent after the update.
 
     Args:
         node: the node; it ends with the controller.
-        exchange: between the thread of the updates and the graph.
+        exchange: the exchange between the thread of the updates and the graph.
     """
 
     def __init__(self, node: Node, exchange: Exchange) -> None:
         super().__init__(node, exchange, owned=True, qos={}, usual=None)
 
     def call_on_loop(self, call: Callable[[], object]) -> None:
-        """Queue a function for the event loop, to be called after what was published before it."""
+        """Queue a function for the event loop, to be called after the messages published before it."""
         self._exchange.send(_Call(call), None)
 
     def clear(self) -> None:

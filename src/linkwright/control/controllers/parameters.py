@@ -12,9 +12,9 @@
         gains: Mapping[str, Gains] = for_each("joints", Gains)  # gains.JOINT.p
 
 The types are ``str``, ``float``, ``int``, ``bool``, and ``tuple[...]`` of them; ``float | None`` and ``bool | None``
-are declared without a value. What one of Humble and Jazzy has only is declared where ``ROS_DISTRO`` says so, and where
-it is given: files for either are read as they are. Source: generate_parameter_library, which the controllers of
-ros2_controllers use.
+are declared without a value. A parameter that only Humble or only Jazzy has is declared if ``ROS_DISTRO`` names that
+distribution, or if a value is given: so files for either one are read as they are. Source: generate_parameter_library,
+which the controllers of ros2_controllers use.
 """
 
 from __future__ import annotations
@@ -77,15 +77,15 @@ def parameter(
     only: str = "",
     later: Any = _SAME,
 ) -> Any:
-    """Declare a parameter with constraints, a description or a default that is made anew.
+    """Declare a parameter with constraints, a description or a default that is not a constant.
 
     Args:
-        default: its value where none is given.
-        description: what it is for, with its unit.
-        read_only: whether it has the value that it was declared with for good.
-        check: what its values must be.
-        only: the distribution that has it, where it is one of them: `HUMBLE` or `JAZZY`, each with its neighbours.
-        later: its default from Iron on, where that is another one.
+        default: its value if none is given.
+        description: its purpose, with its unit.
+        read_only: whether the value cannot change after the declaration.
+        check: the constraint on its values.
+        only: the distribution that has it, if only one does: `HUMBLE` or `JAZZY`, each with its neighbours.
+        later: its default from Iron on, if that differs.
     """
     return field(default=default, metadata={_ABOUT: _About(description, read_only, check, only, later)})
 
@@ -94,9 +94,9 @@ def for_each(names: str, table: type[Any], *, below: str = "") -> Any:
     """Declare a group of parameters for each name in another parameter, as ``gains.JOINT.p``.
 
     Args:
-        names: that parameter, which stands before it in the same table; several, separated by blanks.
-        table: the dataclass with the parameters of one.
-        below: the name that they stand below, where it is not that of the field.
+        names: that parameter, which precedes this one in the same table; several, separated by blanks.
+        table: the dataclass with the parameters of one name.
+        below: the prefix of their names, if it differs from that of the field.
     """
     return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table, _BELOW: below})
 
@@ -132,7 +132,7 @@ class ParameterTable(Generic[P]):
         node.add_post_set_parameters_callback(lambda _: self.refresh())
 
     def refresh(self) -> None:
-        """Read the parameters anew; names that were added bring their own."""
+        """Read the parameters again; names that were added bring their own."""
         self.values = self._read()
 
     def unknown(self) -> Iterator[Phrase]:
@@ -140,7 +140,7 @@ class ParameterTable(Generic[P]):
         for name in self._node.undeclared_overrides():
             if not name.startswith(_OF_EVERY_NODE):
                 hint = did_you_mean(name, self._declared)
-                told = phrase("'{name}' is no parameter of this controller", name=name)
+                told = phrase("'{name}' is not a parameter of this controller", name=name)
                 yield told if hint is None else joined((told, hint), "; ")
 
     def _read(self) -> P:

@@ -16,7 +16,7 @@ class PidParameters:
     p: float = 0.0
     i: float = 0.0
     d: float = 0.0
-    i_clamp: float | None = parameter(None, description="what the integral adds at most, and at least less than 0")
+    i_clamp: float | None = parameter(None, description="bound of the integral term, above and below 0")
     i_clamp_max: float = inf
     i_clamp_min: float = -inf
     u_clamp_max: float = parameter(inf, description="the greatest command")

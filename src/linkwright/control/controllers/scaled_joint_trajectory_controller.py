@@ -1,6 +1,6 @@
 """``ur_controllers/ScaledJointTrajectoryController``: a trajectory controller that follows the robot's speed slider.
 
-Source: ur_controllers of the driver for Universal Robots (the parameter; time on a trajectory goes on by the factor).
+Source: ur_controllers of the driver for Universal Robots (the parameter; the factor scales the time on a trajectory).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class ScaledParameters(Parameters):
     speed_scaling_interface_name: str = parameter(
         "speed_scaling/speed_scaling_factor",
         read_only=True,
-        description="the state that says how fast the robot goes, 1 for as planned; empty for always as planned",
+        description="the state interface of the robot's speed, 1 as planned; empty always runs as planned",
     )
 
 

@@ -152,7 +152,7 @@ P = TypeVar("P")
 
 
 class SensorBroadcaster(Controller[P]):
-    """Publishes a message of its states at each update, while anybody subscribes."""
+    """Publishes a message of its states at each update, while a subscriber exists."""
 
     TYPE: ClassVar[str]
     TOPIC: ClassVar[str]

@@ -1,8 +1,8 @@
 """Limits of velocity, acceleration, deceleration and jerk, as parameters of drive controllers.
 
 Source: diff_drive_controller of Humble (``has_..._limits``, ``min_acceleration``) and of Jazzy (NaN for none,
-``max_deceleration``, ``..._reverse``), and control_toolbox's RateLimiter. A limit for which ``has_..._limits`` says
-nothing holds where it is positive.
+``max_deceleration``, ``..._reverse``), and control_toolbox's RateLimiter. A positive limit applies if
+``has_..._limits`` is not set.
 """
 
 from __future__ import annotations

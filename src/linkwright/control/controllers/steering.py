@@ -1,9 +1,9 @@
 """The base of controllers of steered vehicles: one driven axle, and another one that steers.
 
 Source: steering_controllers_library of ros2_controllers, for Humble and Jazzy (parameters with their older names,
-defaults, topics, the order of joints: right, left). Other than there odometry and wheels go by the tangent of the
-steering angle throughout, odometry in open loop stands while there is no command, and a command that is no number
-stops the vehicle.
+defaults, topics, the order of joints: right, left). Three things differ from it: odometry and wheels use the tangent of
+the steering angle throughout, open-loop odometry stands still while there is no command, and a command that is not a
+number stops the vehicle.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from linkwright.messages import Header, Time, get_message
 _NANOSECONDS = 1_000_000_000
 _DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
 _NEAR, _FAR = pi / 6.0, 1.5608
-"""The steering errors in rad from which on wheels are slower, and beyond which they are not slower still."""
+"""The steering errors in rad above which wheels slow down, and above which they do not slow down further."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,19 +37,19 @@ class SteeringParameters:
     traction_joints_names: tuple[str, ...] = parameter((), description="joints that drive: right, left", only=JAZZY)
     steering_joints_names: tuple[str, ...] = parameter((), description="joints that steer: right, left", only=JAZZY)
     traction_joints_state_names: tuple[str, ...] = parameter(
-        (), description="what is measured, if other joints", only=JAZZY
+        (), description="measured joints, if they differ", only=JAZZY
     )
     steering_joints_state_names: tuple[str, ...] = parameter(
-        (), description="what is measured, if other joints", only=JAZZY
+        (), description="measured joints, if they differ", only=JAZZY
     )
     front_steering: bool = parameter(
         True, description="which of front_wheels_names and rear_wheels_names steer", only=HUMBLE
     )
     front_wheels_names: tuple[str, ...] = parameter((), description="joints that steer or drive", only=HUMBLE)
     rear_wheels_names: tuple[str, ...] = parameter((), description="joints that drive or steer", only=HUMBLE)
-    front_wheels_state_names: tuple[str, ...] = parameter((), description="what is measured", only=HUMBLE)
-    rear_wheels_state_names: tuple[str, ...] = parameter((), description="what is measured", only=HUMBLE)
-    open_loop: bool = parameter(False, description="odometry by what wheels are told, not by what they do")
+    front_wheels_state_names: tuple[str, ...] = parameter((), description="measured joints", only=HUMBLE)
+    rear_wheels_state_names: tuple[str, ...] = parameter((), description="measured joints", only=HUMBLE)
+    open_loop: bool = parameter(False, description="odometry by the commands of the wheels, not by their motion")
     reduce_wheel_speed_until_steering_reached: bool = parameter(
         False, description="whether wheels are slow while the steering is far from its angle", only=JAZZY
     )
@@ -118,7 +118,7 @@ class SteeringController(Controller[P], Generic[P]):
         return [f"{each}/{VELOCITY}" for each in said.traction] + [f"{each}/{POSITION}" for each in said.steering]
 
     def state_interfaces(self) -> InterfaceNames:
-        """The same of what is measured; positions of the driven joints where the parameters ask for them."""
+        """The measured interfaces; positions of the driven joints if the parameters request them."""
         said = self.parameters
         kind = POSITION if said.position_feedback else VELOCITY
         return [f"{traction_state}/{kind}" for traction_state in said.traction_states] + [

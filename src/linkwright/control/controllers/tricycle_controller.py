@@ -68,7 +68,7 @@ class Parameters:
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
     pose_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the pose")
     twist_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the velocity")
-    open_loop: bool = parameter(False, description="odometry by what the wheel is told, not by what it does")
+    open_loop: bool = parameter(False, description="odometry by the commands of the wheel, not by its motion")
     enable_odom_tf: bool = parameter(False, description="whether the transform of odometry is published")
     odom_only_twist: bool = parameter(False, description="odometry without the pose")
     cmd_vel_timeout: int = parameter(500, description="how long a command holds, in milliseconds")

@@ -88,8 +88,8 @@ class PoseReader:
             time_ns: when it was measured.
 
         Returns:
-            The reading, or None for the first pose of a differential sensor, and for one that has no numbers. Of others
-            what is no number is left out.
+            The reading without the values that are not numbers; None for the first pose of a differential sensor, and
+            for a pose without any number.
         """
         turn = rotation_matrix(sensor[3:])
         return self._read(pose, covariance, sensor, turn, time_ns)

@@ -34,14 +34,14 @@ class Hardware:
     """A hardware component.
 
     Args:
-        description: what is written about it.
-        logger: where it tells what it does.
+        description: its description in the URDF.
+        logger: the logger of its events.
 
     Attributes:
         description, logger: see above.
         states, commands: its interfaces; a state begins with its initial value, or NaN.
-        state: where in its life it is.
-        timings: what measures reading and writing; None while nobody wants to know.
+        state: its lifecycle state.
+        timings: the timers of reading and writing; None while no statistics are requested.
     """
 
     def __init__(self, description: HardwareDescription, logger: Logger) -> None:
@@ -107,7 +107,7 @@ class Hardware:
         """
 
     def write(self, time_ns: int, period_s: float) -> None:
-        """Send `commands`; NaN stands for none.
+        """Send `commands`; NaN represents no command.
 
         Raises:
             HardwareError: it does not take them; its controllers are stopped.

@@ -75,9 +75,9 @@ class HardwareDescription:
     Attributes:
         name: its name.
         type: ``system``, ``actuator`` or ``sensor``.
-        plugin: the type name of what drives it.
-        is_async: whether it asks for a thread of its own.
-        parameters: what the hardware is given.
+        plugin: the type name of its driver.
+        is_async: whether it requests a thread of its own.
+        parameters: the parameters of the hardware.
         joints, sensors, gpios: its components, in file order.
     """
 
@@ -103,8 +103,8 @@ class HardwareDescription:
 def hardware_of(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
     """Read the hardware of a robot, with findings on its elements.
 
-    What cannot be used is left out: a hardware without a name or with a type that is none, a joint that the robot does
-    not have, a value that is no number.
+    Invalid elements are left out: a hardware without a name or with an unknown type, a joint that the robot does not
+    have, a value that is not a number.
     """
     reader = _Reader(robot)
     found = [reader.hardware(extension) for extension in robot.extensions if extension.tag == "ros2_control"]

@@ -16,14 +16,14 @@ class Interface:
     """A number with a name.
 
     Args:
-        component: the joint, sensor or GPIO; of what a chained controller takes or gives, the controller.
+        component: the joint, sensor or GPIO; for interfaces of a chained controller, the controller.
         kind: ``position``, ``velocity``, ``orientation.x``, ...
-        value: NaN while nothing is known.
+        value: NaN while unknown.
 
     Attributes:
         component, kind: see above.
         name: both, ``joint1/position``.
-        value: the number now.
+        value: the current number.
     """
 
     __slots__ = ("component", "kind", "name", "value")
@@ -51,7 +51,7 @@ class CommandInterface(Interface):
 
 
 class Interfaces(Enum):
-    """Constants that stand for all, or for no, interfaces."""
+    """Constants that represent all, or no, interfaces."""
 
     ALL = "all"
     """Every interface that there is."""

@@ -109,10 +109,10 @@ class JointLimiter:
 
         Args:
             period_s: the time since the last call, in seconds.
-            claimed: names of interfaces that controllers have; the others are left alone.
+            claimed: names of interfaces that controllers claimed; the others are left alone.
 
         Returns:
-            Of each command that was outside: its kind, what was commanded, and what it is now.
+            Of each command outside its limits: the kind, the commanded value, and the limited value.
         """
         exceeded = []
         for kind, command in self._commands.items():
@@ -206,8 +206,8 @@ class CommandLimits:
                     self._told.add((limiter.name, kind))
                     self._logger.warning(
                         phrase(
-                            "joint '{joint}': the commanded {kind} {wanted:g} is outside its limits, and {given:g} is "
-                            "sent; this is told once",
+                            "joint '{joint}': the commanded {kind} {wanted:g} is outside its limits; {given:g} "
+                            "is sent instead (reported once)",
                             joint=limiter.name,
                             kind=kind,
                             wanted=wanted,

@@ -1,7 +1,7 @@
 """``mock_components/GenericSystem``: states follow commands.
 
-Source: mock_components of ros2_control (parameters, order of what is done, texts). With ``calculate_dynamics`` a joint
-is integrated by the interface that it was switched to, else each state is the command of its name.
+Source: mock_components of ros2_control (parameters, order of steps, texts). With ``calculate_dynamics`` a joint is
+integrated by its active command interface; otherwise each state copies the command of the same name.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class GenericSystem(Hardware):
             for state in self.states
             if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
         ]
-        # A thousand times a second each lookup counts: only dynamics and mimicry go by the state of a joint.
+        # A thousand times a second each lookup counts: only dynamics and mimicry need the state of a joint.
         tied = {each for joint, followed, _ in self._followers for each in (joint, followed)}
         joints = [joint for joint in self._joints.values() if self._dynamic or joint in tied]
         free = [joint for joint in self._joints.values() if not self._dynamic and joint not in tied]

@@ -68,8 +68,8 @@ class Resources:
             if hardware is None:
                 self._logger.warning(
                     phrase(
-                        "hardware '{name}': '{plugin}' is not for Linkwright; mock_components/GenericSystem stands in "
-                        "for it, whose states follow the commands",
+                        "hardware '{name}': Linkwright does not support '{plugin}'; "
+                        "mock_components/GenericSystem replaces it, and its states follow the commands",
                         name=description.name,
                         plugin=description.plugin,
                     )
@@ -216,7 +216,7 @@ class Resources:
                 self._logger.error(f"Component '{hardware.description.name}' could not perform switch: {failure}")
 
     def read(self, time_ns: int, period_s: float) -> list[Hardware]:
-        """Read all configured hardware; returns the names of what failed, which was logged and unconfigured."""
+        """Read all configured hardware; return the components that failed, which are logged and unconfigured."""
         failed = []
         for hardware in self.components.values():
             if hardware.state is INACTIVE or hardware.state is ACTIVE:

@@ -18,12 +18,12 @@ class Loaded:
 
     Attributes:
         name, type: its names.
-        controller: it.
-        fallbacks: the controllers that are to be activated when it fails.
-        period_ns: the time between two updates; 0 for every one of the manager's.
-        next_ns: when the next is due.
+        controller: the controller.
+        fallbacks: the controllers to activate when it fails.
+        period_ns: the time between two updates; 0 for each update of the manager.
+        next_ns: the time of the next update.
         before: the last finite values of its commands.
-        timing: what measures its updates; None while nobody wants to know.
+        timing: the timer of its updates; None while no statistics are requested.
     """
 
     name: str

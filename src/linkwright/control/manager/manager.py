@@ -1,6 +1,6 @@
 """The controller manager: loads, configures, switches and updates controllers.
 
-Source: the controller manager of ros2_control (order of what is done, rules, texts).
+Source: the controller manager of ros2_control (order of steps, rules, texts).
 """
 
 from __future__ import annotations
@@ -253,7 +253,7 @@ class ControllerManager:
     def _sort(self) -> None:
         """Sort the controllers: a user of another's references or exported states comes before that one.
 
-        Who does both, as a drive over PID controllers that tell how fast wheels are, comes before it.
+        A controller that uses both comes before it, such as a drive over PID controllers that export wheel speeds.
         """
         order: dict[str, Loaded] = {}
         names = self.resources.command_names

@@ -189,7 +189,7 @@ def _list_types(_: Any, response: Any) -> Any:
         try:
             found = controller_class(name)
         except LinkwrightError:
-            continue  # its package is broken; loading it says so
+            continue  # its package is broken; loading it reports that
         chains = found.reference_interfaces is not Controller.reference_interfaces
         response.types.append(name)
         response.base_classes.append(_CHAINABLE if chains else _PLAIN)

@@ -21,7 +21,7 @@ _INITIAL = "hardware_components_initial_state"
 
 
 def load_hardware(manager: ControllerManager, text: str, library: DescriptionLibrary, make: Maker) -> bool:
-    """Load the hardware of a description and take it to the lifecycle states of the manager's parameters.
+    """Load the hardware of a description and bring it to the lifecycle states of the manager's parameters.
 
     Args:
         manager: the manager.
@@ -30,7 +30,7 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
         make: makes hardware.
 
     Returns:
-        Whether the description can be read; what is wrong with it is logged.
+        Whether the description is readable; its errors are logged.
     """
     node, logger = manager.node, manager.node.get_logger()
     reading = library.read(text)

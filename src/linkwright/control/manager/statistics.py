@@ -1,8 +1,8 @@
 """Durations and rates of controllers and hardware: ``~/statistics/...`` of the controller manager.
 
 Source: controller_manager of ros2_control from Jazzy on (topics, names, units: execution times in microseconds,
-periodicity in Hz). Other than there nothing is measured while nobody listens, so that counting begins within a second
-after somebody does.
+periodicity in Hz). Unlike there, nothing is measured without a subscriber; counting begins within a second after the
+first subscription.
 """
 
 from __future__ import annotations

@@ -16,11 +16,11 @@ class Odometer:
     """Integrates velocities to a pose, and smooths them.
 
     Args:
-        window: the mean of so many of the last velocities is told; at least 1.
+        window: the number of last velocities in the rolling mean; at least 1.
 
     Attributes:
-        place: where the robot is, from where it began.
-        velocity: how fast it goes.
+        place: the robot's pose relative to its start.
+        velocity: its smoothed velocity.
 
     Source: the odometry of ros2_controllers (exact arcs, rolling means).
     """

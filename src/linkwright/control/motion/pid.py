@@ -20,13 +20,13 @@ class PidGains:
 
     Attributes:
         p, i, d: by the error, its integral and its derivative.
-        i_min, i_max: bounds of what the integral adds to the command.
+        i_min, i_max: bounds of the integral term.
         u_min, u_max: bounds of the command.
-        antiwindup: ``none`` bounds what the integral adds while the integral grows on; ``legacy`` bounds the integral
-            itself; ``conditional_integration`` does not integrate what would drive a bounded command farther;
-            ``back_calculation`` takes back from the integral what a bounded command lacks.
-        tracking_time_constant: how fast ``back_calculation`` does that, in s; 0 for one that follows from the gains.
-        error_deadband: an error that is not greater is not integrated by the last two strategies.
+        antiwindup: ``none`` bounds the integral term while the integral continues to grow; ``legacy`` bounds the
+            integral itself; ``conditional_integration`` stops integrating if that drives a bounded command farther;
+            ``back_calculation`` subtracts the excess of a bounded command from the integral.
+        tracking_time_constant: the time constant of ``back_calculation`` in s; 0 derives it from the gains.
+        error_deadband: the last two strategies do not integrate an error up to this value.
     """
 
     p: float = 0.0

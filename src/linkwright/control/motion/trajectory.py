@@ -20,7 +20,7 @@ class TrajectoryPoint:
 
     Attributes:
         time_ns: nanoseconds after the beginning of the trajectory.
-        state: of all joints; what is empty is worked out, see `Trajectory.begin`.
+        state: of all joints; empty parts are computed, see `Trajectory.begin`.
     """
 
     time_ns: int
@@ -62,13 +62,12 @@ class Trajectory:
     def begin(self, time_ns: int, before: MotionState, wrapped: Sequence[bool] = ()) -> None:
         """Start from a state.
 
-        A point without positions gets them, and velocities where these are missing too, by going on evenly from the
-        point before.
+        A point without positions gets them by even motion from the point before, and missing velocities too.
 
         Args:
-            time_ns: when the joints are there.
-            before: where they are; velocities and accelerations count where the first point has them.
-            wrapped: which joints turn without an end: these go the shorter way to the first point.
+            time_ns: the time of the state `before`.
+            before: the state of the joints; velocities and accelerations count if the first point has them.
+            wrapped: the joints that rotate without limits: these take the shorter way to the first point.
         """
         self.begun = True
         self._start_ns = self._given_start_ns or time_ns

@@ -1,9 +1,9 @@
 """Hardware of simulated joints and sensors.
 
-It stands in for ``gazebo_ros2_control/GazeboSystem``, ``gz_ros2_control/GazeboSimSystem``,
-``ign_ros2_control/IgnitionSystem``, and for whatever else a description in a simulated world names.
+It replaces ``gazebo_ros2_control/GazeboSystem``, ``gz_ros2_control/GazeboSimSystem``,
+``ign_ros2_control/IgnitionSystem``, and any other plugin that a description in a simulated world names.
 
-Source: gazebo_ros2_control and gz_ros2_control (interfaces, what is held, texts).
+Source: gazebo_ros2_control and gz_ros2_control (interfaces, holding of joints, texts).
 """
 
 from __future__ import annotations
@@ -47,11 +47,11 @@ class SimulatedSystem(Hardware):
     """Joints and sensors of a model as hardware.
 
     Args:
-        description: what is written about it.
-        logger: where it tells what it does.
-        plugin: the plugin in whose model it is.
-        holds: whether joints are held where they are while nothing commands them.
-        gain: how much of what is missing to a position joints go with each update; NaN for all at once.
+        description: its description in the URDF.
+        logger: the logger of its events.
+        plugin: the plugin that is part of the model.
+        holds: whether joints hold their positions while they have no command.
+        gain: the fraction of a position error that joints correct with each update; NaN corrects it all at once.
         values: parameters of the plugin's node, which may have gains of PID controllers.
 
     Attributes:

@@ -15,7 +15,7 @@ from linkwright.simulation.simulation import Simulation
 _GAIN = 20.0
 """Torque of a motor in N m for each rad/s that its joint is too slow."""
 _FASTEST = 1000.0
-"""Speed in rad/s (m/s) of a joint whose own limit says nothing."""
+"""Speed in rad/s (m/s) of a joint without a velocity limit."""
 
 
 class SimulatedJoint:
@@ -27,10 +27,10 @@ class SimulatedJoint:
     Args:
         simulation: the world.
         name: the joint's name there.
-        described: what ``<ros2_control>`` says of it.
+        described: the joint in ``<ros2_control>``.
         states, commands: its interfaces, by kind.
-        holds: whether it is held where it is while nothing commands it.
-        gain: how much of what is missing to a position it goes with each update; NaN for all at once.
+        holds: whether it holds its position while it has no command.
+        gain: the fraction of a position error that it corrects with each update; NaN corrects it all at once.
         pids: PID controllers that push it to its commands, by the kind of the command.
     """
 
@@ -79,7 +79,7 @@ class SimulatedJoint:
     def set_mode(self, kind: str) -> None:
         """Set the kind of the interface that commands it; empty for none."""
         before, self._mode = self._mode, kind
-        if before in (VELOCITY, EFFORT) and self._motor is not None:  # else it holds 0, and to say so costs a new model
+        if before in (VELOCITY, EFFORT) and self._motor is not None:  # else it holds 0, and a change costs a new model
             self._motor.target = 0.0
         if self._pushed:
             self._simulation.push_joint(self._name, 0.0)

@@ -29,12 +29,12 @@ _TRUE = ("true", "True", True)
 def pids_of(
     description: HardwareDescription, values: Mapping[str, Any], logger: Logger
 ) -> tuple[HardwareDescription, dict[tuple[str, str], PidGains]]:
-    """The hardware with command interfaces as controllers name them, and the PID controllers of joints.
+    """Return the hardware with its command interfaces as controllers name them, and the PID gains of its joints.
 
     Args:
-        description: what is written.
+        description: the description in the URDF.
         values: parameters of the plugin's node, by names with dots.
-        logger: told of what is no number.
+        logger: receives a warning for each value that is not a number.
 
     Returns:
         The description, and gains by joint and kind of command.
@@ -74,7 +74,7 @@ def _gains(joint: str, given: Mapping[str, Any], logger: Logger) -> PidGains:
             return float(given.get(name, default))
         except (TypeError, ValueError):
             told = phrase(
-                "the PID controller of joint '{joint}': {name} is no number: '{value}'",
+                "PID controller of joint '{joint}': {name} is not a number: '{value}'",
                 joint=joint,
                 name=name,
                 value=str(given[name]),

@@ -50,7 +50,7 @@ class ScanShadowsFilter(ScanFilter):
             if shift:
                 here, there = _pairs(len(ranges), shift)
                 angle = shift * increment
-                with np.errstate(all="ignore"):  # what was not measured is NaN or infinite
+                with np.errstate(all="ignore"):  # missing measurements are NaN or infinite
                     across = ranges[there] * abs(np.sin(angle))
                     slope = across / (ranges[here] - ranges[there] * np.cos(angle))
                 edges[here] |= (slope < least) & (slope > most)

@@ -37,18 +37,18 @@ class Pinhole:
 def scan_of_depths(
     depths: NDArray[np.float64], camera: Pinhole, height: int, range_min: float, range_max: float
 ) -> tuple[Floats, Rays]:
-    """A laser scan from the rows around the centre of a depth image.
+    """Return a laser scan from the rows around the centre of a depth image.
 
     Args:
         depths: shape (rows, columns), metres along the view; NaN or infinite where there is none.
         camera: that of the image.
-        height: how many rows count.
-        range_min: nearer ones are left out.
-        range_max: further ones are left out.
+        height: the number of rows that count.
+        range_min: shorter ranges are left out.
+        range_max: longer ranges are left out.
 
     Returns:
-        The ranges from right to left, shape (columns,): the nearest of each ray; where there is none, infinite if the
-        image says so, else NaN. And the angles of the rays.
+        The ranges from right to left, shape (columns,): the nearest of each ray; for a ray without one, infinite if the
+        image has infinite values there, else NaN. And the angles of the rays.
 
     Raises:
         ValueError: the rows are not all in the image.

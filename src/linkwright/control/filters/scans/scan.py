@@ -28,7 +28,7 @@ class Scan:
     """A laser scan, as sensor_msgs/msg/LaserScan has it.
 
     Attributes:
-        ranges: shape (n,), metres; what was not measured is NaN, infinite, or outside of the limits.
+        ranges: shape (n,), metres; missing measurements are NaN, infinite, or outside the limits.
         intensities: shape (n,), or (0,) where there are none.
         angle_min: of the first range, rad.
         angle_max: of the last one, rad.
