@@ -121,7 +121,7 @@ ACTOR = ElementRule(
                         Waypoint,
                         "waypoint",
                         "a point of the path",
-                        value("time", TIME, "when it is there", "s", default="0"),
+                        value("time", TIME, "the time of the waypoint", "s", default="0"),
                         POSE,
                         many=True,
                         field="waypoints",

@@ -22,8 +22,8 @@ class Part:
 
     Attributes:
         link: the link.
-        pose: where its frame stands in that of the body.
-        joint: the fixed joint that makes it a part; None for the link that the body is named by.
+        pose: the pose of its frame in that of the body.
+        joint: the fixed joint that makes it a part; None for the link that names the body.
     """
 
     link: Link
@@ -36,11 +36,11 @@ class Body:
     """Links joined by fixed joints.
 
     Attributes:
-        parts: the link that the body is named by, then those that hang from it.
-        joint: what it hangs from the rest by; None for the root.
-        parent: the name of the body above; ``world``, or empty for the root.
-        pose: where the joint stands in the body above.
-        children: the bodies that hang from it.
+        parts: the link that names the body, then the links below it.
+        joint: the joint that connects it to its parent; None for the root.
+        parent: the name of the parent body; ``world``, or empty for the root.
+        pose: the pose of the joint in the parent body.
+        children: the child bodies.
     """
 
     parts: list[Part]
@@ -56,11 +56,11 @@ class Body:
 
 
 def bodies_of(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
-    """The bodies of a robot, parents before children, and children by the names of their joints, as gz has them.
+    """Return the bodies of a robot, parents before children, and children by the names of their joints, as gz does.
 
     Args:
-        robot: the robot; a root link called ``world`` stands for the world.
-        is_lumped: whether the child of a joint becomes a part of the body that its parent belongs to.
+        robot: the robot; a root link called ``world`` represents the world.
+        is_lumped: whether the child of a joint becomes a part of its parent's body.
     """
     below: dict[str, list[Joint]] = defaultdict(list)
     for joint in robot.joints.values():

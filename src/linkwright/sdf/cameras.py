@@ -33,7 +33,7 @@ class Clip:
 
 @dataclass(frozen=True, slots=True)
 class Distortion:
-    """Brown's coefficients of a lens; `center` in shares of the picture."""
+    """Brown's coefficients of a lens; `center` in fractions of the image size."""
 
     k1: float = 0.0
     k2: float = 0.0
@@ -45,7 +45,7 @@ class Distortion:
 
 @dataclass(frozen=True, slots=True)
 class Intrinsics:
-    """Focal lengths and centre of a picture in pixels, and skew."""
+    """Focal lengths and centre of an image in pixels, and skew."""
 
     fx: float = 277.0
     fy: float = 277.0
@@ -61,20 +61,20 @@ class Camera:
     Attributes:
         name: of one camera among several.
         pose: in the frame of the sensor.
-        horizontal_fov: the angle that the width of the picture covers, in radians.
+        horizontal_fov: the horizontal field of view, in radians.
         image: size and format.
-        clip: what it sees.
+        clip: the nearest and farthest visible distances.
         noise: on each colour, from 0 to 1.
         distortion: of the lens; None for a perfect one.
-        intrinsics: where they are given instead of the angle; else None.
-        depth_clip: what a depth camera measures; None for the same as `clip`.
+        intrinsics: replace the field of view if given; else None.
+        depth_clip: the range of a depth camera; None for the same as `clip`.
         segmentation_type: ``semantic`` or ``instance`` (also ``panoptic``).
         box_type: ``2d``, ``visible_2d``, ``full_2d`` or ``3d``.
-        camera_info_topic: the topic of its intrinsics; empty for the usual one.
-        optical_frame_id: the frame of its pictures; empty for that of the sensor.
-        triggered: whether it takes pictures only when asked.
-        trigger_topic: where it is asked.
-        visibility_mask: which visuals it sees: those with a bit in common.
+        camera_info_topic: the topic of its intrinsics; empty for the default one.
+        optical_frame_id: the frame of its images; empty for that of the sensor.
+        triggered: whether it takes images only on request.
+        trigger_topic: the topic of these requests.
+        visibility_mask: selects the visuals that it sees: those with a common bit.
     """
 
     name: str = ""
@@ -119,15 +119,15 @@ def _camera_of(lens: _Lens | None, depth_camera: _DepthCamera | None, **parts: A
 
 CAMERA = ElementRule(
     "camera",
-    "what a camera sees",
+    "the optics and images of a camera",
     (AttributeRule("name", TEXT, "the name of one camera among several", default=""),),
     (
         POSE,
-        value("horizontal_fov", NUMBER, "the angle that the width of the picture covers", "rad", default="1.047"),
+        value("horizontal_fov", NUMBER, "the horizontal field of view", "rad", default="1.047"),
         made(
             Picture,
             "image",
-            "its pictures",
+            "its images",
             value("width", INTEGER, "pixels in a row", default="320"),
             value("height", INTEGER, "rows", default="240"),
             value("format", TEXT, "the format of a pixel, such as R8G8B8 or L8", default="R8G8B8"),
@@ -144,7 +144,7 @@ CAMERA = ElementRule(
             value("k3", NUMBER, "the third radial coefficient", default="0"),
             value("p1", NUMBER, "the first tangential coefficient", default="0"),
             value("p2", NUMBER, "the second tangential coefficient", default="0"),
-            value("center", VECTOR2, "its centre, in shares of the picture", default="0.5 0.5"),
+            value("center", VECTOR2, "its centre, in fractions of the image size", default="0.5 0.5"),
         ),
         made(
             _Lens,
@@ -165,16 +165,16 @@ CAMERA = ElementRule(
         made(
             _DepthCamera,
             "depth_camera",
-            "what a depth camera measures",
+            "the range of a depth camera",
             made(Clip, "clip", "the distances that it measures", *_CLIP_PARTS),
             get=lambda camera: _DepthCamera(camera.depth_clip) if camera.depth_clip else None,
         ),
         value("segmentation_type", TEXT, "semantic, instance or panoptic", default="semantic"),
         value("box_type", TEXT, "2d, visible_2d, full_2d or 3d", default="2d"),
         value("camera_info_topic", TEXT, "the topic of its intrinsics", default=""),
-        value("optical_frame_id", TEXT, "the frame of its pictures", default=""),
-        value("triggered", TRUTH, "whether it takes pictures only when asked", default="false"),
-        value("trigger_topic", TEXT, "where it is asked for a picture", default=""),
+        value("optical_frame_id", TEXT, "the frame of its images", default=""),
+        value("triggered", TRUTH, "whether it takes images only on request", default="false"),
+        value("trigger_topic", TEXT, "the topic that requests an image", default=""),
         value("visibility_mask", INTEGER, "which visuals it sees: those with a bit in common", default="4294967295"),
     ),
     many=True,

@@ -30,16 +30,16 @@ _PERSON: tuple[tuple[Capsule | Sphere, Vector3, Material], ...] = (
     (Capsule(0.18, 0.3), (0.0, 0.0, 0.2), _CLOTHES),
     (Sphere(0.13), (0.0, 0.0, 0.64), _SKIN_COLOR),
 )
-"""Legs, trunk and head of somebody of 1.8 m, from the hips, which are 1 m above the feet: sizes and places in m."""
+"""Legs, trunk and head of a person of 1.8 m, from the hips, which are 1 m above the feet: sizes and places in m."""
 
 
 def figure_of(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
-    """The model of an actor: the shapes of its links, and its skin.
+    """Return the model of an actor: the shapes of its links, and its skin.
 
     Args:
-        actor: what is written about it.
-        hips: where the first joint of the skeleton is in the mesh of the skin, in its metres: Gazebo puts that at the
-            pose of the actor. None where the skin is not there: a plain figure as large as a person stands for it.
+        actor: the parsed actor.
+        hips: the position of the skeleton's first joint in the mesh of the skin, in its metres: Gazebo puts that at the
+            pose of the actor. None if the skin does not exist: a plain figure of a person's size replaces it.
     """
     links = [Link(link.name, pose=link.pose, visuals=link.visuals, element=link.element) for link in actor.links]
     if actor.skin is not None and hips is None:

@@ -40,8 +40,8 @@ class FrameError(Exception):
     """A pose cannot be computed.
 
     Attributes:
-        name: the frame that is not there, or one of those that stand in a circle.
-        circle: the frames of the circle in their order; empty where a frame is not there.
+        name: the frame that does not exist, or one frame of a cycle.
+        circle: the frames of the cycle in their order; empty for a frame that does not exist.
     """
 
     def __init__(self, name: str, circle: Sequence[str] = ()) -> None:
@@ -86,10 +86,10 @@ class Frames:
         return frames
 
     def pose(self, name: str) -> Transform:
-        """The pose of a frame in the model or world.
+        """Return the pose of a frame in the model or world.
 
         Raises:
-            FrameError: it is not there, or stands relative to itself by way of others.
+            FrameError: it does not exist, or is defined relative to itself through others.
         """
         pending: dict[str, None] = {}  # from the frame that is asked for to the first that is known
         while name not in self._roots and name not in self._poses:
@@ -116,9 +116,9 @@ class Frames:
         return compose(self.pose(pose.relative_to or absent), transform_of(pose.pose))
 
     def in_link(self, pose: RawPose, link: str) -> Transform:
-        """The pose of a part of a link in the frame of the link.
+        """Return the pose of a part of a link in the frame of the link.
 
-        One that stands relative to a frame that is not there stands in the link, as libsdformat has it; `check` tells.
+        A pose relative to an unknown frame counts as relative to the link, as in libsdformat; `check` reports it.
 
         Raises:
             FrameError: the link cannot be placed.
@@ -139,10 +139,10 @@ class Frames:
         return rotate(invert(self.pose(joint.name))[3:], in_owner)
 
     def link(self, name: str) -> str:
-        """The link to which a frame is attached, named from here; ``world`` for what is fixed to the world.
+        """Return the link to which a frame is attached, named from here; ``world`` for a frame fixed to the world.
 
         Raises:
-            FrameError: it is not there, moves with itself by way of others, or the model has no link.
+            FrameError: it does not exist, is attached to itself through others, or the model has no link.
         """
         seen: dict[str, None] = {}
         while True:
@@ -205,11 +205,11 @@ class PlacedLink:
     """A link of a world.
 
     Attributes:
-        name: with the models that it is in: ``robot::arm::tip``.
-        link: what is written about it.
-        model: the model that it is directly in.
-        frames: those of that model.
-        pose: where its frame stands in the world.
+        name: with the models around it: ``robot::arm::tip``.
+        link: the parsed link.
+        model: the model that directly contains it.
+        frames: the frames of that model.
+        pose: the pose of its frame in the world.
         static: whether its model, or one around that, never moves.
     """
 
@@ -233,13 +233,13 @@ def placed_links(world: World) -> Iterator[PlacedLink]:
 
 
 def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static: bool = False) -> Iterator[PlacedLink]:
-    """All links of a model and of those in it, each with its pose.
+    """Yield all links of a model and of nested models, each with its pose.
 
     Args:
         model: with its includes resolved.
         frames: those of the model.
-        pose: where its frame stands in the world.
-        name: what it is called in the world.
+        pose: the pose of its frame in the world.
+        name: its name in the world.
         static: whether a model around it never moves.
 
     Raises:

@@ -59,9 +59,9 @@ def model_from_robot(robot: Robot, *, lump_fixed_joints: bool) -> Conversion:
 
     Args:
         robot: the robot.
-        lump_fixed_joints: whether links that fixed joints connect become one link, as gz does unless it is told not
-            to; what they were are then frames, and links without a mass are left out. Otherwise every link and every
-            fixed joint stays.
+        lump_fixed_joints: whether links that fixed joints connect become one link, as by default in gz. The original
+            links then become frames, and links without a mass are left out. Otherwise every link and every fixed joint
+            stays.
     """
     report = SdfReport()
     extensions = Extensions(robot, report)
@@ -104,7 +104,7 @@ class _Converter:
         )
 
     def _with_mass(self, bodies: list[Body]) -> list[Body]:
-        """The bodies with a mass, without those below one without, as gz leaves them out."""
+        """Return the bodies with a mass; bodies below a massless one are left out too, as in gz."""
         left_out: set[str] = set()
         kept = []
         for body in bodies:

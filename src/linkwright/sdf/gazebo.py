@@ -1,11 +1,11 @@
-"""``<gazebo>`` in a URDF: what a description tells simulators only.
+"""``<gazebo>`` in a URDF: the part of a description that only simulators read.
 
-Most of what stands in it is SDF for the link, joint or model that it refers to; some words are older than SDF and stand
-for elements of it (``mu1``, ``turnGravityOff``). Both are put together as one element of SDF and read by SDF's tables,
-so that mistakes in them are told at their place in the URDF.
+Most of its content is SDF for the link, joint or model that it refers to; some words are older than SDF and represent
+elements of it (``mu1``, ``turnGravityOff``). Both are joined into one SDF element and read by the tables of SDF, so
+that errors are reported at their place in the URDF.
 
-Source: libsdformat's parser of URDF. Where that finds the shapes of a link by its name in theirs, and so passes over
-those which have names of their own, all shapes of the link are meant here.
+Source: libsdformat's parser of URDF. That parser finds the shapes of a link by names derived from the link, and so
+skips shapes with other names; here all shapes of the link are meant.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from linkwright.urdf import model as urdf
 from linkwright.xmltree import Element, Text
 
 _Words = Mapping[str, tuple[str, ...]]
-"""A word of ``<gazebo>``: the elements of SDF that it stands for."""
+"""A word of ``<gazebo>``: the SDF elements that it represents."""
 
 _MODEL_WORDS: _Words = {"static": ("static",)}
 _LINK_WORDS: _Words = {
@@ -217,7 +217,7 @@ def _said(word: Element) -> str:
 
 
 def _truth(word: str, text: str) -> str:
-    """A boolean as ``true`` or ``false``; any other text stands for the word's usual value."""
+    """Return a boolean as ``true`` or ``false``; any other text becomes the word's default value."""
     said = text.casefold()
     if word in _NEGATED:
         return "true" if said in _FALSE else "false"

@@ -46,12 +46,12 @@ class Included:
 
 
 def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
-    """Replace the includes of a file by what they name.
+    """Replace the includes of a file by the models that they name.
 
     Args:
-        sdf: what the file says.
+        sdf: the parsed file.
         path: the file.
-        finder: where models are.
+        finder: finds models.
     """
     resolver = _Resolver(finder)
     worlds = tuple(resolver.world(world, path) for world in sdf.worlds)
@@ -132,7 +132,7 @@ class _Resolver:
             return merged(whole, part)
         except FrameError as error:
             message = phrase(
-                "'{attribute}' names '{name}', which is not there", attribute="placement_frame", name=error.name
+                "'{attribute}' names '{name}', which does not exist", attribute="placement_frame", name=error.name
             )
             self._tell("SDF141", message, include, None, Severity.ERROR)
             return merged(whole, replace(part, placement_frame=""))

@@ -131,7 +131,7 @@ def _direction(said: Vector3, expressed_in: str) -> tuple[Vector3, str]:
 
 
 def _limit(lower: float, upper: float, effort: float, velocity: float, **rest: float) -> AxisLimit:
-    """A limit, infinite where the file has what stands for that: 1e16 and more, or a negative effort or speed."""
+    """Return a limit; 1e16 and more, and a negative effort or speed, become infinite."""
     return AxisLimit(
         -inf if lower <= -1e16 else lower,
         inf if upper >= 1e16 else upper,
@@ -260,7 +260,7 @@ JOINT = ElementRule(
         made(
             _Physics,
             "physics",
-            "what physics engines want to know",
+            "parameters of physics engines",
             value("provide_feedback", TRUTH, "whether the forces in it are measured", default="false"),
             made(
                 _Physics,

@@ -39,13 +39,13 @@ class Light:
 
     Attributes:
         type: ``point``, ``directional`` or ``spot``.
-        pose: where it stands.
+        pose: its pose.
         diffuse: its colour.
-        specular: the colour of what shines.
-        direction: where it shines, in its own frame; of spot and directional lights.
+        specular: the colour of its highlights.
+        direction: the direction of its rays, in its own frame; of spot and directional lights.
         attenuation: how it fades with distance.
         spot: its cone; None where it has none.
-        cast_shadows: whether there are shadows of what it shines on.
+        cast_shadows: whether the objects that it lights cast shadows.
         intensity: a factor on its colour.
         light_on: whether it is lit.
     """
@@ -69,13 +69,13 @@ LIGHT = ElementRule(
     "a light",
     (
         name_of(),
-        AttributeRule("type", choice("point", "directional", "spot"), "what kind of light", default="point"),
+        AttributeRule("type", choice("point", "directional", "spot"), "the kind of light", default="point"),
     ),
     (
         POSE,
         value("diffuse", COLOR, "its colour", default="1 1 1 1"),
-        value("specular", COLOR, "the colour of what shines", default="0.1 0.1 0.1 1"),
-        value("direction", VECTOR3, "where it shines, in its own frame", default="0 0 -1"),
+        value("specular", COLOR, "the colour of its highlights", default="0.1 0.1 0.1 1"),
+        value("direction", VECTOR3, "the direction of its rays, in its own frame", default="0 0 -1"),
         made(
             Attenuation,
             "attenuation",

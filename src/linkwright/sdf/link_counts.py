@@ -8,7 +8,7 @@ from xml.parsers import expat
 _SHORTEST = len('<link name="l"/>')
 _AROUND = frozenset({"sdf", "gazebo", "world", "model"})
 _COUNTED = frozenset({"link", "include"})
-"""Elements that count, and that contain such, but for states and plugins. An included model has a link."""
+"""Elements that count, and elements that contain them, except states and plugins. An included model has a link."""
 
 
 def has_more_links(data: bytes | str, most: int) -> bool:
@@ -52,5 +52,5 @@ class _Counter:
             raise _DoneError
 
     def stop(self, *_declared: object) -> None:
-        """End the counting at an entity, which may stand for anything: the reader of XML handles it."""
+        """End the counting at an XML entity, which may contain any text: the XML reader handles it."""
         raise _DoneError

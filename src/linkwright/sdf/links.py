@@ -106,12 +106,12 @@ class Link:
     """A rigid body.
 
     Attributes:
-        pose: where it stands, in the frame of its model.
-        inertial: mass properties; None where nothing is said, which stands for 1 kg and 1 kg m2.
-        gravity: whether it falls.
+        pose: its pose in the frame of its model.
+        inertial: mass properties; None if not given, which means 1 kg and 1 kg m2.
+        gravity: whether gravity acts on it.
         enable_wind: whether wind moves it.
-        self_collide: whether it touches the other links of its model; None for what the model says.
-        kinematic: whether it moves and nothing moves it.
+        self_collide: whether it collides with other links of its model; None for the setting of the model.
+        kinematic: whether it moves without reacting to forces.
     """
 
     name: str

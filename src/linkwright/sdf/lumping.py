@@ -17,7 +17,7 @@ from linkwright.urdf import model as urdf
 
 
 def lumped_inertial(parts: Sequence[Part]) -> Inertial | None:
-    """The mass properties of a body's parts together, in the axes of the first one's; None without any.
+    """Return the joint mass properties of a body's parts, in the axes of the first one's; None if no part has any.
 
     Source of the axes: libsdformat's parser of URDF.
     """

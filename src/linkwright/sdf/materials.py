@@ -65,14 +65,14 @@ class Material:
     Attributes:
         ambient: the colour in the shade.
         diffuse: the colour in the light.
-        specular: the colour of what shines on it.
-        emissive: the colour that it gives off by itself.
-        shininess: how narrow the shine is.
+        specular: the colour of highlights.
+        emissive: the colour that it emits.
+        shininess: the specular exponent; higher makes highlights narrower.
         lighting: whether lights change it.
-        double_sided: whether it is seen from within too.
-        render_order: which of two surfaces in one place is drawn over the other.
-        script: a material of a script, which comes before the colours in Gazebo classic.
-        pbr: a physically based surface, which comes before all else in gz-sim.
+        double_sided: whether it is visible from inside too.
+        render_order: the surface with the higher order is drawn over another one in the same place.
+        script: a material of a script, which overrides the colours in Gazebo classic.
+        pbr: a physically based surface, which overrides everything else in gz-sim.
     """
 
     ambient: Color | None = None
@@ -95,9 +95,9 @@ def _map(tag: str, meaning: str) -> ElementRule:
 _MAPS = (
     _map("albedo_map", "the image of the colour"),
     _map("normal_map", "the image of the normals"),
-    _map("emissive_map", "the image of what it gives off"),
+    _map("emissive_map", "the image of the emitted colour"),
     _map("ambient_occlusion_map", "the image of where light does not reach"),
-    _map("environment_map", "the image of what it mirrors"),
+    _map("environment_map", "the image of its reflections"),
     _map("light_map", "the image of the light on it"),
 )
 
@@ -107,8 +107,8 @@ MATERIAL = made(
     "how it looks",
     value("ambient", COLOR, "the colour in the shade"),
     value("diffuse", COLOR, "the colour in the light"),
-    value("specular", COLOR, "the colour of what shines on it"),
-    value("emissive", COLOR, "the colour that it gives off by itself"),
+    value("specular", COLOR, "the colour of highlights"),
+    value("emissive", COLOR, "the emitted colour"),
     value("shininess", NUMBER, "how narrow the shine is", default="0"),
     value("lighting", TRUTH, "whether lights change it", default="true"),
     value("double_sided", TRUTH, "whether it is seen from within too", default="false"),

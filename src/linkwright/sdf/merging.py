@@ -19,12 +19,12 @@ _Posed = TypeVar("_Posed", Link, Frame, Model)
 
 
 def merged(whole: Model, part: Model) -> Model:
-    """A model with the parts of another as its own.
+    """Return a model with the parts of another as its own.
 
-    What stood in the frame of the other model stands in a frame of its own, which is placed as the other model was.
+    The parts of the other model are placed in a new frame, which has the other model's pose.
 
     Raises:
-        FrameError: the other model's placement frame is not there.
+        FrameError: the other model's placement frame does not exist.
     """
     frame = f"_merged__{part.name}__model__"
     pose = part.pose

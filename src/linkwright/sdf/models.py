@@ -1,4 +1,4 @@
-"""``<model>``: links, joints and models in it, and ``<include>``: a model that stands in another file.
+"""``<model>``: links, joints and models in it, and ``<include>``: a model from another file.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``model.sdf``, ``frame.sdf``.
 """
@@ -23,7 +23,7 @@ class Frame:
 
     Attributes:
         attached_to: the link, joint, frame or model that it moves with; empty for the model or world it is in.
-        pose: where it stands; relative to `attached_to` where nothing else is said.
+        pose: its pose; relative to `attached_to` by default.
     """
 
     name: str
@@ -39,8 +39,8 @@ class Include:
     Attributes:
         uri: ``model://NAME``, a path or the address of a model.
         name: its name here; empty for that in the file.
-        pose: where it stands here; None for where the file says.
-        static: whether it moves; None for what the file says.
+        pose: its pose here; None for that in the file.
+        static: whether it never moves; None for the setting of the file.
         placement_frame: the frame in it that `pose` places; empty for that of the model.
         merge: whether its parts become parts of the model around it (SDF 1.9).
         plugins: added to those in the file.
@@ -61,16 +61,16 @@ class Model:
     """A model.
 
     Attributes:
-        pose: where it stands, in the frame of the model or world around it.
+        pose: its pose in the frame of the model or world around it.
         static: whether it never moves.
-        self_collide: whether its links touch each other.
-        allow_auto_disable: whether it may rest when nothing moves it.
+        self_collide: whether its links collide with each other.
+        allow_auto_disable: whether the engine may put it to sleep when it does not move.
         enable_wind: whether wind moves its links.
         canonical_link: the link that its frame is attached to; empty for the first.
         placement_frame: the frame in it that `pose` places; empty for its own.
         scale: of Gazebo classic's saved worlds, which few readers follow.
         models: the models in it.
-        includes: the models that come from other files.
+        includes: the models from other files.
     """
 
     name: str

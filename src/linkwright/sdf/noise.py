@@ -51,13 +51,13 @@ class NoiseXyz:
 NO_NOISE_XYZ = NoiseXyz()
 
 _NOISE_PARTS = (
-    value("mean", NUMBER, "what it adds on average", default="0"),
+    value("mean", NUMBER, "its mean", default="0"),
     value("stddev", NUMBER, "its standard deviation", default="0"),
     value("bias_mean", NUMBER, "the mean of a bias that is drawn once", default="0"),
     value("bias_stddev", NUMBER, "the standard deviation of that bias", default="0"),
     value("dynamic_bias_stddev", NUMBER, "the standard deviation of a bias that wanders", default="0"),
     value("dynamic_bias_correlation_time", NUMBER, "how slowly that bias wanders", "s", default="0"),
-    value("precision", NUMBER, "what values are rounded to", default="0"),
+    value("precision", NUMBER, "the step to which values are rounded", default="0"),
 )
 
 

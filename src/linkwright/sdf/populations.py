@@ -44,11 +44,11 @@ class Population:
     """A population: a model and the distribution of its copies.
 
     Attributes:
-        pose: where the middle of the box is, of a cylinder that of its base, and of a grid its own.
-        models: the model that is repeated; others count for nothing.
-        count: how many there are, unless they stand in a grid.
-        box: where they are; None for no box.
-        cylinder: where they are; None for no cylinder.
+        pose: the pose of the box's centre, of the centre of the cylinder's base, or of the grid.
+        models: the repeated model; only the first counts.
+        count: the number of copies, unless they form a grid.
+        box: the box around them; None for no box.
+        cylinder: the cylinder around them; None for no cylinder.
     """
 
     name: str
@@ -62,7 +62,7 @@ class Population:
 
 
 def models_of(population: Population) -> Iterator[Model]:
-    """The models of a population, ``NAME_clone_0`` and so on; none without a volume, as in Gazebo."""
+    """Yield the models of a population, ``NAME_clone_0`` and so on; none if it has no volume, as in Gazebo."""
     if not population.models:
         return
     model = population.models[0]
@@ -133,7 +133,7 @@ POPULATION = ElementRule(
     (
         POSE,
         MODEL,
-        value("model_count", INTEGER, "how many there are, unless they stand in a grid", default="1", field="count"),
+        value("model_count", INTEGER, "the number of copies, unless they form a grid", default="1", field="count"),
         made(
             Distribution,
             "distribution",
@@ -147,13 +147,13 @@ POPULATION = ElementRule(
         made(
             Box,
             "box",
-            "the box that they stand in",
+            "the box around the copies",
             value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1"),
         ),
         made(
             Cylinder,
             "cylinder",
-            "the cylinder that they stand in, from its base upwards",
+            "the cylinder around the copies, from its base upwards",
             value("radius", NUMBER, "radius", "m", default="1"),
             value("length", NUMBER, "length along z", "m", default="1"),
         ),

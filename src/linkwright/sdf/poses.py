@@ -24,9 +24,9 @@ class RawPose:
     """A pose as written; `linkwright.sdf.frames` computes the pose in the model.
 
     Attributes:
-        pose: the frame of what is posed, in the frame named by `relative_to`.
-        relative_to: a frame, link, joint or model; empty for the one that goes without saying: that of the element
-            around it, or of a joint its child link.
+        pose: the pose in the frame named by `relative_to`.
+        relative_to: a frame, link, joint or model; empty for the default: the element around it, or for a joint its
+            child link.
     """
 
     pose: Pose = IDENTITY_POSE
@@ -52,7 +52,7 @@ def _read(said: dict[str, Any], element: Element, owner: Element, report: Report
 
 POSE = ElementRule(
     "pose",
-    "where it stands: x y z in metres, roll pitch yaw about the fixed axes in radians",
+    "the pose: x y z in metres, roll pitch yaw about the fixed axes in radians",
     (
         AttributeRule(
             "relative_to",
@@ -65,7 +65,7 @@ POSE = ElementRule(
         AttributeRule(
             "rotation_format",
             choice("euler_rpy", "quat_xyzw"),
-            "quat_xyzw where a quaternion x y z w stands for the angles",
+            "quat_xyzw if a quaternion x y z w replaces the angles",
             default="euler_rpy",
             get=lambda raw: "euler_rpy" if raw.pose.quaternion is None else "quat_xyzw",
         ),

@@ -1,7 +1,7 @@
-"""Reading an SDF document into worlds and models, with all of its mistakes as findings.
+"""Reads an SDF document into worlds and models, with all of its errors as findings.
 
-As libsdformat does, it goes on where it can: what is missing has its default, and what cannot be read counts as
-missing. Where libsdformat then refuses the file, the finding is an error.
+Like libsdformat, it continues after an error if it can: a missing value has its default, and an invalid value counts as
+missing. If libsdformat refuses the file at that point, the finding is an error.
 """
 
 from __future__ import annotations
@@ -103,9 +103,9 @@ WITHOUT_EFFECT = {
     "road": {"material"},
     "metal": {"subsurface"},
 }
-"""Words of SDF that have no effect here, by the elements that they stand in, and what ros2_control reads itself."""
+"""Words of SDF that have no effect here, by the elements around them, and elements that ros2_control reads itself."""
 OPEN = frozenset({"plugin", "gui", "state"})
-"""Elements that hold what others than SDF decide, and what Gazebo saved of a run."""
+"""Elements whose content other programs define, and the state that Gazebo saved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,7 +212,7 @@ def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementR
 
 
 def _is_let_be(element: Element, rule: ElementRule) -> bool:
-    """Whether an unknown element is no mistake: it has a prefix, or is a word of SDF without effect here."""
+    """Return whether an unknown element is acceptable: it has a prefix, or is a word of SDF without effect here."""
     tag = element.tag
     return ":" in tag or tag in WITHOUT_EFFECT.get(rule.tag, ()) or (tag == _FRAME and POSE in rule.children)
 
@@ -231,7 +231,7 @@ def _minor(root: Element) -> int:
 def _check_names(element: Element, report: SdfReport, *, flat: bool) -> None:
     """Report duplicate names, among all that poses may refer to and among shapes and sensors of one kind.
 
-    Names that mean something else to poses are told of as well.
+    Names with a special meaning in poses are reported as well.
     """
     first: dict[tuple[str, str], Element] = {}
     for child in element.elements():

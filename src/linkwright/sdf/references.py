@@ -46,7 +46,7 @@ def _check(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
             *link.lights,
         )
         for part in parts:
-            # libsdformat looks these up only when they are needed, and goes on without.
+            # libsdformat looks these up only when needed, and continues if they are missing.
             yield from (
                 diagnostic.but(severity=Severity.WARNING) for diagnostic in _pose(part.pose, part.element, frames)
             )
@@ -131,7 +131,7 @@ def _is_known(name: str, frames: Frames) -> bool:
 
 
 def _unknown(element: Element | None, attribute: str, name: str, frames: Frames) -> Diagnostic:
-    message = phrase("'{attribute}' names '{name}', which is not there", attribute=attribute, name=name)
+    message = phrase("'{attribute}' names '{name}', which does not exist", attribute=attribute, name=name)
     hint = did_you_mean(name, frames.named) or phrase(
         "there are: {names}", names=joined([*frames.named][:8] or [MODEL])
     )

@@ -169,7 +169,7 @@ class SdfReport(Findings):
             hint = phrase("gz refuses this name, and Gazebo classic takes it; name it 'default', for instance")
             self.warning("SDF111", message, element, "name", hint=hint)
             return
-        hint = phrase("'::' stands between names, and 'world' and '__...__' are names of SDF's own")
+        hint = phrase("'::' separates names, and SDF reserves 'world' and '__...__'")
         self.error("SDF111", message, element, "name", hint=hint)
 
     def twice(self, element: Element, first: Element) -> None:
@@ -215,7 +215,7 @@ def _explained(place: Phrase, text: str, attribute: AttributeRule, element: Elem
     if attribute.type in (NUMBER, TIME):
         return phrase("{place} is not a number: '{value}'", **told), number_hint(text)
     if attribute.type is INTEGER:
-        return phrase("{place} is not a whole number: '{value}'", **told), None
+        return phrase("{place} is not an integer: '{value}'", **told), None
     words = attribute.type.name.split(" | ")
     hint = did_you_mean(text, words) or phrase("it is one of {names}", names=joined(words))
     return phrase("{place} is not known: '{value}'", **told), hint

@@ -41,7 +41,7 @@ _HOOKED = re.compile(
 )
 """``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"``."""
 _OF_GAZEBO = "media/"
-"""The folder of what Gazebo classic brings along, such as the walking people of its actors."""
+"""The folder of files that Gazebo classic ships, such as the walking people of its actors."""
 _BELOW = ("", "models", "media/models", "Media/models")
 """Where in a folder of the search path Gazebo classic looks for ``file://PATH`` (its ``SystemPaths``)."""
 _SCHEMES = ("model", "package", "file")
@@ -50,7 +50,7 @@ _TEMPLATES = (".jinja", ".jinja2", ".j2", ".em", ".erb", ".in", ".template", ".x
 _SHORTEST = 4
 """Models with shorter names, such as ``suv`` and ``sun``, are never taken for misspellings of each other."""
 _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
-"""Models of Fuel that stand in nearly every world, and ours by which they are replaced."""
+"""Fuel models that nearly every world includes, and our own models that replace them."""
 
 
 class Missing(NamedTuple):
@@ -242,7 +242,7 @@ class ResourceFinder:
         if parts and re.fullmatch(r"[0-9.]+", parts[0]):
             parts = parts[1:]
         if len(parts) < 3 or parts[1] not in ("models", "worlds"):
-            return Missing(phrase("'{uri}' is no address of a model", uri=address), None)
+            return Missing(phrase("'{uri}' is not the address of a model", uri=address), None)
         owner, kind, name, *rest = parts
         for cache in self._caches():
             place = cache / host / owner.lower() / kind / name.lower()
@@ -270,7 +270,7 @@ def _is_model(folder: Path) -> bool:
 
 
 def _around(folder: Path) -> tuple[Path, ...]:
-    """A folder and those around it: up to the one of its package, or one more where it lies in none."""
+    """Return a folder and its parents: up to the folder of its package, or one parent if it is not in a package."""
     package = enclosing_package(folder)
     around = (folder, *folder.parents)
     last = 1 if package is None else max(1, around.index(package[1]))
@@ -330,7 +330,7 @@ def hooked_folders(share: Path) -> Iterator[Path]:
 
 
 def _version_in(place: Path, rest: list[str]) -> Path | None:
-    """The folder of a version in the cache, and the path below it; ``tip`` or nothing stands for the newest."""
+    """Return the folder of a cached version, and the path below it; ``tip`` or no version means the newest."""
     try:
         versions = sorted((int(path.name), path) for path in place.iterdir() if path.name.isdigit())
     except OSError:
@@ -351,7 +351,7 @@ def _kind(path: Path) -> str:
 
 
 def _is_ours(folder: Path) -> bool:
-    """Whether a folder is one of our own models, which stand in for some of Gazebo's with fewer files."""
+    """Return whether a folder is one of our own models, which replace some of Gazebo's with fewer files."""
     shipped = shipped_folder()
     return folder.is_relative_to(_SHIPPED) or (shipped is not None and folder.absolute().is_relative_to(shipped))
 

@@ -1,7 +1,7 @@
 """``<state>``: the state of a world that Gazebo classic saved.
 
-A saved world says twice where everything is: in the models as they were written first, and in ``<state>``, which is
-what the simulator goes by. Poses in a state are in the frame of the world.
+A saved world has each pose twice: in the models as they were first written, and in ``<state>``, which the simulator
+uses. Poses in a state are in the frame of the world.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def _place(frames: Frames, model: Model) -> Transform:
     try:
         return frames.pose(model.name)
     except FrameError:
-        return transform_of(model.pose.pose)  # what is wrong with it is told by those who check frames
+        return transform_of(model.pose.pose)  # the check of frames reports the error
 
 
 def _restored(model: Model, state: ModelState | None, place: Transform) -> Model:

@@ -103,7 +103,7 @@ class ForceTorque:
     """A force-torque sensor.
 
     Attributes:
-        frame: the frame of what it measures: ``child``, ``parent`` or ``sensor``.
+        frame: the frame of the measurement: ``child``, ``parent`` or ``sensor``.
         measure_direction: ``child_to_parent`` or ``parent_to_child``.
         force: noise in newtons.
         torque: noise in newton metres.
@@ -156,15 +156,15 @@ class Sensor:
     """A sensor on a link or joint.
 
     Attributes:
-        type: such as ``camera``, ``gpu_lidar``, ``imu``; what `linkwright.sdf` does not know stays as written.
+        type: such as ``camera``, ``gpu_lidar``, ``imu``; an unknown type stays as written.
         pose: in the frame of the link or joint.
-        update_rate: measurements a second; 0 for one each step.
-        always_on: whether it measures while nobody listens.
-        visualize: whether what it measures is drawn.
-        topic: where it publishes; empty for the usual topic.
-        frame_id: the frame of its messages; empty for the usual one.
-        cameras: its cameras, of which all but ``multicamera`` have one.
-        plugins: what publishes its measurements in Gazebo classic.
+        update_rate: measurements per second; 0 for one per step.
+        always_on: whether it measures without a subscriber.
+        visualize: whether its measurements are drawn.
+        topic: its topic; empty for the default one.
+        frame_id: the frame of its messages; empty for the default one.
+        cameras: its cameras; every type except ``multicamera`` has one.
+        plugins: the plugins that publish its measurements in Gazebo classic.
     """
 
     name: str
@@ -197,7 +197,7 @@ def _sweep(tag: str, meaning: str, samples: int) -> ElementRule:
         tag,
         meaning,
         value("samples", INTEGER, "how many rays", default=str(samples)),
-        value("resolution", NUMBER, "how many measured distances make one that is told", default="1"),
+        value("resolution", NUMBER, "the number of measured distances per reported one", default="1"),
         value("min_angle", NUMBER, "where it begins", "rad", default="0"),
         value("max_angle", NUMBER, "where it ends", "rad", default="0"),
         default=Sweep(samples),
@@ -210,7 +210,7 @@ _RANGE = made(
     "the distances that it measures",
     value("min", NUMBER, "the shortest", "m", default="0"),
     value("max", NUMBER, "the longest", "m", default="0"),
-    value("resolution", NUMBER, "what distances are rounded to", "m", default="0"),
+    value("resolution", NUMBER, "the step to which distances are rounded", "m", default="0"),
     default=Reach(),
 )
 
@@ -229,7 +229,7 @@ def _lidar(tag: str) -> ElementRule:
     return made(
         _lidar_of,
         tag,
-        "what a lidar measures",
+        "the rays and the range of a lidar",
         made(
             _Scan,
             "scan",
@@ -265,14 +265,14 @@ def _custom(said: Vector3, parent_frame: str) -> tuple[Vector3, str]:
 _IMU = made(
     _imu_of,
     "imu",
-    "what an IMU measures",
+    "the noise and the reference of an IMU",
     noise_xyz("angular_velocity", "noise on the angular velocity"),
     noise_xyz("linear_acceleration", "noise on the acceleration"),
     value("enable_orientation", TRUTH, "whether it tells its orientation too", default="true"),
     made(
         _Reference,
         "orientation_reference_frame",
-        "what the orientation is against",
+        "the reference frame of the orientation",
         value("localization", TEXT, "CUSTOM, NED, ENU, NWU, GRAV_UP or GRAV_DOWN", default="CUSTOM"),
         ElementRule(
             "custom_rpy",
@@ -325,8 +325,8 @@ def _navsat(tag: str) -> ElementRule:
 _FORCE_TORQUE = made(
     ForceTorque,
     "force_torque",
-    "what a force-torque sensor measures",
-    value("frame", TEXT, "the frame of what it measures: child, parent or sensor", default="child"),
+    "the frame and the noise of a force-torque sensor",
+    value("frame", TEXT, "the frame of the measurement: child, parent or sensor", default="child"),
     value("measure_direction", TEXT, "child_to_parent or parent_to_child", default="child_to_parent"),
     noise_xyz("force", "noise on the force"),
     noise_xyz("torque", "noise on the torque"),
@@ -335,7 +335,7 @@ _FORCE_TORQUE = made(
 _SONAR = made(
     Sonar,
     "sonar",
-    "what a sonar measures",
+    "the field of a sonar",
     value("geometry", TEXT, "cone or sphere", default="cone"),
     value("min", NUMBER, "the shortest distance", "m", default="0"),
     value("max", NUMBER, "the longest distance", "m", default="1"),
@@ -362,13 +362,13 @@ def _sensor_of(
 SENSOR = ElementRule(
     "sensor",
     "something that measures",
-    (name_of(), AttributeRule("type", TEXT, "what it is, such as camera or gpu_lidar", required=True, default="")),
+    (name_of(), AttributeRule("type", TEXT, "its type, such as camera or gpu_lidar", required=True, default="")),
     (
         POSE,
-        value("update_rate", NUMBER, "measurements a second; 0 for one each step", "Hz", default="0"),
-        value("always_on", TRUTH, "whether it measures while nobody listens", default="false"),
-        value("visualize", TRUTH, "whether what it measures is drawn", default="false"),
-        value("enable_metrics", TRUTH, "whether it tells how fast it is", default="false"),
+        value("update_rate", NUMBER, "measurements per second; 0 for one per step", "Hz", default="0"),
+        value("always_on", TRUTH, "whether it measures without a subscriber", default="false"),
+        value("visualize", TRUTH, "whether its measurements are drawn", default="false"),
+        value("enable_metrics", TRUTH, "whether it publishes its rate", default="false"),
         value("topic", TEXT, "where it publishes", default=""),
         value("frame_id", TEXT, "the frame of its messages", default="", get=unwritten),
         value(
@@ -386,7 +386,7 @@ SENSOR = ElementRule(
         made(
             ContactSensor,
             "contact",
-            "what a contact sensor listens to",
+            "the collision and the topic of a contact sensor",
             value("collision", TEXT, "the collision", default="__default__"),
             value("topic", TEXT, "the topic of its messages", default="__default_topic__"),
         ),
@@ -403,7 +403,7 @@ SENSOR = ElementRule(
         made(
             AirPressure,
             "air_pressure",
-            "what a barometer measures",
+            "the reference and the noise of a barometer",
             value("reference_altitude", NUMBER, "the altitude of its zero", "m", default="0"),
             around_noise("pressure", "noise on the pressure", "noise"),
         ),
@@ -412,11 +412,11 @@ SENSOR = ElementRule(
         made(
             LogicalCamera,
             "logical_camera",
-            "what a camera that names models sees",
+            "the view of a logical camera, which names models",
             value("near", NUMBER, "the nearest", "m", default="0"),
             value("far", NUMBER, "the farthest", "m", default="1"),
-            value("aspect_ratio", NUMBER, "width of what it sees by its height", default="1"),
-            value("horizontal_fov", NUMBER, "the angle that it sees across", "rad", default="1"),
+            value("aspect_ratio", NUMBER, "the width of its view divided by the height", default="1"),
+            value("horizontal_fov", NUMBER, "the horizontal field of view", "rad", default="1"),
         ),
         PLUGIN,
     ),

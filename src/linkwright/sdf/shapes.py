@@ -210,7 +210,7 @@ GEOMETRY = made(
         made(
             TerrainTexture,
             "texture",
-            "what it is painted with, from the lowest up",
+            "a texture of the terrain, from the lowest up",
             value("diffuse", TEXT, "the colours, as the URI of an image", default=""),
             value("normal", TEXT, "the normals, as the URI of an image", default=""),
             value("size", NUMBER, "the edge length that one image covers", "m", default="10"),

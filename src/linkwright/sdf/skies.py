@@ -26,11 +26,11 @@ class Fog:
     """Fog.
 
     Attributes:
-        color: of what is lost in it.
+        color: its colour.
         type: ``none``, ``linear``, from `start` to `end`, or by `density`: ``constant`` (Gazebo: ``exp``) or
             ``quadratic`` (``exp2``).
         start: the distance in m at which it begins.
-        end: the distance in m from which nothing is seen.
+        end: the distance in m beyond which nothing is visible.
         density: in 1/m.
     """
 

@@ -123,11 +123,11 @@ STATE = ElementRule(
             keeps=True,
             field="lights",
         ),
-        made(Insertions, "insertions", "what was put in after the start", MODEL, LIGHT, default=Insertions()),
+        made(Insertions, "insertions", "models and lights added after the start", MODEL, LIGHT, default=Insertions()),
         made(
             readable(Deletions),
             "deletions",
-            "what was taken out after the start",
+            "models and lights deleted after the start",
             values("name", TEXT, "its name"),
             default=Deletions(),
         ),

@@ -58,12 +58,12 @@ class Contact:
     """Stiffness of a contact.
 
     Attributes:
-        soft_cfm: how much force mixes into the constraint.
-        soft_erp: how much of the error is mended in a step.
+        soft_cfm: the constraint force mixing.
+        soft_erp: the fraction of the error that is corrected in a step.
         kp: stiffness in N/m.
         kd: damping in N s/m.
-        max_vel: the greatest speed by which an overlap is mended, in m/s.
-        min_depth: the overlap that is let be, in metres.
+        max_vel: the maximum speed of correcting an overlap, in m/s.
+        min_depth: the overlap that is not corrected, in metres.
     """
 
     soft_cfm: float = 0.0
@@ -79,15 +79,15 @@ class Surface:
     """The contact properties of a collision.
 
     Attributes:
-        friction: friction, or None where nothing is said.
+        friction: friction; None if not given.
         bullet_friction: the same for the engine Bullet.
-        torsional: friction against turning on the spot.
-        contact: stiffness, or None where nothing is said.
-        restitution: the share of the speed that it bounces back with.
+        torsional: friction against rotation about the normal.
+        contact: stiffness; None if not given.
+        restitution: the fraction of the speed after a bounce.
         bounce_threshold: the speed in m/s above which it bounces.
-        collide_without_contact: whether touching is told and has no effect.
-        collide_bitmask: which shapes it touches: those with a bit in common.
-        category_bitmask: the bits that others see of it.
+        collide_without_contact: whether contacts are reported without an effect.
+        collide_bitmask: selects the shapes that it touches: those with a common bit.
+        category_bitmask: the bits that others see.
     """
 
     friction: Friction | None = None
@@ -245,16 +245,16 @@ SURFACE = made(
             Contact,
             "ode",
             "stiffness as ODE has it",
-            value("soft_cfm", NUMBER, "how much force mixes into the constraint", default="0"),
-            value("soft_erp", NUMBER, "how much of the error is mended in a step", default="0.2"),
+            value("soft_cfm", NUMBER, "the constraint force mixing", default="0"),
+            value("soft_erp", NUMBER, "the fraction of the error that is corrected in a step", default="0.2"),
             value("kp", NUMBER, "stiffness", "N/m", default="1e12"),
             value("kd", NUMBER, "damping", "N s/m", default="1"),
-            value("max_vel", NUMBER, "the greatest speed by which an overlap is mended", "m/s", default="0.01"),
-            value("min_depth", NUMBER, "the overlap that is let be", "m", default="0"),
+            value("max_vel", NUMBER, "the maximum speed of correcting an overlap", "m/s", default="0.01"),
+            value("min_depth", NUMBER, "the overlap that is not corrected", "m", default="0"),
         ),
-        value("collide_without_contact", TRUTH, "whether touching is told and has no effect", default="false"),
-        value("collide_bitmask", INTEGER, "which shapes it touches: those with a bit in common", default="65535"),
-        value("category_bitmask", INTEGER, "the bits that others see of it", default="65535"),
+        value("collide_without_contact", TRUTH, "whether contacts are reported without an effect", default="false"),
+        value("collide_bitmask", INTEGER, "selects the shapes it touches: those with a common bit", default="65535"),
+        value("category_bitmask", INTEGER, "the bits that others see", default="65535"),
         get=_contact_group,
     ),
     made(

@@ -18,9 +18,10 @@ _READ_ALL_THE_SAME = phrase("simulators read it all the same; other XML readers 
 
 
 def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagnostic, ...]]:
-    """Parse a text as Gazebo does, and tell each kind of thing that XML forbids.
+    """Parse a text as Gazebo does, and report each kind of text that XML forbids.
 
-    What leaves the content as it is, such as dashes in a comment, is an information: only simulators read these files.
+    An error that does not change the content, such as dashes in a comment, is an information: only simulators read
+    these files.
 
     Raises:
         LinkwrightError: it is not XML (XML###).

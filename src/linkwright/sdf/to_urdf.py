@@ -32,7 +32,7 @@ _TYPES: dict[str, urdf.JointType] = {
 }
 """Types of joints in SDF, and what they are in URDF; all others need a transform of their own: they float."""
 _UNBOUNDED = 1e16
-"""SDF's number for no bound, which stands for it in URDF too, as that has none."""
+"""SDF's number for an unbounded limit, which represents it in URDF too, because URDF has none of its own."""
 _AMBIENT, _DIFFUSE = 0.4, 0.8
 """The light of Gazebo's usual world, in which sdformat_urdf looks at a material to find the colour that it has."""
 
@@ -91,7 +91,7 @@ class _Converter:
     def robot(self) -> urdf.Robot:
         model = self._model
         if model.pose != AT_ORIGIN:
-            hint = phrase("say where it stands where it is spawned, or move its links")
+            hint = phrase("set the pose where it is spawned, or move its links")
             raise _NoRobotError(phrase("the model has a <pose>"), model.element, hint)
         if model.models or model.includes:
             inner = model.models[0].element if model.models else model.includes[0].element

@@ -1,4 +1,4 @@
-"""What is said about elements that SDF does not have where they stand."""
+"""Messages about elements that SDF does not have at their place."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _TRUE, _FALSE = ("true", "1"), ("false", "")
 _NO_SCALE = 1.0
 _MOST_HOMES = 3
 _HARMLESS = frozenset({("collision", "material")})
-"""Parents and elements in them that nobody waits for: the colour of what is never drawn."""
+"""Parents and child elements that no reader needs: the colour of an element that is never drawn."""
 
 
 def homes_of(tag: str) -> tuple[str, ...]:
@@ -33,9 +33,9 @@ def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
 
 
 def changes_nothing(child: Element, parent: Element, static_links: frozenset[int]) -> bool:
-    """Return whether an element would make no difference if it were read: nobody misses it.
+    """Return whether an element would make no difference if it were read.
 
-    It is empty, says again what holds anyway, or gives an invented word the value zero.
+    It is empty, repeats the default, or sets an unknown word to zero.
     """
     if (parent.tag, child.tag) in _HARMLESS or (child.tag == "static" and id(parent) in static_links):
         return True

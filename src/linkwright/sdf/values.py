@@ -1,8 +1,8 @@
 """Types of values in SDF, and abbreviations for the tables of the language.
 
-SDF writes a value as the text of an element: ``<mass>2.5</mass>``. Numbers are separated by blanks of any kind. What a
-text may be goes by libsdformat's parser (``Param.cc``): ``inf`` and ``nan`` are numbers there, and a truth value is
-``true``, ``false``, ``1`` or ``0`` in letters of either case.
+SDF writes a value as the text of an element: ``<mass>2.5</mass>``. Numbers are separated by blanks of any kind. The
+syntax of values follows libsdformat's parser (``Param.cc``): it accepts ``inf`` and ``nan`` as numbers, and ``true``,
+``false``, ``1`` or ``0`` in upper or lower case as truth values.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def _joined(values: Iterable[float]) -> str:
 
 
 def beginning(text: str) -> float | None:
-    """Return the number that a text begins with, which libsdformat takes alone (``std::stod``); None where none is."""
+    """Return the number at the beginning of a text, as ``std::stod`` in libsdformat does; None if there is none."""
     found = _NUMBER.match(text.strip())
     return None if found is None else float(found[0])
 
@@ -122,7 +122,7 @@ def _pose_numbers(text: str) -> tuple[float, ...]:
 
 TEXT = ValueType("text")
 NUMBER = ValueType("number", number, plain)
-INTEGER = ValueType("whole number", _integer)
+INTEGER = ValueType("integer", _integer)
 TRUTH = ValueType("true or false", _truth, lambda value: "true" if value else "false")
 VECTOR2 = ValueType("2 numbers", _vector2, _joined)
 VECTOR3 = ValueType("3 numbers", _vector3, _joined)

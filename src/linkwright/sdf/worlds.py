@@ -36,7 +36,7 @@ from linkwright.xmltree import Element
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """The look of a world: light, background, sky, fog; colours are as in `Material`, None stands for no sky or fog."""
+    """The look of a world: light, background, sky, fog; colours are as in `Material`, None means no sky or fog."""
 
     ambient: Color = (0.4, 0.4, 0.4, 1.0)
     background: Color = (0.7, 0.7, 0.7, 1.0)
@@ -85,8 +85,8 @@ class World:
     """A world; lengths in metres, gravity in m/s2, the magnetic field in tesla, the wind in m/s.
 
     Attributes:
-        gravity: None where the world says nothing; `linkwright.sdf.worlds.gravity_of` tells what then counts.
-        states: how it was when it was saved; Gazebo classic takes the last.
+        gravity: None if the world does not set it; `linkwright.sdf.worlds.gravity_of` returns the effective one.
+        states: saved states; Gazebo classic uses the last.
     """
 
     name: str = ""

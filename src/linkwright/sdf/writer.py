@@ -15,11 +15,11 @@ from linkwright.xmltree import Document, Element, write
 from linkwright.xmltree.writer import tidied
 
 VERSION = "1.11"
-"""The version of what is written: gz Harmonic, which comes with Jazzy, reads no newer one."""
+"""The SDF version of the output: gz Harmonic, which Jazzy ships, reads no newer one."""
 _PREFIX = "http://gazebosim.org/schema"
 """The namespace of prefixes that a file uses without declaring them, which Gazebo's readers allow."""
 _GAP = "\x01"
-"""The name of the model that stands for those written before: XML has no such character."""
+"""The name of the placeholder of previously written models: XML has no such character."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,9 +42,9 @@ def save_model_of_world(model: Model) -> WrittenModel:
 
 
 def save_world(world: World, models: Sequence[WrittenModel]) -> str:
-    """The text that `save` gives of a world with models that were written before.
+    """Return the text that `save` returns for a world, with models that are already written.
 
-    Who writes a world after each of many changes writes only the models that have changed.
+    A caller that writes a world after each of many changes thereby writes only the changed models.
 
     Args:
         world: without models.

@@ -100,5 +100,5 @@ def test_what_is_no_pose_is_refused(pose):
 
 def test_a_world_with_values_in_attributes_is_not_edited(tmp_path):
     text = '<gazebo version="1.0"><world name="w"><model name="m"><origin pose="1 2 3 0 0 0"/></model></world></gazebo>'
-    with pytest.raises(EditError, match="'linkwright convert' writes"):
+    with pytest.raises(EditError, match="with 'linkwright convert' first"):
         world_text(text)

@@ -111,14 +111,14 @@ def test_a_size_is_that_of_collision_visual_and_inertia():
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 1, 0), (1, 1, -1), (1, 1, float("nan")), ()])
 def test_what_is_no_size_is_refused(size):
-    with pytest.raises(EditError, match="is no size of a box"):
+    with pytest.raises(EditError, match="is not a valid size of a box"):
         change(world_text(PLAIN), [Change("box", size=size)])
 
 
 def test_what_is_no_simple_shape_has_neither_size_nor_colour():
-    with pytest.raises(EditError, match="'ground_plane' has no size that could be changed"):
+    with pytest.raises(EditError, match="'ground_plane' cannot be resized"):
         change(world_text(PLAIN), [Change("ground_plane", size=(1, 1, 1))])
-    with pytest.raises(EditError, match="'ground_plane' has no colour that could be changed"):
+    with pytest.raises(EditError, match="the colour of 'ground_plane' cannot be changed"):
         change(world_text(PLAIN), [Change("ground_plane", colour=(1, 1, 1, 1))])
 
 

@@ -83,7 +83,9 @@ def add_shape(
     usual = USUAL[kind]
     wanted = tuple(map(float, size)) or usual.size
     if not is_size(kind, wanted):
-        raise EditError(phrase("'{numbers}' is no size of a {kind}", numbers=" ".join(map(str, size)), kind=kind))
+        raise EditError(
+            phrase("'{numbers}' is not a valid size of a {kind}", numbers=" ".join(map(str, size)), kind=kind)
+        )
     name = world.free_name(kind)
     colour = lengths((*usual.colour, 1.0))
     parts = [

@@ -1,7 +1,7 @@
 """Changing, copying and deleting the models and lights of a world.
 
-A world that Gazebo classic saved says in ``<state>`` once more where everything is, and that counts. So what is moved
-is moved there too, with its links; what is renamed or deleted is so there.
+A world that Gazebo classic saved repeats all poses in ``<state>``, and those apply. So a move, a renaming or a
+deletion changes the state too, with the links in it.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
     """Delete models and lights, and their parts of a saved state.
 
     Raises:
-        EditError: one is not there, or something that stays refers to it.
+        EditError: one does not exist, or a remaining element refers to it.
     """
     gone = {name: world.thing(name) for name in names}
     elements = {id(thing.element) for thing in gone.values()}
@@ -153,10 +153,10 @@ def pose_of_thing(thing: Thing) -> Pose:
 
 
 def moved(world: WorldText, thing: Thing, pose: Pose) -> list[Replacement]:
-    """The edits that move a thing to a pose in the world, whatever frame its own pose is given in.
+    """Return the edits that move a thing to a pose in the world, whatever frame its own pose is given in.
 
     Raises:
-        EditError: that frame is not there.
+        EditError: that frame does not exist.
     """
     wanted = transform_of(pose)
     edits = place(thing, _local(world, thing, pose))
@@ -219,9 +219,11 @@ def _values(thing: Thing, wanted: Change) -> list[Replacement]:
 def _resized(thing: Thing, size: tuple[float, ...]) -> list[Replacement]:
     shape = thing.shape
     if shape is None:
-        raise EditError(phrase("'{name}' has no size that could be changed: it is no simple shape", name=thing.name))
+        raise EditError(phrase("'{name}' cannot be resized: it is not a simple shape", name=thing.name))
     if not is_size(shape.kind, size):
-        raise EditError(phrase("'{numbers}' is no size of a {kind}", numbers=" ".join(map(str, size)), kind=shape.kind))
+        raise EditError(
+            phrase("'{numbers}' is not a valid size of a {kind}", numbers=" ".join(map(str, size)), kind=shape.kind)
+        )
     assert isinstance(thing.written, Model), "only models that are written here have a shape"
     link = thing.written.links[0]
     edits: list[Replacement] = []
@@ -281,7 +283,7 @@ def _coloured(thing: Thing, colour: Sequence[float]) -> list[Replacement]:
     if thing.kind == "light" and not isinstance(thing.written, Include):
         return writing.set_child(thing.element, "diffuse", colour)
     if thing.shape is None or not isinstance(thing.written, Model):
-        raise EditError(phrase("'{name}' has no colour that could be changed: it is no simple shape", name=thing.name))
+        raise EditError(phrase("the colour of '{name}' cannot be changed: it is not a simple shape", name=thing.name))
     edits: list[Replacement] = []
     for visual in thing.written.links[0].visuals:
         assert visual.element is not None, "it was read from the text"
@@ -346,7 +348,7 @@ def _named(thing: Thing, name: str) -> list[Replacement]:
 
 
 def _copied(thing: Thing, name: str) -> Replacement:
-    """A copy behind a thing, on lines of its own where it stands on such."""
+    """Return the edit that copies a thing behind it, on separate lines if the thing is on separate lines."""
     text, (start, end) = writing.text_of(thing.element), writing.range_of(thing.element)
     copy = text[start:end]
     for edit in sorted(_named(thing, name), key=lambda edit: edit.start, reverse=True):

@@ -20,7 +20,7 @@ from linkwright.xmltree.patches import Replacement, apply, escaped, indentation,
 
 _STEP = "  "
 _DIGITS = 3
-"""A group stands at a millimetre."""
+"""Decimal digits of a group's position in metres."""
 _LINE = re.compile(r"(?<=\n)(?=[^\r\n])")
 _CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
 
@@ -50,7 +50,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
         edits += [writing.removed(entry) for entry in state_of(world, thing.name)]
         base = thing.pose.relative_to
         if base.partition(SEPARATOR)[0] in inside and not state_of(world, thing.name):
-            continue  # one that stands relative to another of them does so still
+            continue  # its pose is relative to another one in the group, and stays so
         edits += _placed_in(world, thing, origin)
     edits += renamed_references_outside(world, inside, name)
     text = world.text
@@ -93,7 +93,7 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
         raise EditError(phrase("'{name}' is more than the models in it, and cannot be taken apart", name=name))
     parts = [element for element in thing.element.elements() if element.tag in ("model", "include")]
     if len(parts) != len(thing.parts):
-        raise EditError(phrase("'{name}' includes what is not there, and cannot be taken apart", name=name))
+        raise EditError(phrase("'{name}' cannot be taken apart: one of its includes does not exist", name=name))
     names = _names_of(world, thing, parts)
     edits: list[Replacement] = [writing.removed(entry) for entry in state_of(world, name)]
     frames = world.frames.inside(name)

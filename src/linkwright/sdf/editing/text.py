@@ -78,16 +78,16 @@ class Thing:
 
 
 class WorldText:
-    """The text of a world with what was read of it; of a file with several worlds, of the first.
+    """The text of a world with its parsed content; of a file with several worlds, of the first.
 
     Args:
         text: SDF.
-        path: the file that it is of, from whose folder its addresses start.
-        finder: where the models are that it includes.
-        reserved: names that new things cannot have, of what was put into the world that runs.
+        path: the file of the text; its folder is the base of relative addresses.
+        finder: finds the included models.
+        reserved: names that new things cannot have, because the running world uses them.
 
     Attributes:
-        world: what it says, with includes resolved and everything where the last saved state has it.
+        world: the world, with includes resolved and all poses of the last saved state.
         frames: the frames of that.
         things: its models and lights by their names, in the order of the text.
 
@@ -101,7 +101,9 @@ class WorldText:
         document, _ = parse_as_gazebo(text, str(path))
         if is_old(document.root):
             raise EditError(
-                phrase("SDF before 1.3 is not edited; 'linkwright convert' writes '{path}' anew", path=str(path))
+                phrase(
+                    "SDF before 1.3 cannot be edited; convert '{path}' with 'linkwright convert' first", path=str(path)
+                )
             )
         reading = read(document)
         if reading.sdf is None or not reading.sdf.worlds or reading.sdf.worlds[0].element is None:
@@ -150,7 +152,7 @@ class WorldText:
         """The world after replacements in its text.
 
         Raises:
-            EditError: no world would come of them, which is a mistake of the one who made them.
+            EditError: they do not result in a world, which is a mistake of their author.
         """
         return self.with_text(apply(self.text, edits))
 
@@ -227,4 +229,4 @@ class WorldText:
         try:
             return self.frames.pose(thing.name) if isinstance(thing, Model) else self.frames.placed(thing.pose)
         except FrameError:
-            return transform_of(thing.pose.pose)  # what is wrong with it is told by those who check frames
+            return transform_of(thing.pose.pose)  # the check of frames reports the error

@@ -152,7 +152,7 @@ def without_attribute(element: Element, name: str) -> list[Replacement]:
 
 
 def removed(element: Element) -> Replacement:
-    """Remove an element with its content, and with its lines where nothing else stands there."""
+    """Return the edit that removes an element with its content, and its lines if they have nothing else."""
     return Replacement(*whole_lines(text_of(element), *range_of(element)), "")
 
 
