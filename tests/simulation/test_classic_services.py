@@ -113,7 +113,7 @@ async def test_services_of_states_are_in_the_namespace_of_the_plugin():
         assert not answer.success
         assert [each.text for each in log] == [
             "get_entity_state: there is no model or link 'who'",
-            "set_entity_state: 'ground' is fixed to the world (delete it, and spawn it anew where it should be)",
+            "set_entity_state: 'ground' is fixed to the world (delete it, and spawn it again where it should be)",
         ]
 
 

@@ -239,7 +239,10 @@ async def test_why_a_service_without_a_text_refuses_is_logged(tmp_path):
         await it.ask("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", link_name="wheel")
         assert (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).success
         assert [each.text for each in it.log if each.level == LogLevel.ERROR] == [
-            "/set_entity_state: 'ground_plane' is fixed to the world (delete it, and spawn it anew where it should be)",
+            (
+                "/set_entity_state: 'ground_plane' is fixed to the world "
+                "(delete it, and spawn it again where it should be)"
+            ),
             "/set_entity_state: 'two' is connected with 'one' by a joint of the world (move 'one', which it goes with)",
             "/set_entity_state: there is no model or link 'three'",
             "/get_entity_state: there is no model or link 'on' (did you mean 'one'?)",

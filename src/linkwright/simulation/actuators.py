@@ -29,7 +29,7 @@ class Actuated(Protocol):
 
     @property
     def revision(self) -> int:
-        """The number of times that model and data were made anew."""
+        """The number of times that model and data were rebuilt."""
 
     def renew(self) -> None:
         """Compile MuJoCo's model again if the scene has changed."""

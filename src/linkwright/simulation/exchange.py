@@ -45,14 +45,14 @@ class Exchange:
         self._closed = False
 
     def send(self, publisher: Outlet, message: Any) -> None:
-        """Publish a message with the next batch; nobody changes it any more."""
+        """Publish a message with the next batch; it must not change afterwards."""
         self._out.append((publisher, message))
 
     def deliver(self, dispatcher: LoopDispatcher | None = None) -> None:
-        """Publish what was sent.
+        """Publish the sent messages.
 
         Args:
-            dispatcher: that of the event loop which is to do it; None to do it here and now.
+            dispatcher: the dispatcher of the event loop that publishes; None to publish here and now.
         """
         if not self._out:
             return
@@ -77,7 +77,7 @@ class Exchange:
             self._in.popleft()()
 
     def close(self) -> None:
-        """Deliver nothing any more, and let a simulation that waits for `deliver` go on."""
+        """Stop delivering, and let a simulation that waits for `deliver` continue."""
         self._closed = True
         self._in.clear()
         self._make_room()

@@ -26,20 +26,20 @@ def cast(
     reach: float,
     normals: Any = None,
 ) -> tuple[Array, Any]:
-    """Cast rays from one point; the first hit of each.
+    """Cast rays from one point, and return the first hit of each.
 
     Args:
         model: MuJoCo's model.
         data: its state.
         origin: where they begin, shape (3,), in m.
         rays: their directions, of length 1, shape (rays, 3).
-        groups: which groups of geoms they see, shape (GROUPS,).
+        groups: the groups of geoms that they hit, shape (GROUPS,).
         apart_from: a body whose geoms they pass through; -1 for none.
-        reach: how far they see at most, in m.
-        normals: gets the normals of what was hit, shape (rays, 3), where they are wanted.
+        reach: their greatest length, in m.
+        normals: if given, receives the normals of the hit surfaces, shape (rays, 3).
 
     Returns:
-        Distances in m, negative for nothing, and the geoms, -1 for none; each of shape (rays,).
+        Distances in m, negative for no hit, and the geoms, -1 for none; each of shape (rays,).
     """
     mujoco = load_mujoco()
     count = len(rays)

@@ -1,9 +1,9 @@
 """Bodies that begin inside each other part slowly.
 
-MuJoCo's contacts are damped springs: what begins 0.3 m inside the ground leaves it at 20 m/s. The same holds for
+MuJoCo's contacts are damped springs: a body that begins 0.3 m inside the ground leaves it at 20 m/s. The same holds for
 joints that begin beyond their limits, and for couplings and loops that do not fit yet. Such a spring may accelerate
-bodies only up to a speed within a step: a depth that would give more is taken for the depth that gives it. What is less
-deep moves as ever, and what is at rest bears its load.
+bodies only up to a speed within a step: a depth that results in more is replaced by the depth that results in exactly
+that speed. Smaller depths act unchanged, and bodies at rest bear their load.
 
 gz's engine DART bounds the speed, too, ODE by ``contact_max_correcting_vel``.
 """

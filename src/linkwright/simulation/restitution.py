@@ -1,11 +1,11 @@
 """Time steps of MuJoCo, with restitution: bodies that bounce off each other within a step.
 
-MuJoCo's contacts are soft and take the speed of what hits hard: at the time steps that are usual none of their settings
-lets a ball rise as high as its coefficient of restitution says. So what hits is pushed off again behind the step in
-which it does, by impulses: Newton's law of impact, with Coulomb's friction.
+MuJoCo's contacts are soft and absorb the speed of a hard impact: at usual time steps none of their settings lets a ball
+rise as high as its coefficient of restitution requires. So bodies that collide get impulses after the step of the
+collision: Newton's law of impact, with Coulomb's friction.
 
-Bodies are also put where they would be if they had parted when they met, not at the end of the step, in which they go
-on into each other: else a ball of 0.2 rose a fifth too low from 1 m.
+Bodies are also moved to the poses that they would have if they had separated at the moment of contact, not at the end
+of the step, in which they penetrate further: else a ball of 0.2 rose a fifth too low from 1 m.
 
 Source of the figures: drops of balls, boxes, cylinders and capsules from 0.3, 1 and 3 m, with coefficients of 0.2, 0.5
 and 0.9.

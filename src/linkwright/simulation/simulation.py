@@ -31,7 +31,7 @@ from linkwright.simulation.solving import Solving
 NANOSECONDS = 1_000_000_000
 
 _BEYOND = 1e10
-"""A position or velocity that is no less, in m, rad, m/s or rad/s, is taken for an explosion, as MuJoCo does."""
+"""A position or velocity from this on, in m, rad, m/s or rad/s, counts as an explosion, as in MuJoCo."""
 _SURELY = _BEYOND * _BEYOND
 """A bound of the sum of squares below which no single value is beyond its bound."""
 
@@ -43,23 +43,23 @@ class UnstableError(LinkwrightError):
 class Simulation:
     """A simulated world.
 
-    Nothing here waits or knows real time: `advance` computes as fast as it can, and twice the same calls give twice the
-    same bits. One thread at a time may use it.
+    Nothing here waits or knows real time: `advance` computes as fast as it can, and the same calls give the same bits.
+    One thread at a time may use it.
 
     Args:
         world: with its includes resolved.
-        finder: where its meshes are.
+        finder: finds its meshes.
         step: the time step in s; that of the world by default.
 
     Attributes:
-        world: as it was read, with its includes resolved, and as it was saved.
-        finder: where meshes are.
-        scene: what moves.
-        model, data: MuJoCo's, of this moment: both are others after models have come or gone.
-        revision: how often they were made anew.
+        world: the parsed world, with its includes resolved and its saved state applied.
+        finder: finds meshes.
+        scene: the moving parts.
+        model, data: MuJoCo's current ones; both are replaced when models are added or removed.
+        revision: how often they were rebuilt.
         time: simulated nanoseconds since the start.
         step: the time step in nanoseconds.
-        schedule: what is to be done at which simulated times.
+        schedule: calls at simulated times.
     """
 
     def __init__(self, world: World, finder: ResourceFinder, *, step: float | None = None) -> None:
@@ -168,7 +168,7 @@ class Simulation:
         self._current = False
 
     def set_moved(self) -> None:
-        """Note that positions or velocities of `data` were set; what depends on them is computed when it is needed."""
+        """Note that positions or velocities of `data` were set; dependent values are computed when needed."""
         self._current = False
 
     def _jumped(self, body: Any) -> None:
@@ -216,7 +216,7 @@ class Simulation:
 
         Args:
             joint: the name of the joint.
-            speed: how fast it may move in rad/s (m/s), if its own limit allows that; 2 where neither says it.
+            speed: the greatest speed in rad/s (m/s), if its own limit allows that; 2 without either limit.
         """
         servo = Servo(self, joint, self.scene.add_servo(joint), speed)
         self._arriving.append(servo)
@@ -269,9 +269,9 @@ class Simulation:
         self._solving.take(model, data, self.time, self.step)
 
     def reset(self) -> None:
-        """Restore the initial state; time begins anew."""
+        """Restore the initial state; time restarts at 0."""
         self.refresh()
-        self._solving.restart()  # before: MuJoCo places what stands still only where things may sleep
+        self._solving.restart()  # before: MuJoCo places static bodies only where bodies may sleep
         self._mujoco.mj_resetData(self.model, self.data)
         self._stepper.expect_overlaps()
         self._pushes.clear()
@@ -283,10 +283,10 @@ class Simulation:
         """Advance simulated time, and call what is scheduled on the way.
 
         Args:
-            duration: nanoseconds; whole steps are made until no less than these have passed.
+            duration: nanoseconds; whole steps are made until at least these have passed.
 
         Raises:
-            UnstableError: something is no number any more. Nothing is computed any further.
+            UnstableError: a value in the simulation is not a number any more. The computation stops.
         """
         end = self.time + duration
         while self.time < end:
@@ -429,7 +429,7 @@ class Simulation:
             return
         if not self.moves_freely(name):
             message = phrase("'{name}' is fixed to the world", name=name)
-            hint = phrase("delete it, and spawn it anew where it should be")
+            hint = phrase("delete it, and spawn it again where it should be")
             if scene_model.hangs_on:
                 other = min(scene_model.hangs_on)
                 message = phrase("'{name}' is connected with '{other}' by a joint of the world", name=name, other=other)
@@ -484,15 +484,15 @@ class Simulation:
         self._jumped(self.model.jnt_bodyid[joint.id])
 
     def push_joint(self, name: str, force: float) -> None:
-        """Set the torque in N m (force in N) on a joint of one axis; it acts until it is set anew.
+        """Set the torque in N m (force in N) on a joint of one axis; it acts until it is set again.
 
-        It is bounded by the joint's ``<effort>``, and by what brings it to its ``<velocity>`` within a step.
+        It is bounded by the joint's ``<effort>``, and by the force that reaches its ``<velocity>`` within a step.
         """
         self.refresh()
         self.data.joint(name).qfrc_applied[0] = self._bounded(name, force)
 
     def _bounded(self, name: str, force: float) -> float:
-        """A force on a joint within its limits, as gz's engine DART has it; 0 and less are no limits."""
+        """Return a force on a joint within its limits, as in gz's engine DART; limits of 0 and less do not count."""
         model, speed_limit = self.model, self.scene.speed_limit(name)
         number = model.joint(name).id
         if model.jnt_actfrclimited[number]:
@@ -515,7 +515,7 @@ class Simulation:
     ) -> None:
         """Set the force in N and the torque in N m on the centre of mass of a link, in the axes of the world.
 
-        They act until they are set anew. What several push with adds up; `by` is who pushes.
+        They act until they are set again. Forces of several callers add up; `by` identifies the caller.
         """
         self.refresh()
         acting = self._pushes.setdefault(link, {})
@@ -531,5 +531,5 @@ class Simulation:
 
 
 def _outlook(world: World) -> tuple[object, ...]:
-    """The properties of a world for which MuJoCo's model, or pictures of it, are made anew."""
+    """Return the properties of a world whose change rebuilds MuJoCo's model, or its images."""
     return gravity_of(world), physics_of(world).max_step_size, world.scene, world.lights

@@ -1,8 +1,8 @@
 """When bodies may fall asleep: MuJoCo computes nothing for them then, and their velocity is zero.
 
-MuJoCo lets them as soon as they have been slow for ten steps. So is a pendulum where it turns round, and all that
-begins to move under a small force. Here they must not have moved for a while, measured by where they are. What lies on
-something may move a little in that time, as contacts never come quite to rest; what hangs, swings or floats may not.
+MuJoCo lets bodies sleep as soon as they are slow for ten steps. But a pendulum is slow at its turning point, and so is
+any body that begins to move under a small force. Here a body's pose must not change for a while. A body with contacts
+may move a little in that time, because contacts never come quite to rest; one that hangs, swings or floats may not.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _PERIOD = 50_000_000
 _LOOKS = 5
 """The number of looks in a row that must find a body at rest."""
 _LYING, _FREE = 3e-4, 1e-6
-"""The speeds in m/s or rad/s above which a body moves: one with contacts, and one without."""
+"""The speeds in m/s or rad/s above which a body moves: with contacts, and free of them."""
 _HARDLY = 1e-30
 """A speed at which nothing gets anywhere, and for which MuJoCo wakes a tree up before its next step."""
 
@@ -64,7 +64,7 @@ class Sleep:
         self.wake()
 
     def rouse(self) -> None:
-        """Wake all bodies up; what was at rest falls asleep again after MuJoCo's ten steps."""
+        """Wake all bodies up; resting ones fall asleep again after MuJoCo's ten steps."""
         data = self._data
         if self._model.nv:
             resting = (data.tree_asleep >= 0)[self._model.dof_treeid] & (data.qvel == 0.0)

@@ -15,7 +15,7 @@ from linkwright.simulation.sleep import Sleep
 _MOTORS, _TREES = 16, 8
 """The least motors and trees of bodies with which it may be worth it."""
 _MOTORS_AN_ISLAND, _MOTORS_ASLEEP = 80, 300
-"""What an island costs besides its motors, and what a tree costs that is not asleep; in motors that are gone through.
+"""Costs of an island besides its motors, and of a tree that is not asleep; in motors that are iterated over.
 
 Measured with 4 to 100 mbots: an island costs 2.5 us, and 0.03 us for each motor; mbot itself, as a box, 9 us.
 """

@@ -134,7 +134,7 @@ async def test_a_type_of_output_that_is_none_is_told_of():
     said = plugin("libgazebo_ros_ray_sensor.so", "<output_type>sensor_msgs/Imu</output_type>")
     async with served(carrier(sensor("ray", f"<ray>{RAYS}</ray>" + said))) as (server, _, log):
         assert server.plugins("robot") == ()
-        assert "no type of output" in str(log[0].text)
+        assert "is not an output type" in str(log[0].text)
 
 
 async def test_a_laser_of_ros_1_has_its_topic_and_frame():
@@ -376,7 +376,7 @@ async def test_a_camera_of_gazebo_classic_has_a_picture_and_its_figures():
         assert list(info.k) == pytest.approx([focal, 0, 32.5, 0, focal, 24.5, 0, 0, 1])
         assert list(info.p)[3] == pytest.approx(-focal * 0.07)
         assert (info.distortion_model, list(info.d)) == ("plumb_bob", [0.0] * 5)
-        assert [each.text for each in log if "pictures of cameras are made by" in each.text]
+        assert [each.text for each in log if "camera images are rendered by" in each.text]
 
 
 @pytest.mark.parametrize(
@@ -448,7 +448,7 @@ async def test_an_rgbd_camera_of_gz_has_points_with_x_forwards():
         assert (image.encoding, depth.encoding, info.width) == ("rgb8", "32FC1", 64)
         points = np.frombuffer(bytes(cloud.data), np.float32).reshape(48, 64, 8)
         assert points[24, 60, :3] == pytest.approx([2.0, -28.5 / 32 * 2, -0.5 / 32 * 2], abs=1e-2)
-        assert [each.text for each in log] == [each.text for each in log if "pictures of cameras" in each.text]
+        assert [each.text for each in log] == [each.text for each in log if "camera images" in each.text]
 
 
 LABEL = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>{}</label></plugin>'

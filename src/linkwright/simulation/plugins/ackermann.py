@@ -61,7 +61,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         """Give the wheels motors and servos, and listen.
 
         Raises:
-            LinkwrightError: SIM134 a joint is not there; SIM160 a wheel has no size, or axles are in one place.
+            LinkwrightError: SIM134 a joint does not exist; SIM160 a wheel has no size, or axles are in one place.
         """
         said, node, simulation = self.parameters, self.node, self.simulation
         front = [self.joint(name) for name in (said.front_left_joint, said.front_right_joint)]

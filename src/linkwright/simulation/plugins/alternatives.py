@@ -1,4 +1,4 @@
-"""What to use instead of plugins and sensors that are not simulated, where something else does their work."""
+"""Alternatives to plugins and sensors that are not simulated, if another plugin does their work."""
 
 from __future__ import annotations
 

@@ -21,11 +21,11 @@ def gz_side(topic: str) -> str:
 
 
 class BridgedTopics:
-    """Tells the plugins of a simulation that a bridge takes the name of a topic to which they subscribe.
+    """Notifies the plugins of a simulation when a bridge takes the name of a topic to which they subscribe.
 
     Args:
         node: that of the simulator.
-        exchange: by which it is told, in the thread of the simulation.
+        exchange: carries the notice into the thread of the simulation.
     """
 
     def __init__(self, node: Node, exchange: Exchange) -> None:
@@ -36,7 +36,7 @@ class BridgedTopics:
         self._graph.watch(self._changed)
 
     def close(self) -> None:
-        """Stop watching the graph; nobody is told any more."""
+        """Stop watching the graph, and stop notifying."""
         self._graph.unwatch(self._changed)
 
     def has(self, topic: str) -> bool:

@@ -35,7 +35,7 @@ class Calls:
         self._failed = failed
 
     def make(self, function: Callable[[], object]) -> None:
-        """Call a function; what it raises goes to `failed`."""
+        """Call a function; `failed` receives its exception."""
         if self.is_closed:
             return
         outer, self._count = self.number, self._count + 1
@@ -48,12 +48,12 @@ class Calls:
             self.number = outer
 
     def fail(self, error: Exception) -> None:
-        """Tell of an error that came up elsewhere, in the simulation's thread."""
+        """Report an error from elsewhere, in the simulation's thread."""
         if not self.is_closed:
             self._failed(error)
 
     def close(self, function: Callable[[], object], tell: Failure) -> None:
-        """Call a last function, and no other one afterwards; what it raises is only told."""
+        """Call a last function, and no other one afterwards; its exception is only logged."""
         if self.is_closed:
             return
         self.is_closed = True
@@ -64,7 +64,7 @@ class Calls:
 
 
 def logged_calls(logger: Logger, name: str) -> Calls:
-    """Calls after which everything goes on: an error of a function is logged."""
+    """Return calls that log an error of a function; everything else continues."""
     return Calls(partial(log_failure, logger, f"a callback of '{name}'"))
 
 
@@ -79,10 +79,10 @@ def findings_of(error: Exception, name: str, element: Element | None) -> list[Di
     if isinstance(error, LinkwrightError):
         return list(error.diagnostics)
     said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    message = phrase("'{plugin}' has ended, as its code failed: {error}", plugin=name, error=foreign(said))
-    hint = phrase("everything else goes on without it")
+    message = phrase("'{plugin}' ended because its code failed: {error}", plugin=name, error=foreign(said))
+    hint = phrase("everything else continues without it")
     if places := extract_tb(error.__traceback__):
         where = f"{Path(places[-1].filename).name}:{places[-1].lineno}"
-        hint = phrase("it failed in {place}; everything else goes on without it", place=where)
+        hint = phrase("it failed in {place}; everything else continues without it", place=where)
     span, source = (None, None) if element is None else (element.span(), element.source)
     return [Diagnostic("SIM138", message, span, hint=hint, source=source)]

@@ -1,7 +1,7 @@
 """A joint that holds a link of another model until it is detached: ``gz-sim-detachable-joint-system``.
 
-Source: gz-sim (parameters, topics and their names; the state is published when it changes). What is attached does not
-touch the model that holds it, as there.
+Source: gz-sim (parameters, topics and their names; the state is published when it changes). As in gz, an attached link
+does not collide with the model that holds it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
     PARAMETERS = DetachableJointParameters
 
     def start(self) -> None:
-        """Find the parent link, attach the child if it is there, and subscribe.
+        """Find the parent link, attach the child if it exists, and subscribe.
 
         Raises:
             LinkwrightError: SIM133 the model has no such link.
@@ -101,7 +101,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self.node.logger.warning(message)
 
     def _found_child(self) -> bool:
-        """Find the child link, in a model of the world or in one within its own; whether it is there."""
+        """Find the child link, in a model of the world or in a nested model; return whether it exists."""
         said, bodies = self.parameters, self.simulation.scene.bodies
         model = self.place.path if said.child_model == _OWN else said.child_model
         link = f"{model}{SEPARATOR}{said.child_link}"

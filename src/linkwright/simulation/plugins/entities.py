@@ -69,14 +69,14 @@ class Entities:
         return self._simulation.link_pose(self.link(name))
 
     def state(self, name: str, reference: str = "") -> Any:
-        """The pose and the twist of a model or link: a message ``gazebo_msgs/msg/EntityState``.
+        """Return the pose and the twist of a model or link: a message ``gazebo_msgs/msg/EntityState``.
 
         Args:
             name: of the model or link.
-            reference: the model or link whose frame that is told in.
+            reference: the model or link whose frame the state refers to.
 
         Raises:
-            LinkwrightError: SIM141 there is no such thing.
+            LinkwrightError: SIM141 there is no such entity.
         """
         simulation = self._simulation
         is_model = name in simulation.scene.models
@@ -172,7 +172,7 @@ def pose_message(pose: Transform) -> Any:
 
 
 def transform_in(message: Any) -> Transform:
-    """The pose in a message; a quaternion of zeros stands for no rotation."""
+    """Return the pose in a message; a quaternion of zeros means no rotation."""
     turn = message.orientation
     quaternion = (turn.x, turn.y, turn.z, turn.w)
     if not any(quaternion):

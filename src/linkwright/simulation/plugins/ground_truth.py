@@ -161,7 +161,7 @@ def _with_noise(random: np.random.Generator, deviation: float, linear: Array, an
 
 
 def _odometry(header: Header, child: str, pose: Transform, linear: Array, angular: Array, variance: float) -> Any:
-    """Fill in odometry with one variance for all that is measured."""
+    """Return odometry with one variance for all measured values."""
     message = get_message("nav_msgs/msg/Odometry")(header=header, child_frame_id=child)
     x, y, z, *rotation = pose
     message.pose.pose.position.x, message.pose.pose.position.y, message.pose.pose.position.z = x, y, z

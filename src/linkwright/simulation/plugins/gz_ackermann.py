@@ -62,13 +62,13 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         """Give the wheels motors and servos, and subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM134 a joint is not there; SIM160 a measure is not positive, or no wheel is named.
+            LinkwrightError: SIM134 a joint does not exist; SIM160 a measure is not positive, or no wheel is named.
         """
         said, simulation = self.parameters, self.simulation
         sizes = (said.wheel_separation, said.wheel_base, said.wheel_radius)
         if not (min(sizes) > 0.0 and said.left_joint and said.right_joint) and not said.steering_only:
             raise self.refused(
-                phrase("plugin '{plugin}': wheels and their positive measures are needed", plugin=self.place.name)
+                phrase("plugin '{plugin}' needs wheel joints and positive dimensions", plugin=self.place.name)
             )
         sides = (said.left_joint, said.right_joint)
         wheels = [] if said.steering_only else [[self.joint(name) for name in side] for side in sides]

@@ -37,10 +37,10 @@ class DriveCommands:
     """The commanded velocity within its limits: forward and to the left in m/s, around z in rad/s.
 
     Args:
-        limits: how fast it may go.
+        limits: limits of velocity, acceleration and jerk.
 
     Attributes:
-        is_enabled: whether it listens; else it comes to rest.
+        is_enabled: whether it accepts commands; otherwise it slows down to rest.
     """
 
     def __init__(self, limits: SpeedLimits) -> None:

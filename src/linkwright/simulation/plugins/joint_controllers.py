@@ -19,7 +19,7 @@ from linkwright.simulation.simulation import NANOSECONDS
 _GAIN = 20.0
 """Torque of a motor in N m for each rad/s that its joint is too slow."""
 _UNBOUNDED = 1000.0
-"""The greatest command of gz where none is said."""
+"""The greatest command of gz if there is no limit."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -74,7 +74,7 @@ class _Joint:
         self._by_velocity = Pid(parameters.gains("velocity", number))
 
     def aim(self, point: Any, number: int) -> None:
-        """Set the targets from a point, in which the joint has a number; what the point leaves out stays."""
+        """Set the targets from a point, in which the joint has a number; values that the point omits stay."""
         self.position = _nth(point.positions, number, self.position)
         self.velocity = _nth(point.velocities, number, self.velocity)
         self.effort = _nth(point.effort, number, self.effort)
@@ -98,7 +98,7 @@ class _Trajectory:
         return self.index + 1 >= len(self.message.points)
 
     def advance(self, time: int) -> bool:
-        """Go on to the point that is due at a time; whether it is another one than before."""
+        """Advance to the point that is due at a time; return whether the point has changed."""
         before = self.index
         while not self.is_at_last and self.start + _nanoseconds(self._point.time_from_start) < time:
             self.index += 1

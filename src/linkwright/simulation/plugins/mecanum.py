@@ -48,7 +48,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         """Give the wheels motors, and subscribe to the commands.
 
         Raises:
-            LinkwrightError: SIM134 a joint is not there; SIM160 a measure is not positive, or the model is fixed.
+            LinkwrightError: SIM134 a joint does not exist; SIM160 a measure is not positive, or the model is fixed.
         """
         said, simulation = self.parameters, self.simulation
         if not (min(said.wheel_separation, said.wheelbase) > 0.0 and said.wheel_radius > 0.0):

@@ -1,7 +1,7 @@
 """Multicopters: ``gz-sim-multicopter-motor-model-system``, and ``gz-sim-multicopter-control-system`` for velocities.
 
-A rotor pulls along the z axis of its link with the square of its speed, turns what carries it the other way, and drags
-in the air that it moves through. The controller tilts the model so that it gets the velocity that it is told.
+A rotor pulls along the z axis of its link with the square of its speed, turns its parent link the other way, and has
+drag in the air that it moves through. The controller tilts the model so that it reaches the commanded velocity.
 
 Source: gz-sim (parameters, topics, formulas); T. Lee, M. Leok, N. H. McClamroch, "Geometric tracking control of a
 quadrotor UAV on SE(3)", 2010.

@@ -75,9 +75,9 @@ class Output:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether anybody subscribes: a message that is costly to make need not be made otherwise.
+        """Whether a subscriber exists; otherwise a costly message need not be made.
 
-        Subscriptions come and go at any time, on another thread; within one call of a plugin the answer stays the same.
+        Subscriptions change at any time, on another thread; within one call of a plugin the answer stays the same.
         """
         number = self.calls.number
         if not number:
@@ -93,16 +93,16 @@ class Output:
         return False
 
     def publish(self, message: Any) -> None:
-        """Publish a message, which nobody may change any more."""
+        """Publish a message, which must not change afterwards."""
         self.exchange.send(self._outlet, message)
 
     def making(self, make: Callable[..., Any]) -> Callable[..., None]:
-        """A function that publishes the message which another one makes of its arguments.
+        """Return a function that publishes the message which `make` makes of its arguments.
 
         The message is made where it is published: a simulation with a thread of its own computes on meanwhile.
 
         Args:
-            make: makes a message of values that nobody changes any more.
+            make: makes a message of values that do not change afterwards.
         """
         outlet = _Outlet(self, make)
 
@@ -115,21 +115,21 @@ class Output:
 class PluginNode:
     """Publishers, subscriptions, services and parameters of a plugin, called in the simulation's thread.
 
-    A plugin of Gazebo classic is a node; those of gz share that of the simulation. Callbacks come in the simulation's
+    A plugin of Gazebo classic is a node; those of gz share that of the simulation. Callbacks run in the simulation's
     thread, between two chunks of simulated time.
 
     Args:
         node: the node.
         exchange: that of the simulation.
         owned: whether the node is the plugin's own, and ends with it.
-        qos: what overrides qualities of service (`NodeDescription.qos`).
-        usual: the usual names of topics that are still to be had; None where topics have their own names only.
-        bridged: for plugins of gz, what tells which of their topics a bridge has under another type.
-        now_ns: the time that what it moves goes by, in nanoseconds; that of the node's clock when left out.
-        calls: how its callbacks are called; when left out, an error of one is logged.
+        qos: overrides of QoS profiles (`NodeDescription.qos`).
+        usual: the default names of topics that are still free; None where topics have their own names only.
+        bridged: for plugins of gz, the topics that a bridge has under another type.
+        now_ns: returns the time of the simulated motion, in nanoseconds; by default that of the node's clock.
+        calls: calls its callbacks; by default an error of one is logged.
 
     Attributes:
-        calls: how its callbacks are called.
+        calls: calls its callbacks.
     """
 
     def __init__(
@@ -312,9 +312,7 @@ class PluginNode:
             callback(message)
             return
         rest()
-        told = phrase(
-            "'{topic}': a command with NaN or an infinite number is no command: what it moves stops", topic=topic
-        )
+        told = phrase("'{topic}': a command with NaN or an infinite number stops the motion", topic=topic)
         self.logger.warning(told, throttle_duration_sec=_WARN_SECONDS)
 
     def _received(self, callback: Callable[[Any], object], message: Any) -> None:

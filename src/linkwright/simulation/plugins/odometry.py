@@ -21,7 +21,7 @@ Variances = tuple[float, ...]
 
 _NONE = (0.0,) * 6
 _UNKNOWN = 1e12
-"""The variance of what a robot on wheels does not measure: z, roll and pitch."""
+"""The variance of values that a robot on wheels does not measure: z, roll and pitch."""
 
 
 def planar_variances(x: float, y: float, yaw: float) -> Variances:
@@ -98,7 +98,7 @@ class OdometryTopics:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether a subscriber exists."""
         for output, _ in self._outputs:  # noqa: SIM110 - see Output.is_wanted
             if output.is_wanted:
                 return True

@@ -53,11 +53,11 @@ def parameters_from(
 
     Args:
         table: a dataclass, see above.
-        element: the plugin as written; None for one without.
+        element: the plugin as written; None for a sensor without a plugin.
         ignored: names that are known and change nothing here.
 
     Returns:
-        The parameters; and warnings for what is unknown, or cannot be read and has its default.
+        The parameters; and warnings for unknown names, and for invalid values, which get their defaults.
 
     Raises:
         LinkwrightError: SIM132 one without a default is missing.
@@ -83,7 +83,7 @@ def parameters_from(
             findings.append(
                 _warning(
                     "SIM130",
-                    phrase("'{name}' is no parameter of this plugin", name=name),
+                    phrase("'{name}' is not a parameter of this plugin", name=name),
                     children[0],
                     did_you_mean(name, names),
                 )
@@ -97,7 +97,7 @@ def _types(table: Hashable) -> Mapping[str, Any]:
 
 
 def _read(known: Field[Any], kind: Any, written: list[Element], findings: list[Diagnostic]) -> Any:
-    """Read the value of a parameter; None where none is given that can be read."""
+    """Read the value of a parameter; None if there is no valid one."""
     many = kind in (tuple[str, ...], tuple[float, ...])
     convert = _CONVERTERS[str if kind == tuple[str, ...] else float if kind == tuple[float, ...] else kind]
     values = []
@@ -106,7 +106,7 @@ def _read(known: Field[Any], kind: Any, written: list[Element], findings: list[D
         try:
             values.append(convert(text))
         except ValueError:
-            message = phrase("'{text}' is no value of '{name}'", text=text, name=known.name)
+            message = phrase("'{text}' is not a valid value of '{name}'", text=text, name=known.name)
             findings.append(_warning("SIM131", message, child, phrase("its default is used")))
     if not values:
         return None

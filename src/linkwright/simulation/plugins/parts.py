@@ -17,7 +17,7 @@ Pose = Callable[[], Transform]
 
 
 class PartKind(Enum):
-    """What a part is."""
+    """The kind of a part."""
 
     MODEL = auto()
     NESTED_MODEL = auto()

@@ -45,7 +45,7 @@ def _of_model(world: World, model: Model, path: str, frames: Frames) -> Iterator
         plugins = placed.sensor.plugins
         for plugin in plugins:
             yield PluginPlace(plugin.name or placed.sensor.name, plugin, world, model, path, placed)
-        if all(needs_nothing(plugin.filename) for plugin in plugins):  # gz's systems stand in sensors, too
+        if all(needs_nothing(plugin.filename) for plugin in plugins):  # sensors contain gz's systems, too
             yield PluginPlace(placed.sensor.name, None, world, model, path, placed)
     for inner in model.models:
         yield from _of_model(world, inner, f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name))

@@ -1,4 +1,4 @@
-"""Base classes of plugins and sensors, and what they are given.
+"""Base classes of plugins and sensors.
 
 How to write one. A class for each plugin or type of sensor, declared as an entry point (`registry`):
 
@@ -14,15 +14,15 @@ How to write one. A class for each plugin or type of sensor, declared as an entr
             positions = [self.simulation.joint_state(joint)[0] for joint in self._joints]
             self._output.publish(JointState(Header(self.stamp()), ..., positions, ...))
 
-For a sensor `sensor` says what is measured and where; it is the same for one in whose ``<sensor>`` a plugin stands,
-which ``linkwright.simulated_plugins`` finds by its library, and for one without, which
+For a sensor, `sensor` is the measured sensor with its pose. The class is the same for a sensor with a plugin in its
+``<sensor>``, which ``linkwright.simulated_plugins`` finds by its library, and for a sensor alone, which
 ``linkwright.simulated_sensors`` finds by its type. Noise is drawn from `random`, so that the same seed gives the same
-bits. What is costly is made only where ``output.is_wanted``.
+bits. Make costly messages only if ``output.is_wanted``.
 
-Everything is called in the simulation's thread: `start` after the model has come, what was passed to `every` at its
-simulated times, callbacks of topics and services between two chunks of time, `reset` after time has begun anew, `stop`
-before the model goes. A model whose file was saved comes anew where it is; `go_on` takes over what has to go on.
-What one throws, wherever it is called, is logged and ends that plugin or sensor; everything else goes on (`calls`).
+Everything is called in the simulation's thread: `start` after the model is added, functions passed to `every` at their
+simulated times, callbacks of topics and services between two chunks of time, `reset` after time restarts, `stop` before
+the model is removed. A model whose file was saved is replaced where it is; `go_on` takes over the state that continues.
+An exception, wherever it is raised, is logged and ends that plugin or sensor; everything else continues (`calls`).
 """
 
 from __future__ import annotations
@@ -126,12 +126,12 @@ class SimulatedPlugin(Generic[P]):
     Attributes:
         PARAMETERS: the dataclass with its parameters.
         IGNORED: names of parameters that are known and change nothing here.
-        CARRIED: names of the attributes that go on when its model comes anew, and it is what it was.
-        place: where it stands.
-        node: what it has of ROS.
-        parameters: what it is given.
+        CARRIED: names of the attributes that a replaced model's plugin passes on, if the plugin has not changed.
+        place: its place in the world.
+        node: its part of the ROS graph.
+        parameters: its parameters.
         simulation: the simulation.
-        gazebo_mistakes: whether known mistakes of Gazebo are made, too; each is named where it is.
+        gazebo_mistakes: whether to reproduce known errors of Gazebo; each is named where it is.
     """
 
     PARAMETERS: ClassVar[type[Any]] = NoParameters
@@ -153,11 +153,11 @@ class SimulatedPlugin(Generic[P]):
         """Find links and joints, make topics, register with `every`.
 
         Raises:
-            LinkwrightError: it cannot work; this is logged, and it is not there.
+            LinkwrightError: it cannot work; this is logged, and it does not run.
         """
 
     def reset(self) -> None:
-        """Restore the state of the start; simulated time begins anew."""
+        """Restore the state of the start; simulated time restarts."""
 
     def go_on(self, before: SimulatedPlugin[P]) -> None:
         """Take over the state of a predecessor with the same parameters (its model was replaced); called after `start`.
@@ -175,7 +175,7 @@ class SimulatedPlugin(Generic[P]):
         return type(self) is type(other) and same_place and bool(self.parameters == other.parameters)
 
     def stop(self) -> None:
-        """Clean up; its node, and what was registered with `every`, are removed without it."""
+        """Clean up; its node, and functions registered with `every`, are removed automatically."""
 
     @property
     def left(self) -> dict[str, Any]:
@@ -186,7 +186,7 @@ class SimulatedPlugin(Generic[P]):
 
     @property
     def sensor(self) -> PlacedSensor:
-        """The sensor, for a plugin that is one or stands in one."""
+        """The sensor, for a plugin that is a sensor or belongs to one."""
         assert self.place.sensor is not None
         return self.place.sensor
 
@@ -235,14 +235,14 @@ class SimulatedPlugin(Generic[P]):
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
     def close(self, tell: Callable[[Exception], object]) -> None:
-        """Remove it: `stop`, and all that it made; an error of `stop` is told."""
+        """Remove it: `stop`, and everything that it made; an error of `stop` is reported."""
         for task in self._tasks:
             task.cancelled = True
         self.node.calls.close(self.stop, tell)
         self.node.close()
 
     def _found(self, name: str, known: Collection[str], code: str) -> str:
-        """A name as it stands, below the model, or below one of the models in it."""
+        """Find a name as it is, below the model, or below one of the nested models."""
         begin = f"{self.place.path}{SEPARATOR}" if self.place.path else ""
         mine = [each for each in known if each.startswith(begin)]
         for candidate in (f"{begin}{name}", name):

@@ -47,7 +47,7 @@ _BUILT_IN = frozenset(
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
     )
 )
-"""Libraries of other simulators for what this one does itself; all others that no plugin simulates are told of."""
+"""Plugins of other simulators whose work this one does itself; other plugins that are not simulated are reported."""
 
 
 SYSTEMS_OF_GZ = tuple(Plugin(f"gz-sim-{name}-system") for name in ("physics", "user-commands", "scene-broadcaster"))

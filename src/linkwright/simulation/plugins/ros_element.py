@@ -49,9 +49,9 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
     """Read the description of a plugin's node.
 
     Args:
-        name: of the plugin; what no name of a node may have becomes an underscore.
+        name: of the plugin; characters that a node name cannot have become underscores.
         element: the plugin as written.
-        namespace: where it lives if it says nothing.
+        namespace: the default namespace.
 
     Raises:
         LinkwrightError: an ``<argument>`` is none of ROS's.

@@ -42,7 +42,7 @@ class _Entities:
 
     Attributes:
         names: their names.
-        poses: their poses: those of what stays where it is, and functions for the others.
+        poses: poses of static entities, and functions for the others.
     """
 
     names: tuple[str, ...]
@@ -76,7 +76,7 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         output.publish(TFMessage(batch=TransformBatch(("",) * count, entities.names, self.simulation.time, poses)))
 
     def _collect(self) -> None:
-        """Find the entities of the world as it is now; what is static stays where it is."""
+        """Find the entities of the current world; the poses of static ones are constant."""
         self.simulation.refresh()
         self._revision = self.simulation.revision
         models = self.simulation.scene.models.values()

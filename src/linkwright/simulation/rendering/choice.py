@@ -1,4 +1,4 @@
-"""Choosing the renderer: the first way of making pictures that works here."""
+"""The choice of the renderer: the first one that works here."""
 
 from __future__ import annotations
 

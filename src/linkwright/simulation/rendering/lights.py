@@ -36,10 +36,10 @@ class PlacedLight:
 
 
 def lights_of(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
-    """The lights of a world and of its links, at their poses now; a sun where there is none.
+    """Return the lights of a world and of its links, at their current poses; a sun if there is none.
 
-    A faint one comes from the camera, which looks along `forwards`: it takes the place of what other things reflect,
-    and without it all that lies in the shade would be of one colour.
+    A faint light comes from the camera, which looks along `forwards`: it replaces indirect light, without which
+    everything in the shade would have one colour.
     """
     lights = [*_of_world(simulation), *_of_links(simulation)]
     if not lights:

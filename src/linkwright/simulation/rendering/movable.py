@@ -1,4 +1,4 @@
-"""Geoms that may move: which of them rest, and which of the others are in a picture."""
+"""Geoms that may move: which of them rest, and which of the others are in an image."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from linkwright.simulation.simulation import Simulation
 _THIN = 1e-6
 """A tolerance in m: a point on the surface of a box counts as inside."""
 _REST = 200_000_000
-"""For how many simulated nanoseconds something has not moved at all that is taken for resting."""
+"""Simulated nanoseconds without any motion after which a geom counts as resting."""
 _FEW = 8
-"""Up to so many moving geoms it pays to find out which pixels may show them."""
+"""The number of moving geoms up to which it pays to find the pixels that may show them."""
 _BLUR = 1e-4
-"""Slopes, and m: more than what directions of 32 bits are wrong."""
+"""Slopes, and m: above the rounding error of directions of 32 bits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class MovableGeoms:
         """
         data, now = self._simulation.data, self._simulation.time
         poses = np.concatenate([data.geom_xpos[self._geoms], data.geom_xmat[self._geoms]], axis=1)
-        moved = (poses != self._poses).any(axis=1) | (self._since > now)  # time may have begun anew
+        moved = (poses != self._poses).any(axis=1) | (self._since > now)  # time may have restarted
         self._poses = poses
         self._since[moved] = now
         self._hollow |= self._around(origin)
@@ -83,7 +83,7 @@ class MovableGeoms:
         return True
 
     def in_view(self, view: View) -> dict[int, Array]:
-        """The moving geoms that are in a picture, without those whose bounding box contains the camera.
+        """Return the moving geoms in an image, without those whose bounding box contains the camera.
 
         Returns:
             For each the corners of a box around it: to the right, down and ahead in m, shape (8, 3).

@@ -1,7 +1,7 @@
-"""Pictures by OpenGL: MuJoCo's classic renderer, off the screen, on EGL or OSMesa.
+"""Rendering by OpenGL: MuJoCo's classic renderer, off the screen, on EGL or OSMesa.
 
 MuJoCo's defaults (four samples a pixel, shadow maps of 4096 pixels, reflections) take twenty times as long on a
-processor as what is set here.
+processor as the settings here.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ BACKENDS = tuple(_LIBRARIES)
 _LIGHTS = 8
 """The greatest number of lights of OpenGL."""
 _FARTHER = 4.0
-"""The size of the ground, in far clip distances of the camera: its edges are outside of the picture."""
+"""The size of the ground, in far clip distances of the camera: its edges are outside the image."""
 _ROUNDING = 1e-6
-"""The share of its size that a geom may be beside of what is seen by rounding alone."""
+"""The fraction of its size by which rounding may put a geom outside the view."""
 _QUADS, _LIT_QUADS = 1, 4
 """Into how many squares a side of a box is cut each way: light is computed at their corners."""
 _SLICES, _STACKS = 28, 14
@@ -47,11 +47,11 @@ _COMPILE, _STRIP, _FAN = 0x1300, 0x5, 0x6
 _BUILT_IN, _BALL, _CYLINDER, _TUBE = 8, 0, 3, 4
 """The number of display lists of MuJoCo's shapes, and which are a ball, a cylinder and the side of a capsule."""
 _SPARE_GEOMS = 100
-"""Room in the list of what is drawn beside the geoms of the model."""
+"""Spare geoms in the scene beside those of the model."""
 
 
 class OpenGlRenderer:
-    """Makes pictures by OpenGL.
+    """Renders images by OpenGL.
 
     Its context belongs to the thread that made it.
 
@@ -60,7 +60,7 @@ class OpenGlRenderer:
         backend: one of `BACKENDS`.
 
     Raises:
-        Exception: of any class; this way does not work here.
+        Exception: of any class; this backend does not work here.
     """
 
     def __init__(self, simulation: Simulation, backend: str) -> None:
@@ -123,7 +123,7 @@ class OpenGlRenderer:
             self._gl.free()
 
     def _renew(self) -> None:
-        """Upload meshes and textures anew after models were added or removed."""
+        """Upload meshes and textures again after models were added or removed."""
         simulation, mujoco = self._simulation, self._mujoco
         if self._revision == simulation.revision:
             return
@@ -152,10 +152,10 @@ class OpenGlRenderer:
         self._revision = simulation.revision
 
     def _simplify_round_shapes(self) -> None:
-        """Draw balls, and cylinders in light that is the same everywhere, with fewer corners than MuJoCo does.
+        """Draw spheres, and cylinders in uniform light, with fewer vertices than MuJoCo does.
 
-        It draws each square by itself, and cuts the sides of cylinders into stacks and their ends into rings, which
-        show only where a lamp lights their corners. The picture is the same.
+        MuJoCo draws each square by itself, and cuts the sides of cylinders into stacks and their ends into rings, which
+        show only where a lamp lights their vertices. The image is the same.
         """
         turns, rises = np.linspace(0.0, 2.0 * np.pi, _SLICES + 1), np.linspace(-0.5 * np.pi, 0.5 * np.pi, _STACKS + 1)
         circle = [*zip(np.cos(turns).tolist(), np.sin(turns).tolist(), strict=True)]
@@ -309,12 +309,12 @@ class OpenGlRenderer:
 
 
 def _beside(simulation: Simulation, hole: Optics, origin: Array, axes: Array) -> Any:
-    """Whether geoms are outside of the picture, shape (geoms,): OpenGL would compute each of their corners."""
+    """Return whether geoms are outside the image, shape (geoms,): OpenGL would compute each of their vertices."""
     normals, places = hole.bounds
     reach = simulation.model.geom_rbound * (1 + _ROUNDING)
     beyond = normals @ axes.T @ (simulation.data.geom_xpos - origin).T
     beyond -= places
-    return (beyond > reach).any(axis=0) & (reach > 0)  # what reaches nowhere has no end
+    return (beyond > reach).any(axis=0) & (reach > 0)  # MuJoCo gives infinite geoms a radius of 0
 
 
 def _is_the_same_everywhere(lights: list[PlacedLight]) -> bool:
@@ -339,7 +339,7 @@ def _context_class(backend: str) -> Any:
 
 
 def _picked(pixels: Pixels, optics: Optics) -> Pixels:
-    """Resample a pinhole's picture for a lens by nearest pixels."""
+    """Resample a pinhole's image for a lens by nearest pixels."""
     column, row = optics.sources
     column = np.clip(np.round(column).astype(int), 0, optics.pinhole.width - 1)
     row = np.clip(np.round(row).astype(int), 0, optics.pinhole.height - 1)

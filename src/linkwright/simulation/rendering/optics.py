@@ -1,7 +1,7 @@
 """Camera models: a pinhole, and a lens with distortion.
 
-Source: the model ``plumb_bob`` of camera calibration (Brown, "Decentering distortion of lenses", 1966); axes of
-pictures as REP 103 has them: x to the right, y down, z into the picture.
+Source: the model ``plumb_bob`` of camera calibration (Brown, "Decentering distortion of lenses", 1966); image axes of
+REP 103: x to the right, y down, z into the image.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from linkwright.sdf.cameras import Camera, Distortion
 _TURNS = 20
 """The number of iterations that undistort a point."""
 _LARGEST = 2.0
-"""The greatest width of the pinhole's picture from which a distorted one is resampled, in widths of that."""
+"""The greatest width of the pinhole image that is resampled for a distorted image, in widths of the latter."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,8 @@ class Optics:
     Attributes:
         width, height: in pixels.
         fx, fy: focal lengths in pixels.
-        cx, cy: where the optical axis goes through the picture, in pixels from the outer corner of the first pixel,
-            whose middle is at 0.5.
-        near, far: the distances along the optical axis that are seen, in m.
+        cx, cy: the principal point, in pixels from the outer corner of the first pixel, whose centre is at 0.5.
+        near, far: the visible distances along the optical axis, in m.
         distortion: of the lens; None for a perfect one.
     """
 
@@ -112,12 +111,12 @@ class Optics:
 
     @property
     def is_pinhole(self) -> bool:
-        """Whether this is the picture of a pinhole with square pixels."""
+        """Whether this is a pinhole with square pixels."""
         return self.distortion is None and self.fx == self.fy
 
     @cached_property
     def pinhole(self) -> Optics:
-        """The optics of a pinhole whose picture covers this one."""
+        """The optics of a pinhole whose image covers this one."""
         if self.is_pinhole:
             return self
         x, y = self.rays[:, 0], self.rays[:, 1]
@@ -137,7 +136,7 @@ class Optics:
 
     @cached_property
     def sources(self) -> tuple[Array, Array]:
-        """Columns and rows, as fractions, of the pixels of `pinhole` that the pixels of this picture show."""
+        """Columns and rows, as fractions, of the pixels of `pinhole` that the pixels of this image show."""
         hole = self.pinhole
         return self.rays[:, 0] * hole.fx + hole.cx - 0.5, self.rays[:, 1] * hole.fy + hole.cy - 0.5
 
@@ -181,5 +180,5 @@ def undistorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
     for _ in range(_TURNS):
         there = distorted(lens, across, down)
         across, down = across + (x - there[0]), down + (y - there[1])
-    wide = (np.abs(across) < 10) & (np.abs(down) < 10)  # also false for what is no number
+    wide = (np.abs(across) < 10) & (np.abs(down) < 10)  # also false for NaN
     return np.where(wide, across, x), np.where(wide, down, y)

@@ -33,16 +33,16 @@ class Hits:
 
 
 class Caster(Protocol):
-    """The interface of ray casting for pictures."""
+    """The interface of ray casting for images."""
 
     way: Phrase
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """Cast the rays of a picture into the world as it is now, from the camera's near clip on.
+        """Cast the rays of an image into the current world, from the camera's near clip on.
 
         Args:
-            view: the picture.
-            normals: whether normals are wanted.
+            view: the view of the image.
+            normals: whether to return normals.
         """
 
 
@@ -58,7 +58,7 @@ class MujocoCaster:
         self._groups[VISUAL_GROUP] = 1
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """Cast the rays of a picture."""
+        """Cast the rays of an image."""
         del normals  # they come with the rest
         origin, rays, start = view.origin, view.rays, view.optics.near
         simulation = self._simulation
@@ -109,14 +109,14 @@ class _Triangles:
         self._normals = across / np.maximum(np.linalg.norm(across, axis=1), 1e-20)[:, None].astype(np.float32)
 
     def cast_into(self, hits: Hits, origins: Any, rays: Any, start: float, numbers: Any = None) -> None:
-        """Record the hits that are nearer than those recorded already, of rays from `start`.
+        """Record the hits that are nearer than the recorded ones, of rays from `start`.
 
         Args:
-            hits: what was hit already.
+            hits: the hits so far.
             origins: where each ray begins.
-            rays: where it goes.
-            start: how much of it was before the origin.
-            numbers: those that are cast; None for all.
+            rays: the direction of each ray.
+            start: the distance from the camera to the origin along the ray.
+            numbers: the rays to cast; None for all.
         """
         if numbers is not None:
             origins, rays = origins[numbers], rays[numbers]
@@ -142,7 +142,7 @@ class EmbreeCaster:
     way = phrase("ray casting by Embree, as there is neither EGL nor OSMesa")
 
     def __init__(self, simulation: Simulation) -> None:
-        import embreex  # type: ignore[import-not-found, import-untyped, unused-ignore]  # noqa: F401 - whether it is there
+        import embreex  # type: ignore[import-not-found, import-untyped, unused-ignore]  # noqa: F401 - is it installed?
 
         self._simulation = simulation
         self._revision = -1
@@ -155,7 +155,7 @@ class EmbreeCaster:
         self._planes: list[int] = []
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """Cast the rays of a picture."""
+        """Cast the rays of an image."""
         origin, rays, start = view.origin, view.rays, view.optics.near
         simulation = self._simulation
         simulation.refresh()
@@ -203,7 +203,7 @@ class EmbreeCaster:
     def _take_changes(self) -> None:
         """Move geoms out of the static tree that were moved or reshaped all the same.
 
-        That is how a dataset has another scene for each picture.
+        A dataset thereby has another scene for each image.
         """
         model = self._simulation.model
         still = np.array(list(self._fixed), dtype=np.int64)

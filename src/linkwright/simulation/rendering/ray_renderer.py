@@ -1,4 +1,4 @@
-"""Pictures by ray casting: one ray a pixel, flat shading, no shadows."""
+"""Rendering by ray casting: one ray a pixel, flat shading, no shadows."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from linkwright.simulation.rendering.renderer import Picture, Wanted, axes_of
 from linkwright.simulation.simulation import Simulation
 
 _UNSAID = (0.5, 0.5, 0.5, 1.0)
-"""The colour in MuJoCo of what has that of its material."""
+"""The colour in MuJoCo of a geom that has the colour of its material."""
 
 
 class RayRenderer:
-    """Makes pictures by rays.
+    """Renders images by rays.
 
     Args:
         simulation: the world.
-        caster: what casts the rays.
+        caster: casts the rays.
     """
 
     def __init__(self, simulation: Simulation, caster: Caster) -> None:
@@ -57,7 +57,7 @@ class RayRenderer:
 
     def _shaded(self, hits: Hits, origin: Array, rays: Any, forwards: Array) -> Any:
         simulation = self._simulation
-        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a dataset has others for each picture
+        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a dataset has others for each image
         if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._paints)):
             self._colours = geom_colours(simulation.model)
             self._paints = tuple(paint.copy() for paint in paints)

@@ -1,4 +1,4 @@
-"""The interface of renderers, and the pictures that they make."""
+"""The interface of renderers, and their images."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from linkwright.simulation.rendering.optics import Optics
 Pixels = np.ndarray[Any, np.dtype[Any]]
 
 _INTO_LINK = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-"""The axes of pictures in those of links: cameras look along x, with z up."""
+"""The axes of images in those of links: cameras look along x, with z up."""
 
 
 class Wanted(Flag):
-    """The parts that a picture shall have."""
+    """The requested parts of an image."""
 
     COLOUR = auto()
     DEPTH = auto()
@@ -29,7 +29,7 @@ class Wanted(Flag):
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture; None for parts that were not asked for.
+    """An image; None for parts that were not requested.
 
     Attributes:
         colour: red, green, blue: shape (height, width, 3), uint8.
@@ -43,7 +43,7 @@ class Picture:
 
 
 class Renderer(Protocol):
-    """Makes pictures of a simulation, in the thread that uses the simulation."""
+    """Renders images of a simulation, in the thread that uses the simulation."""
 
     way: Phrase
     """How it does so, for people."""
@@ -62,6 +62,6 @@ class Renderer(Protocol):
 
 
 def axes_of(pose: Transform) -> Array:
-    """The axes of a camera's picture in the world, as columns: right, down, forwards."""
+    """Return the axes of a camera's image in the world, as columns: right, down, forwards."""
     axes: Array = rotation_matrix(np.array(pose[3:])) @ _INTO_LINK
     return axes

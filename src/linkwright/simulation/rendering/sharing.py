@@ -17,7 +17,7 @@ _shared: WeakKeyDictionary[Simulation, SharedRenderer] = WeakKeyDictionary()
 
 
 class SharedRenderer:
-    """The renderer that all cameras of a simulation share; made with the first picture, in the thread of that."""
+    """The renderer that all cameras of a simulation share; made with the first image, in the thread of that."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -27,7 +27,7 @@ class SharedRenderer:
         self._told = False
 
     def render(self, optics: Optics, pose: Transform, wanted: Wanted, tell: Callable[[Phrase], object]) -> Picture:
-        """Render what a camera sees now; before the first picture `tell` is called with the kind of renderer."""
+        """Render the camera's current view; before the first image, call `tell` with the kind of renderer."""
         if self._renderer is None or self._thread != threading.get_ident():
             self._renderer, self._thread = make_renderer(self._simulation), threading.get_ident()
         if not self._told:

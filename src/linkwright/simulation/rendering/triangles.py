@@ -11,7 +11,7 @@ from linkwright.simulation.library import load_mujoco
 
 _AROUND = 32
 _ALONG = 16
-"""The sides of what is round."""
+"""The sides of a round shape."""
 Mesh = tuple[Array, Any]
 """Corners, shape (n, 3), and triangles of their indices, shape (m, 3)."""
 

@@ -48,7 +48,7 @@ _GREY: Color = (0.7, 0.7, 0.7, 1.0)
 _WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 """The colour of a textured visual without one."""
 _WATER = 1000.0
-"""The density of what says nothing of its own, in kg/m3."""
+"""The default density, in kg/m3."""
 
 
 class BodyWriter:
@@ -122,7 +122,7 @@ class BodyWriter:
         Args:
             body: that of the child link.
             placed: the joint.
-            child: where the child link stands in the world.
+            child: the pose of the child link in the world.
         """
         kinds = self._mujoco.mjtJoint
         in_child = compose(invert(child), placed.pose)
@@ -237,7 +237,7 @@ def _colour(visual: Visual, usual: Color) -> list[float]:
 
 
 def set_first(thing: Any, name: str, value: float) -> None:
-    """Set a coefficient; since version 4 MuJoCo has polynomials for some, of which it is the first term."""
+    """Set a coefficient; since version 4 MuJoCo has polynomials for some, and this sets the first term."""
     held = getattr(thing, name)
     if np.ndim(held):
         held[0] = value

@@ -61,7 +61,7 @@ def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, 
         scene.spec.memory = _BYTES_A_PAIR * count * count + _BYTES
     try:
         with catch_warnings():
-            simplefilter("ignore")  # of MuJoCo; what matters `check` tells, or the simulation where it goes wrong
+            simplefilter("ignore")  # warnings of MuJoCo; `check` and the simulation report those that matter
             if before is not None:
                 model, data = scene.spec.recompile(*before)
                 return model, data

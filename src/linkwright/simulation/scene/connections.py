@@ -21,9 +21,9 @@ class Connections:
     """The joints of a world between its models.
 
     Attributes:
-        hanging: joints that a model hangs by, by the names of their children.
-        loops: those between links that are held already.
-        poses: where the frames of the models that they connect stand in the world.
+        hanging: joints that connect models to their parents, by the names of their children.
+        loops: joints between links that already have a parent.
+        poses: the poses of the connected models' frames in the world.
     """
 
     hanging: dict[str, PlacedJoint]
@@ -31,13 +31,13 @@ class Connections:
     poses: dict[str, Transform]
 
     def of(self, structure: Structure, name: str, pose: Transform, others: Iterable[str]) -> Connected:
-        """A model with the joints that connect it with those that came before it.
+        """Return a model with the joints that connect it with earlier models.
 
         Args:
             structure: its own links and joints.
-            name: what it is called in the world.
-            pose: where its frame stands in the world; elsewhere than in the world nothing connects it.
-            others: the names of the models that came before it.
+            name: its name in the world.
+            pose: the pose of its frame in the world; at any other pose than that of the world, it is not connected.
+            others: the names of the earlier models.
         """
         if self.poses.get(name) != pose:
             return Connected(structure, (), frozenset())
@@ -109,7 +109,7 @@ def connections_of(world: World) -> Connections:
             try:
                 structure = structure_of(model, model.name, frames.pose(model.name))
             except FrameError:
-                continue  # the scene tells of it
+                continue  # the scene reports it
             poses[model.name] = frames.pose(model.name)
             held |= {link.link.name: link for link in structure.links}
 
@@ -149,7 +149,7 @@ def _placed(world: World, frames: Frames) -> list[PlacedJoint]:
         try:
             placed = placed_joint(joint, frames, IDENTITY, "")
         except FrameError:
-            continue  # `check` tells of it
+            continue  # `check` reports it
         if placed.name not in found and placed.parent != placed.child:
             found[placed.name] = placed
     return list(found.values())

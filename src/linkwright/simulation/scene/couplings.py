@@ -14,7 +14,7 @@ from linkwright.simulation.scene.structure import PlacedJoint
 THREAD = "#thread"
 """The suffix of the name of the joint along which a screw moves while it turns."""
 _STEPS = 4.0
-"""The time constant of what couples joints, in steps."""
+"""The time constant of joint couplings, in steps."""
 
 
 def threaded(spec: Any, joint: PlacedJoint) -> Iterator[Any]:

@@ -31,7 +31,7 @@ _OF_GZ = ("gz-sim", "ignition-gazebo")
 _INVERSE = "INV_BIND_MATRIX"
 _NUMBERS_OF_A_MATRIX = 16
 _FLAT = 1e-12
-"""A matrix whose determinant is no greater cannot be turned round."""
+"""A matrix whose determinant is not greater cannot be inverted."""
 
 
 @dataclass(slots=True)
@@ -39,9 +39,9 @@ class Figure:
     """An actor or a road of a scene.
 
     Attributes:
-        model: what it looks like.
-        pose: where the model stands at time 0.
-        walk: where an actor goes; None for what stands still.
+        model: its appearance.
+        pose: the pose of the model at time 0.
+        walk: the path of an actor; None for a static figure.
         origin: where the points of the walk are, in the world.
         links: its links, placed in the frame of the model.
     """
@@ -165,7 +165,7 @@ def skeleton_begins(path: Path) -> Vector3:
 
 
 def _first_matrix(skin: Element) -> Any:
-    """The first bind matrix of a skeleton that can be inverted; None without one."""
+    """Return the first invertible bind matrix of a skeleton; None if there is none."""
     named = (
         element.attributes.get("source", "")
         for element in skin.walk()

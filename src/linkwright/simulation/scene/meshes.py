@@ -29,9 +29,9 @@ from linkwright.xmltree import Element
 _MOST_PIECES = 300
 """The greatest number of a mesh's convex pieces; each costs a little in every step."""
 _MOST_TRIANGLES = 1_000_000
-"""A mesh of more is left out: it would take gigabytes, and no contact or picture is the better for it."""
+"""A mesh with more is left out: it would take gigabytes without improving a contact or an image."""
 _MOST_HULL_CORNERS = 64
-"""The hull of what moves has no more corners."""
+"""The greatest number of corners of a moving body's hull."""
 _LEAST_AREA = 1e-12
 """The least area in m2 of a triangle: smaller ones are not visible, and MuJoCo refuses them."""
 
@@ -67,14 +67,14 @@ class MeshLibrary:
     def collisions(
         self, body: Any, shape: Shape, pose: Transform, element: Element | None, *, fixed: bool
     ) -> list[Any]:
-        """Add a collision to a body, as convex pieces; nothing for a mesh that cannot be used.
+        """Add a collision to a body, as convex pieces; none for a mesh that cannot be used.
 
         Args:
             body: the body of the specification.
             shape: a mesh, a cone, a polygon, a heightmap.
-            pose: where it stands in the frame of the body.
-            element: what it was read from.
-            fixed: whether the body never moves; the mesh of one that moves is its hull.
+            pose: its pose in the frame of the body.
+            element: its element in the file.
+            fixed: whether the body never moves; the mesh of a moving body is replaced by its hull.
         """
         if isinstance(shape, Heightmap):
             return self._heightmap(body, shape, pose, element)
@@ -198,9 +198,9 @@ class MeshLibrary:
         return geom.meshname in self._mapped
 
     def worn(self, visual: Visual) -> str:
-        """The name of MuJoCo's material with the texture of a visual; empty for none.
+        """Return the name of MuJoCo's material with the texture of a visual; empty for none.
 
-        An image of what glows stands for that of a colour which is not there.
+        An emissive map replaces a missing colour map.
         """
         workflow = (
             visual.material and visual.material.pbr and (visual.material.pbr.metal or visual.material.pbr.specular)
@@ -353,12 +353,12 @@ def _joined(parts: Sequence[Triangles]) -> tuple[Array, Any]:
 
 
 def _flat(values: Any, kind: Any = np.float32) -> list[Any]:
-    with np.errstate(over="ignore"):  # MuJoCo refuses what is too great, and says so
+    with np.errstate(over="ignore"):  # MuJoCo refuses and reports numbers that are too great
         return list(np.asarray(values, dtype=kind).ravel().tolist())
 
 
 def _version(path: Path | None) -> tuple[Path | None, int]:
-    """A file and the time of its last change, so that a file that was saved is read anew."""
+    """Return a file and the time of its last change, so that a saved file is read again."""
     return path, 0 if path is None else changed_at(path)
 
 

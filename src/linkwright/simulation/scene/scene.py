@@ -33,17 +33,17 @@ _USUAL_STEP = 0.001
 _ANCHORS_APART = 0.1
 """The distance in m of the two points that hold the axis of a hinge which closes a loop."""
 _LOOP_STEPS = 4.0
-"""The time constant of what closes a loop, in steps."""
+"""The time constant of constraints that close a loop, in steps."""
 _WHEELS_THAT_ROLL = 2
 """The greatest number of rolling wheels on a link: with more, some slip in every turn."""
 _GREATEST_JUMP = 1.0
-"""How much a motor at its greatest torque may change the speed of a wheel in the air within a step, in rad/s.
+"""The greatest change of a wheel's speed in the air within a step, by a motor at its greatest torque, in rad/s.
 
-A wheel alone weighs so little that 5 N m would turn it 14 rad/s faster in 1 ms, past what was wanted, and back in the
+A wheel alone weighs so little that 5 N m would turn it 14 rad/s faster in 1 ms, past the target, and back in the
 next: it slips, leaves the ground and stays away from it. Motors with gears have rotors that weigh more than wheels.
 """
 SERVO = "#servo"
-"""What the names of the constraints of servos have behind those of their joints, before a number."""
+"""The separator of a joint's name and a number in the names of servo constraints."""
 _SERVO_TIME = 0.02
 """The time constant of a servo in s."""
 
@@ -53,14 +53,14 @@ class SceneModel:
     """A model of a scene.
 
     Attributes:
-        name: what it is called in the world.
-        model: what is written about it.
-        pose: where its frame stood in the world when it came.
+        name: its name in the world.
+        model: the parsed model.
+        pose: the pose of its frame in the world when it was added.
         structure: its links and joints.
-        parts: what the specification has of it, in the order in which it was added: bodies, without those that hang on
-            others, constraints and actuators.
+        parts: its parts in the specification, in the order in which they were added: root bodies, constraints and
+            actuators.
         files: those of its meshes, and when they were changed, in ns since the epoch.
-        hangs_on: the models that joints of the world connect it with, of those that came before it.
+        hangs_on: the earlier models that joints of the world connect it with.
     """
 
     name: str
@@ -129,7 +129,7 @@ class Scene:
             if model.name in refused:
                 message = phrase("model '{name}' is left out: {why}", name=model.name, why=refused[model.name])
                 self._warn("SIM117", message, model.element)
-            elif model.name not in self.models:  # `check` tells of a second one
+            elif model.name not in self.models:  # `check` reports a second one
                 self._add_or_tell(model, frames)
         self.figures = figures_of(world, meshes)
         for figure in self.figures:
@@ -205,8 +205,8 @@ class Scene:
 
         Args:
             model: with its includes resolved.
-            name: what it is called; no other has that name.
-            pose: where its frame stands in the world.
+            name: its name, which no other model has.
+            pose: the pose of its frame in the world.
 
         Raises:
             FrameError: a link of it cannot be placed.
@@ -245,8 +245,8 @@ class Scene:
         """Set the initial pose of a model.
 
         Args:
-            name: what it is called.
-            pose: where its frame stands in the world.
+            name: its name.
+            pose: the pose of its frame in the world.
 
         Raises:
             KeyError: there is none of that name.
@@ -315,7 +315,7 @@ class Scene:
 
         Args:
             joint: the name of the joint.
-            rotor: the inertia of what turns with it in a motor, in kg m^2 for each second of a step.
+            rotor: the inertia of the motor's rotor, in kg m^2 for each second of a step.
         """
         model = joint.partition(SEPARATOR)[0]
         self._unsettled.add(model)
@@ -398,7 +398,7 @@ class Scene:
             root.sleep = never
 
     def settle(self) -> None:
-        """Set the surfaces of wheels and casters of models with motors, once all motors are there."""
+        """Set the surfaces of wheels and casters of models with motors, once all motors exist."""
         for name in self._unsettled & self.models.keys():
             driven = {self.joints[joint].child: joint for joint in self._driven[name]}
             sides = Counter(self.joints[joint].parent for joint in driven.values())

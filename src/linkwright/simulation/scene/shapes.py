@@ -15,7 +15,7 @@ from linkwright.simulation.library import load_mujoco
 _ENDLESS = 0.0
 """Half the width of a plane that has no end."""
 _THICKNESS = 0.005
-"""Half of what a plane is thick where it moves, in m: MuJoCo's planes stand still."""
+"""Half the thickness of a moving plane, in m: MuJoCo's planes are static."""
 _CORNERS = 32
 
 
@@ -27,12 +27,12 @@ def set_pose(thing: Any, pose: Transform) -> None:
 
 
 def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any | None:
-    """Add a simple shape to a body; None for one that is not simple, or has no extent.
+    """Add a simple shape to a body; return None if it is not simple, or has no extent.
 
     Args:
         body: the body of the specification.
-        shape: the shape; meshes and what is made of images are the business of `linkwright.simulation.scene.meshes`.
-        pose: where it stands in the frame of the body.
+        shape: the shape; `linkwright.simulation.scene.meshes` handles meshes and heightmaps.
+        pose: its pose in the frame of the body.
         fixed: whether the body never moves.
     """
     kinds = load_mujoco().mjtGeom

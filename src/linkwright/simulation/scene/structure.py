@@ -21,11 +21,11 @@ class PlacedJoint:
     """A joint of a model, or of a world between two of them.
 
     Attributes:
-        name: with the models that it is in: ``robot::arm::elbow``; one of a world has its name alone.
-        joint: what is written about it.
-        parent: the link that it is fixed to, named as in `PlacedLink`; ``world`` for the world.
+        name: with the models around it: ``robot::arm::elbow``; one of a world has its name alone.
+        joint: the parsed joint.
+        parent: its parent link, named as in `PlacedLink`; ``world`` for the world.
         child: the link that it moves.
-        pose: where its frame stands in the world.
+        pose: the pose of its frame in the world.
         axes: its axes, with the direction of each in the frame of the joint.
     """
 
@@ -59,12 +59,12 @@ class Structure:
 
 
 def structure_of(model: Model, name: str, pose: Transform) -> Structure:
-    """Work out the trees of a model; joints with missing links are left out.
+    """Compute the trees of a model; joints with missing links are left out.
 
     Args:
         model: with its includes resolved.
-        name: what it is called in the world.
-        pose: where its frame stands in the world.
+        name: its name in the world.
+        pose: the pose of its frame in the world.
 
     Raises:
         FrameError: a link cannot be placed.
@@ -77,7 +77,7 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
             try:
                 placed = placed_joint(joint, inner, place, path)
             except FrameError:
-                continue  # `check` tells of it
+                continue  # `check` reports it
             ends_are_there = placed.child in links and (placed.parent in links or placed.parent == WORLD)
             if ends_are_there and placed.parent != placed.child:
                 while placed.name in joints:  # MuJoCo has no two of a name; `check` tells
@@ -95,16 +95,16 @@ def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterato
 
 
 def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJoint:
-    """A joint with its links, its pose and its axes.
+    """Return a joint with its links, its pose and its axes.
 
     Args:
-        joint: what is written about it.
-        frames: those of the model or world that it is in.
-        pose: where their origin stands in the world.
+        joint: the parsed joint.
+        frames: those of the model or world around it.
+        pose: the pose of their origin in the world.
         path: the name of the model, with those around it; empty for the world.
 
     Raises:
-        FrameError: it connects or stands in what is not there.
+        FrameError: its pose, or a link that it connects, refers to a frame that does not exist.
     """
     ends = [frames.link(end) for end in (joint.parent, joint.child)]
     parent, child = (end if end == WORLD else _within(path, end) for end in ends)
@@ -119,7 +119,7 @@ def _within(path: str, name: str) -> str:
 
 
 def _direction(said: Vector3) -> Vector3:
-    """The direction of an axis: z where none is given, as in libsdformat; `check` reports that."""
+    """Return the direction of an axis: z by default, as in libsdformat; `check` reports that."""
     return said if sum(each * each for each in said) > _LEAST**2 else (0.0, 0.0, 1.0)
 
 

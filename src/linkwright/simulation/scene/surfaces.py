@@ -15,9 +15,9 @@ _LEAST = 1e-5
 """MuJoCo has no friction coefficients of less."""
 _GREATEST = 1e3
 FRICTIONLESS = 0.1
-"""At and below it a shape slides: friction this small is written for casters, and means that there shall be none."""
+"""At and below it a shape slides: descriptions of casters use such small friction to mean none."""
 _SOFT = (0.05, 1.0)
-"""Time constant in s and damping ratio of what slides: soft enough to leave the load to the wheels beside it."""
+"""Time constant in s and damping ratio of sliding shapes: soft enough to leave the load to the wheels beside them."""
 _HARD_STEPS = 4.0
 """The time constant of wheels, in steps; two are the least that is stable."""
 RESTITUTION_DATA = 2
@@ -28,8 +28,8 @@ _HARD_IMPEDANCE = (0.99, 0.999, 0.001, 0.5, 2.0)
 def apply_surface(geom: Any, surface: Surface) -> None:
     """Give a geom of MuJoCo the surface of a collision.
 
-    Gazebo takes the lesser of two frictions, MuJoCo the greater unless one of the two shapes has priority. The
-    priority is the higher the less friction there is, which comes to the same.
+    Gazebo uses the lesser of two frictions, MuJoCo the greater unless one of the two shapes has priority. The
+    priority is the higher the less friction there is, which has the same effect.
     """
     mu = friction_of(surface)
     geom.friction = [min(max(mu, _LEAST), _GREATEST), *geom.friction[1:]]

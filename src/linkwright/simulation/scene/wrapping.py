@@ -1,7 +1,7 @@
 """Simple shapes as triangle meshes with texture coordinates.
 
-Source: gz-common's ``MeshManager``. A box shows the image on each side, upright on those beside. On a cylinder and a
-ball it goes round clockwise as seen from the end; a cylinder's stands on its head, and a ball's poles are along y.
+Source: gz-common's ``MeshManager``. A box shows the image on each side, upright on the lateral ones. On a cylinder and
+a ball it runs clockwise as seen from the end; on a cylinder it is upside down, and a ball's poles are along y.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ _EARTH, _GRAVITY = 6356766.0, 9.80665
 _SEA_PRESSURE, _SEA_TEMPERATURE, _LAPSE, _AIR = 101325.0, 288.15, 0.0065, 287.05287
 """Pressure in Pa and temperature in K at the sea, K lost with each m, and the gas constant of air in J/(kg K)."""
 EARTH_FIELD: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
-"""The magnetic field of worlds that say nothing of it, in tesla: SDFormat's default."""
+"""The magnetic field of worlds that do not set it, in tesla: SDFormat's default."""
 
 
 class Globe:

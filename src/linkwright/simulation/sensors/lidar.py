@@ -1,7 +1,7 @@
 """Lidars: ranges and intensities by ray casting.
 
-Source of what is not in SDF: REP 117 for what is too near or too far; `RaySensor` and `GpuRaySensor` of Gazebo for what
-a ray sees: rays begin where the range does, so that the housing of a sensor does not hide the world.
+Source beyond SDF: REP 117 for ranges that are too near or too far; `RaySensor` and `GpuRaySensor` of Gazebo for the
+start of rays: they begin at the minimum range, so that the housing of a sensor does not hide the world.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ class Scan:
     """A measurement of a lidar.
 
     Attributes:
-        ranges: in m, shape (vertical, horizontal); -inf for what is too near and inf for what is too far.
-        intensities: `laser_retro` of what was hit, 0 where there is nothing; of the same shape.
+        ranges: in m, shape (vertical, horizontal); -inf below and inf above the range of the lidar.
+        intensities: `laser_retro` of the hit surfaces, 0 without a hit; of the same shape.
     """
 
     ranges: Array
@@ -50,14 +50,14 @@ def angles_of(sweep: Sweep) -> Array:
 class LidarSensor:
     """A lidar: it looks along x, horizontal angles are about z, vertical ones upwards.
 
-    Ranges are exact but for noise: as in Gazebo, the resolution of the range rounds nothing. The link that carries it
-    hides nothing, nor does what is nearer than the range of other parts of its robot.
+    Ranges are exact except for noise: as in Gazebo, the resolution of the range rounds nothing. The lidar's own link
+    hides nothing, nor do other parts of its robot that are nearer than the range.
 
     Args:
-        mount: where it is.
-        lidar: what is said of it.
-        sees_visuals: whether it sees what is drawn, as a lidar made by a graphics card does, instead of what touches.
-        generator: where its noise comes from.
+        mount: its place in the world.
+        lidar: the parsed lidar.
+        sees_visuals: whether it sees visuals, as a lidar made by a graphics card does, instead of collisions.
+        generator: the source of its noise.
     """
 
     def __init__(self, mount: Mount, lidar: Lidar, *, sees_visuals: bool, generator: np.random.Generator) -> None:

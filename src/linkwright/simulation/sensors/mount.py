@@ -116,7 +116,7 @@ def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]
 
 
 class GeomTable:
-    """A value for each geom of MuJoCo's model, computed anew when models were added or removed.
+    """A value for each geom of MuJoCo's model, computed again after models were added or removed.
 
     Args:
         simulation: the world.
@@ -130,7 +130,7 @@ class GeomTable:
         self._array: Array = np.zeros(0)
 
     def array(self) -> Array:
-        """The values: shape (geoms + 1,); the last is 0, for geom -1, which stands for none."""
+        """The values: shape (geoms + 1,); the last is 0, for geom -1, which means none."""
         self._simulation.refresh()
         if self._revision != self._simulation.revision:
             model = self._simulation.model

@@ -25,11 +25,11 @@ class Coming:
 
     Attributes:
         model: with its includes resolved.
-        name: what it is called.
-        pose: where its frame is in the world when this begins.
+        name: its name.
+        pose: the initial pose of its frame in the world.
         namespace: of the nodes of its plugins that name none.
-        motion: how the one moved in whose place it comes; None for none.
-        here: whether it goes on where that one was.
+        motion: the motion of the model that it replaces; None if it replaces none.
+        here: whether it continues at the pose of that model.
     """
 
     model: Model
@@ -45,10 +45,10 @@ class Changes:
     """The changes from one world to another.
 
     Attributes:
-        gone: names of the models that go.
-        moved: those that stand elsewhere and are as they were: their new poses in the world.
-        renewed: those that are others, which have names that were there.
-        new: those that come.
+        gone: names of the removed models.
+        moved: models of which only the pose differs: their new poses in the world.
+        renewed: models that differ, under existing names.
+        new: the added models.
     """
 
     gone: tuple[str, ...]
@@ -93,7 +93,7 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
     names: set[str] = set()
     for model in world.models:
         if model.name in names:
-            continue  # `check` tells of a second one
+            continue  # `check` reports a second one
         names.add(model.name)
         try:
             pose = frames.pose(model.name)

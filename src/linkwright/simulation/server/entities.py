@@ -28,8 +28,8 @@ class Entity:
 
     Attributes:
         model: the model, with its includes resolved; of a robot every link is kept.
-        diagnostics: what is remarkable about it.
-        unread: errors because of which shapes are missing in it.
+        diagnostics: findings about it.
+        unread: the errors that make shapes of it missing.
     """
 
     model: Model
@@ -42,11 +42,11 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
 
     Args:
         text: URDF or SDF; of SDF the first model.
-        finder: where its includes are.
+        finder: finds its includes.
         library: the robot descriptions that the process has read.
 
     Raises:
-        LinkwrightError: it is not XML; it is neither; SIM142 there is no model in it; what is wrong in it.
+        LinkwrightError: it is not XML; it is neither URDF nor SDF; SIM142 there is no model in it; its other errors.
     """
     document, warnings = parse_as_gazebo(text, _NAME)
     if document.root.tag == "robot":

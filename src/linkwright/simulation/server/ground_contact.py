@@ -1,8 +1,8 @@
-"""Models that are spawned inside of the ground are lifted onto it.
+"""Models that are spawned inside the ground are lifted onto it.
 
 Launch files spawn robots at a height of 0, though their origin is above the wheels, or into worlds whose ground is a
-plate of some thickness. The contacts of a robot that stands in the ground would push it out within a few steps, and
-fast enough to throw a light one over.
+plate of some thickness. Contacts would push a robot out of the ground within a few steps, and fast enough to throw a
+light one over.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.simulation import Simulation
 
 _LEAST, _MOST = 0.002, 0.3
-"""Depths in m between which a model is put higher: what is less does no harm, what is more may be meant."""
+"""Depths in m between which a model is lifted: smaller ones do no harm, greater ones may be intended."""
 _UPWARD = 0.7
-"""The least part of a contact's direction that points up; a wall does not lift what stands in it."""
+"""The least vertical component of a contact's direction; a wall does not lift a model inside it."""
 
 
 def stand_up(simulation: Simulation, name: str) -> None:

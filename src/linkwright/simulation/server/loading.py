@@ -1,9 +1,8 @@
-"""Replacing the running world by that of another file or text, for ``/load_world``.
+"""Replaces the running world by that of another file or text, for ``/load_world``.
 
-Source: ``simulation_interfaces/srv/LoadWorld``. There the scene is cleared and the simulation stops; here what is the
-same in both worlds goes on as it is, what was spawned stays, and so does time. ``uri`` is the path or address of a
-file, or the name of a world; ``resource_string``, which counts for nothing beside it there, is the text that the file
-has not been saved with yet.
+Source: ``simulation_interfaces/srv/LoadWorld``. There the scene is cleared and the simulation stops; here the common
+parts of both worlds, spawned models and the time continue. ``uri`` is the path or address of a file, or the name of a
+world; ``resource_string``, which is ignored beside it there, is the text of the file before it is saved.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ _RESULTS = {
     "SIM152": _NO_RESOURCE,
 }
 _MISSING, _NOT_READ = ("SDF160", "SIM112"), ("SDF150",)
-"""The codes of models and meshes that are not there, and of elements that are not read."""
+"""The codes of missing models and meshes, and of elements that are not read."""
 _TEXT = "<the world>"
 
 
@@ -69,12 +68,12 @@ class WorldLoader:
     def load(self, uri: str, text: str = "", *, refused: Sequence[str] = ()) -> None:
         """Replace the running world by that of a file or text.
 
-        What is wrong with both worlds alike is no reason to refuse the other one.
+        An error that both worlds share does not prevent the replacement.
 
         Args:
-            uri: the file; empty for a text that is of none.
-            text: what is taken for the text of the file; empty for what it says.
-            refused: codes of warnings for which it is not taken.
+            uri: the file; empty for a text without a file.
+            text: replaces the text of the file; empty for the text in the file.
+            refused: codes of warnings that prevent the replacement.
 
         Raises:
             LinkwrightError: it cannot be read or simulated; nothing has changed.

@@ -48,9 +48,9 @@ def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> 
 
     Args:
         simulation: the world.
-        name: what the model is called.
-        motion: how it moved.
-        here: whether it goes on where it was, too, and as fast; if it moves freely.
+        name: the name of the model.
+        motion: the motion of the predecessor.
+        here: whether a free model also continues at the pose and velocity of the predecessor.
 
     Raises:
         KeyError: there is no such model.

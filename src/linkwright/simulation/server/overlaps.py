@@ -12,7 +12,7 @@ from linkwright.simulation.simulation import Simulation
 _LEAST = 0.02
 """The depth in m from which bodies overlap; soft contacts are as deep at rest."""
 _MOST = 8
-"""The number of overlaps that are told one by one."""
+"""The number of overlaps that are reported individually."""
 
 
 def overlaps(simulation: Simulation, names: Container[str] | None = None) -> list[Diagnostic]:
@@ -47,7 +47,7 @@ def overlaps(simulation: Simulation, names: Container[str] | None = None) -> lis
 
 
 def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
-    """Two links, of which the first moves."""
+    """Return two links, a moving one first."""
     return sorted(links, key=lambda link: int(simulation.model.body_weldid[simulation.body(link)]) == 0)
 
 

@@ -41,7 +41,7 @@ class Reports:
     Args:
         server: the simulation.
         topics: on the node of the simulator.
-        clock_rate: how often a simulated second the time is told.
+        clock_rate: how often a simulated second the time is published.
     """
 
     def __init__(self, server: SimulationServer, topics: PluginNode, clock_rate: float) -> None:
@@ -82,7 +82,7 @@ class Reports:
         self._description.publish(String(data=text))
 
     def _saved(self, model: Model, name: str, pose: Transform) -> tuple[Model, WrittenModel]:
-        """A model of the description, which is written anew only where it is another one or stands elsewhere."""
+        """Return a model of the description; its text is written again only if it or its pose differs."""
         known = self._written.get((id(model), name, pose))
         if known is not None:
             return known
@@ -94,7 +94,7 @@ class Reports:
         return addressed
 
     def watch(self, factor: Callable[[], float]) -> None:
-        """Publish poses and the real time factor, as often as configured in real time, while anybody subscribes."""
+        """Publish poses and the real time factor, as often as configured in real time, while they have subscribers."""
         now = time.monotonic()
         if now - self._posed >= _POSES_PERIOD and self._poses.is_wanted:
             self._posed = now

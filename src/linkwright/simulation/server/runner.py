@@ -16,9 +16,9 @@ from linkwright.simulation.simulation import NANOSECONDS
 _CHUNK = 0.005
 """Real seconds between two looks at the commands."""
 _LONGEST_CHUNK = 0.05
-"""Simulated seconds that pass at most between them: what is published meanwhile comes all at once."""
+"""The most simulated seconds between them: messages published meanwhile arrive at once."""
 _BEHIND = 0.25
-"""Real seconds that a simulation may be behind; what is more is not made up for."""
+"""Real seconds that a simulation may be behind; a greater delay is not caught up."""
 _IDLE = 1 / 30
 """Real seconds between two looks while nothing moves."""
 _MEASURED = 0.5
@@ -26,23 +26,22 @@ _MEASURED = 0.5
 
 
 class Runner:
-    """Advances a simulation in a thread of its own, at the wanted real time factor.
+    """Advances a simulation in a thread of its own, at the requested real time factor.
 
     Everything but `start` and `close` is called in that thread, by commands of the exchange.
 
     Args:
         server: the simulation.
-        factor: how many simulated seconds pass in a real one; infinite for as many as can be, 0 for what the
-            world says.
+        factor: simulated seconds per real second; infinite for as fast as possible, 0 for the factor of the world.
         paused: whether it begins paused.
-        seconds: after how many simulated seconds it is done; None for never.
+        seconds: the simulated seconds after which it ends; None for never.
         watch: called in the thread every now and then, paused or not.
-        on_state: called in the thread when it has been paused or let go on.
-        on_end: called in the thread when the seconds are over, with 0, or will not be, as something failed, with 1.
+        on_state: called in the thread when it was paused or resumed.
+        on_end: called in the thread with 0 after these seconds, or with 1 after a failure.
 
     Attributes:
         paused: whether no time passes.
-        real_time_factor: how many simulated seconds passed in a real one lately.
+        real_time_factor: the recent number of simulated seconds per real second.
     """
 
     def __init__(
@@ -92,7 +91,7 @@ class Runner:
         """Make steps, as fast as possible.
 
         Raises:
-            UnstableError: something is no number any more.
+            UnstableError: a value in the simulation is not a number any more.
         """
         self._server.simulation.advance(count * self._server.simulation.step)
         self._resume()
@@ -104,7 +103,7 @@ class Runner:
             self._on_state()
 
     def _resume(self) -> None:
-        """Start counting real time anew, at the world's real time factor; the world may be another one."""
+        """Restart counting real time, at the world's real time factor; the world may be another one."""
         self._factor = self._said_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
         self._began = self._measured = (time.monotonic(), self._server.simulation.time)
 

@@ -138,8 +138,8 @@ class SimulationServer:
 
         Args:
             model: with its includes resolved.
-            name: what it is called.
-            pose: of its frame in the world; what would stand in the ground there is put on it.
+            name: its name.
+            pose: of its frame in the world; a model inside the ground is lifted onto it.
             namespace: of the nodes of its plugins that name none.
 
         Raises:
@@ -171,15 +171,15 @@ class SimulationServer:
         self.tell(touches_nothing(self.simulation, name), name)
 
     def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
-        """Replace the running world by another one; what is the same in both goes on, and what was spawned stays.
+        """Replace the running world by another one; common parts continue, and spawned models stay.
 
         Args:
             world: the other one, with its includes resolved.
-            finder: where its meshes are.
-            allow: called with what of it could not be taken over, before anything changes; it may raise.
+            finder: finds its meshes.
+            allow: called before anything changes with the findings on parts that cannot be simulated; it may raise.
 
         Raises:
-            LinkwrightError: SIM102 a model has the name of one that was spawned; SIM104, SIM140 it cannot be simulated.
+            LinkwrightError: SIM102 a model has the name of a spawned one; SIM104, SIM140 it cannot be simulated.
                 Nothing has changed.
         """
         simulation, before = self.simulation, self.simulation.world
@@ -234,7 +234,7 @@ class SimulationServer:
                 yield Coming(scene_model.model, name, scene_model.pose, namespace, motion, here=True)
 
     def delete(self, name: str) -> None:
-        """Remove a model after its plugins have ended; what was connected to it by joints goes on without it.
+        """Remove a model after its plugins have ended; models that were connected to it by joints stay.
 
         Raises:
             LinkwrightError: SIM141 there is none of that name.
@@ -264,7 +264,7 @@ class SimulationServer:
             duration: nanoseconds.
 
         Raises:
-            UnstableError: something is no number any more.
+            UnstableError: a value in the simulation is not a number any more.
         """
         self.exchange.work()
         try:
@@ -344,7 +344,7 @@ class SimulationServer:
         namespace: str,
         before: Sequence[SimulatedPlugin[object]],
     ) -> None:
-        """Start a plugin or sensor, which goes on with the state of the one before it."""
+        """Start a plugin or sensor, which continues with the state of the one before it."""
         calls = Calls(lambda error: self._failed(owner, place, error))
         node = self._node(place, namespace, calls)
         made: list[SimulatedPlugin[object]] = []
@@ -368,7 +368,7 @@ class SimulationServer:
             node.close()
 
     def _failed(self, owner: str, place: PluginPlace, error: Exception) -> None:
-        """End a plugin or sensor that raised an error; everything else goes on."""
+        """End a plugin or sensor that raised an error; everything else continues."""
         self._tell_failure(place, error)
         running = self._plugins.get(owner, [])
         ended = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is place]
@@ -427,10 +427,10 @@ class SimulationServer:
 
     @contextmanager
     def _telling(self, place: PluginPlace) -> Iterator[None]:
-        """Log the errors of one plugin, so that the others go on."""
+        """Log the errors of one plugin, so that the others continue."""
         try:
             yield
-        except Exception as error:  # noqa: BLE001 - whatever stands in a world or is installed beside us
+        except Exception as error:  # noqa: BLE001 - a plugin of any world or package may raise anything
             self._tell_failure(place, error)
 
     def tell(self, findings: Iterable[Diagnostic], model: str = _WORLD) -> None:

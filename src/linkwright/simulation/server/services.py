@@ -52,7 +52,7 @@ class Progress(Protocol):
         """Make steps.
 
         Raises:
-            UnstableError: something is no number any more.
+            UnstableError: a value in the simulation is not a number any more.
         """
 
 
@@ -61,14 +61,14 @@ class Services:
 
     Args:
         server: the simulation.
-        runner: what advances it.
+        runner: advances the simulation.
         node: the node of the simulator.
-        world: what is simulated.
+        world: the simulated world.
         library: the robot descriptions that the process has read.
 
     Attributes:
-        worlds: what makes the world another one.
-        on_spawned: called with name and description of what came by ``/spawn_entity``, in the simulation's thread.
+        worlds: replaces the world.
+        on_spawned: called in the simulation's thread with the name and description of a model from ``/spawn_entity``.
     """
 
     def __init__(
@@ -132,14 +132,14 @@ class Services:
     def renew(self, text: str, name: str) -> None:
         """Replace a model by that of a text, in the simulation's thread; called from any thread.
 
-        What the simulation has against it is logged then.
+        The simulation logs its objections later.
 
         Args:
             text: the description, URDF or SDF.
-            name: what the model is called.
+            name: the name of the model.
 
         Raises:
-            LinkwrightError: what is wrong with the description.
+            LinkwrightError: the errors of the description.
         """
         entity = entity_from(text, self._server.simulation.finder, self._library)
 

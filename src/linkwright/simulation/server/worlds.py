@@ -43,12 +43,12 @@ def load_world(name: str, text: str | None = None, environment: Mapping[str, str
 
     Args:
         name: the file or its address, or the name of a world on the search path: ``empty``.
-        text: what is taken for the text of the file, which need not be there.
-        environment: the variables that say where files are; those of the process by default.
+        text: replaces the text of the file, which then need not exist.
+        environment: the variables with the search paths; those of the process by default.
 
     Raises:
         LinkwrightError: SIM150 there is no such world; SIM151 the file has none; SIM105 it has too many
-            links; what is wrong with it.
+            links; its other errors.
     """
     read_ns = time.time_ns()
     path = Path(name.removeprefix("file://")).expanduser()

@@ -50,7 +50,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
 
     @abstractmethod
     def is_wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether a subscriber exists."""
 
     def is_needed(self) -> bool:
         """Whether it is to measure now."""
@@ -116,7 +116,7 @@ class OneTopic(SensorPlugin[P], Generic[P]):
     output: Output
 
     def is_wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether a subscriber exists."""
         return self.output.is_wanted
 
 

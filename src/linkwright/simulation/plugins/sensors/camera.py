@@ -46,11 +46,11 @@ class Eye:
     """One camera of a sensor.
 
     Attributes:
-        camera: what is written about it.
-        optics: how it projects.
-        pose: where it is in the frame of the link.
+        camera: the parsed camera.
+        optics: its projection.
+        pose: its pose in the frame of the link.
         noise: on its colours.
-        encoding: of its pictures.
+        encoding: of its images.
     """
 
     camera: Camera
@@ -61,7 +61,7 @@ class Eye:
 
 
 class CameraPlugin(SensorPlugin[P], Generic[P]):
-    """A sensor that renders pictures."""
+    """A sensor that renders images."""
 
     def make_sensor(self) -> None:
         """Make its cameras."""
@@ -78,7 +78,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         self._shared.release()
 
     def see(self, eye: Eye, wanted: Wanted) -> Picture:
-        """Render the picture of one of its cameras, with noise on the colours."""
+        """Render the image of one of its cameras, with noise on the colours."""
         pose = compose(self.simulation.link_pose(self.sensor.link), eye.pose)
         picture = self._shared.render(eye.optics, pose, wanted, self._tell_way)
         if picture.colour is None:
@@ -86,7 +86,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         return Picture(eye.noise.apply(picture.colour), picture.depth, picture.geoms)
 
     def publish_picture(self, output: Output, eye: Eye, picture: Picture, frame: str) -> None:
-        """Publish the colours of a picture."""
+        """Publish the colours of an image."""
         message = self.message(IMAGE, frame)
         fill_picture(message, picture.colour, eye.encoding)  # type: ignore[arg-type]  # it was asked for
         output.publish(message)
@@ -96,13 +96,13 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         if encoding is None:
             encoding = USUAL_ENCODING
             if camera.image.format.upper() not in OF_DEPTHS:
-                unknown = phrase("'{format}' is no format of pictures; bgr8 is taken", format=camera.image.format)
+                unknown = phrase("'{format}' is not an image format; bgr8 is used", format=camera.image.format)
                 self.node.logger.warning(unknown)
         pose = compose(self.sensor.pose, transform_of(camera.pose.pose))
         return Eye(camera, optics_of(camera), pose, PixelNoise(camera.noise, generator), encoding)
 
     def _tell_way(self, way: Phrase) -> None:
-        self.node.logger.info(phrase("pictures of cameras are made by {way}", way=way))
+        self.node.logger.info(phrase("camera images are rendered by {way}", way=way))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,11 +187,11 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def is_wanted(self) -> bool:
-        """Whether anybody listens, and, where a trigger is used, a picture was asked for."""
+        """Whether a subscriber exists and, if a trigger is used, an image was requested."""
         return self._asked and any(image.is_wanted for image in (*self._images, *self._infos, *self._depths))
 
     def measure(self) -> None:
-        """Render pictures, each only if its topics have subscriptions."""
+        """Render images, each only if its topics have subscriptions."""
         self._asked = not self.parameters.triggered
         for eye, image, info in zip(self.eyes, self._images, self._infos, strict=True):
             depth, depth_info, cloud = self._depths or (None, None, None)
@@ -235,7 +235,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
 
 
 def points_of(optics: Optics, depth: Any) -> Any:
-    """The points of a depth picture: shape (height, width, 3), in m, x to the right, y down, z forwards."""
+    """Return the points of a depth image: shape (height, width, 3), in m, x to the right, y down, z forwards."""
     rays = optics.rays.astype(np.float32).reshape(optics.height, optics.width, 3)
     with np.errstate(invalid="ignore"):  # 0 times infinity
         return rays * depth[:, :, None]
@@ -283,11 +283,11 @@ class GzCamera(CameraPlugin[NoParameters]):
         yield from (output for output in (self._image, self._depth, self._cloud, self._info) if output is not None)
 
     def is_wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether a subscriber exists."""
         return any(output.is_wanted for output in self._outputs())
 
     def measure(self) -> None:
-        """Render a picture, with those parts whose topics have subscriptions."""
+        """Render an image, with the parts whose topics have subscriptions."""
         (eye, *_) = self.eyes
         wanted = Wanted(0)
         if any(output is not None and output.is_wanted for output in (self._image, self._cloud)):

@@ -67,7 +67,7 @@ def fill_lidar_cloud(
 
 
 def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: bool = False) -> None:
-    """Fill a PointCloud2 with the points of a picture, shape (height, width, 3), and their colours.
+    """Fill a PointCloud2 with the points of an image, shape (height, width, 3), and their colours.
 
     With `swapped` red and blue change places, as Gazebo classic has them.
 

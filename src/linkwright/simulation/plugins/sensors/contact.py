@@ -1,7 +1,7 @@
 """Contact sensors: ``gazebo_ros_bumper``, and ``contact`` of gz.
 
-Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topics, the frame that forces are told in), gz-sim (topic, when
-there is a message), ros_gz (messages).
+Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topics, the frame of forces), gz-sim (topic, when there is a
+message), ros_gz (messages).
 """
 
 from __future__ import annotations

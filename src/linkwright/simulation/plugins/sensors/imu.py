@@ -90,7 +90,7 @@ class OldImuParameters(FrameName):
 
 
 class OldImu(_ImuPlugin[OldImuParameters]):
-    """``libgazebo_ros_imu.so`` of ROS 1, which stands in a model and names its link."""
+    """``libgazebo_ros_imu.so`` of ROS 1, which belongs to a model and names its link."""
 
     PARAMETERS = OldImuParameters
     IGNORED = ("serviceName",)

@@ -1,8 +1,8 @@
-"""Cameras with ground truth of what they see: ``segmentation_camera`` and ``boundingbox_camera`` of gz.
+"""Cameras with ground truth of their view: ``segmentation_camera`` and ``boundingbox_camera`` of gz.
 
-What is seen is named by ``gz-sim-label-system`` with a ``<label>`` in visuals or models; all else is 0, the background.
+``gz-sim-label-system`` with a ``<label>`` in visuals or models labels objects; everything else is 0, the background.
 
-Source: gz-sensors (topics, what the channels of a map of labels are).
+Source: gz-sensors (topics, the channels of a label map).
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
         self.frame = self.eyes[0].camera.optical_frame_id or self.gz_frame()
 
     def publish_colours(self, output: Output, colour: Pixels) -> None:
-        """Publish a picture in red, green and blue."""
+        """Publish an image in red, green and blue."""
         message = self.message(IMAGE, self.frame)
         fill_picture(message, colour, "rgb8")
         output.publish(message)
@@ -137,7 +137,7 @@ class GzSegmentation(_LabellingCamera):
         self._colours[0] = 0
 
     def is_wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether a subscriber exists."""
         return any(output.is_wanted for output in (self._maps, self._coloured, self._info))
 
     def measure(self) -> None:
@@ -161,9 +161,9 @@ class GzSegmentation(_LabellingCamera):
 
 
 class GzBoxes(_LabellingCamera):
-    """``boundingbox_camera``: boxes around the visible part of each labelled model, and a picture with them.
+    """``boundingbox_camera``: boxes around the visible part of each labelled model, and an image with them.
 
-    The types ``full_2d`` and ``3d`` of boxes are those of what is visible, too.
+    Boxes of the types ``full_2d`` and ``3d`` cover only the visible part, too.
     """
 
     def make_topics(self) -> None:
@@ -176,7 +176,7 @@ class GzBoxes(_LabellingCamera):
         self._info = self.node.publisher(INFO, f"{above}{slash}camera_info")
 
     def is_wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether a subscriber exists."""
         return any(output.is_wanted for output in (self._boxes, self._pictures, self._info))
 
     def measure(self) -> None:

@@ -27,12 +27,12 @@ from linkwright.simulation.sensors.lidar import LidarSensor, Scan
 P = TypeVar("P")
 _SCAN, _CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 RAYS, OTHER_RAYS = "/world_rays", "/world_rays/others"
-"""The rays of lidars with ``<visualize>true</visualize>``, and of those without."""
+"""The rays of lidars with ``<visualize>true</visualize>``, and of other lidars."""
 _RADIATIONS = {"ultrasound": 0, "infrared": 1}
 
 
 class _LidarPlugin(SensorPlugin[P], Generic[P]):
-    """The base of lidars; its rays are published as well while somebody draws them."""
+    """The base of lidars; its rays are published as well while a page draws them."""
 
     def start(self) -> None:
         """Make lidar and topics."""
@@ -41,7 +41,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         super().start()
 
     def is_needed(self) -> bool:
-        """Whether anybody subscribes to it or draws its rays."""
+        """Whether its measurements or its rays have a subscriber."""
         return self.is_wanted() or self._rays.is_wanted
 
     def measure(self) -> None:
@@ -146,7 +146,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
         kind = self.parameters.output_type.rpartition("/")[2]
         if kind not in kinds:
             element = self.place.element
-            message = phrase("'{type}' is no type of output of a lidar", type=self.parameters.output_type)
+            message = phrase("'{type}' is not an output type of a lidar", type=self.parameters.output_type)
             hint = phrase("it is sensor_msgs/LaserScan, PointCloud2, PointCloud or Range")
             span, source = (element.span(), element.source) if element is not None else (None, None)
             raise LinkwrightError(Diagnostic("SIM137", message, span, hint=hint, source=source))
@@ -295,7 +295,7 @@ class GzLidar(_LidarPlugin[NoParameters]):
         )
 
     def is_wanted(self) -> bool:
-        """Whether anybody listens."""
+        """Whether a subscriber exists."""
         return self._scans.is_wanted or self._clouds.is_wanted
 
     def publish(self, scan: Scan) -> None:

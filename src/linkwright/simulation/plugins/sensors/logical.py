@@ -1,6 +1,6 @@
-"""The logical camera of gz: the names and poses of the models in its view, without a picture.
+"""The logical camera of gz: the names and poses of the models in its view, without an image.
 
-Source: gz-sensors (topic, what is in view), ros_gz (messages). A model is in view when the origin of its frame is.
+Source: gz-sensors (topic, view), ros_gz (messages). A model is in view when the origin of its frame is.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Pictures as messages: encodings, noise, and ``CameraInfo``.
+"""Images as messages: encodings, noise, and ``CameraInfo``.
 
 Source: gazebo_ros_pkgs for ROS 2 (formats, camera_info), REP 118 for depths.
 """
@@ -24,20 +24,20 @@ ENCODINGS = {
 }  # fmt: skip
 """The formats of SDF, and what ROS calls them."""
 OF_DEPTHS = frozenset({"R_FLOAT16", "R_FLOAT32", "FLOAT32"})
-"""The formats that cameras of depths have in files for gz, which say nothing of colours."""
+"""The formats of depth cameras in files for gz; they do not specify colours."""
 USUAL_ENCODING = "bgr8"
 """For formats that are unknown."""
 _GREY = np.array([0.299, 0.587, 0.114], np.float32)
 _PLACES = 1 << 16
-"""Random numbers are drawn once, so many more than a picture needs; each picture takes them from another place on."""
+"""Random numbers are drawn once, so many more than an image needs; each image starts at another offset."""
 
 
 class PixelNoise:
-    """Noise on the colours of pictures.
+    """Noise on the colours of images.
 
     Args:
         noise: on each colour, from 0 to 1.
-        generator: where chance comes from.
+        generator: the source of random numbers.
     """
 
     def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
@@ -47,7 +47,7 @@ class PixelNoise:
         self._less: Pixels = np.empty(0, np.uint8)
 
     def apply(self, colour: Pixels) -> Pixels:
-        """A picture with noise on it."""
+        """Return an image with noise on it."""
         noise = self._noise
         if noise.type == "none" or not (noise.stddev > 0 or noise.mean):
             return colour
@@ -66,7 +66,7 @@ class PixelNoise:
 
 
 def fill_picture(message: Any, colour: Pixels, encoding: str) -> None:
-    """Fill an Image with a picture, shape (height, width, 3) in red, green and blue, in one of `ENCODINGS`."""
+    """Fill an Image message from colours of shape (height, width, 3) in red, green, blue, in one of `ENCODINGS`."""
     pixels = colour
     if encoding.startswith("mono"):
         pixels = np.round(colour @ _GREY).astype(np.uint8)
@@ -127,8 +127,8 @@ def fill_camera_info(
         message: the message.
         optics: the camera.
         lens: its distortion.
-        center: where the optical axis is in the picture, in pixels; None for where it is.
-        focal: the focal length in pixels that is told; 0 for the one that it has.
+        center: the published principal point, in pixels; None for that of the camera.
+        focal: the published focal length in pixels; 0 for that of the camera.
         baseline: from the left camera of a pair to this one, in m.
     """
     lens = lens or Distortion()
