@@ -58,7 +58,7 @@ async def test_a_drive_stops_when_its_commander_is_lost_and_says_so_once(model: 
         driver.be_lost()
         await advance(server, graph, 1.5)
         assert speed(server) == pytest.approx(0.0, abs=0.01)
-        assert warnings(log) == [f"{LOST}: what it moved is stopped"]
+        assert warnings(log) == [f"{LOST}: the motion stops"]
 
 
 @pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())

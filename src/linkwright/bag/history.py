@@ -37,7 +37,7 @@ _LONGEST_NS = 600_000_000_000
 """The maximum age of thinned messages."""
 
 _FREED = 20
-"""The part of all room that thinning frees at once is one in so many."""
+"""Thinning frees one part in this many of all memory at once."""
 
 _Kept = tuple[int, int, bytes]
 """A message: time of reception in ns since the epoch, number of messages before it, CDR bytes."""
@@ -168,7 +168,7 @@ class _Track:
         return self.kept[max(self.first, end - count) : end]
 
     def clock_at(self, at_ns: int) -> list[_Kept]:
-        """The last message of a clock up to a time; where it came for many, the time that it would have told then."""
+        """The last message of a clock up to a time; if it represents several, the interpolated time."""
         before = self.until(at_ns, 1)
         place = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
         if not before or place == len(self.kept) or self.kept[place][1] not in self._lasting:
@@ -201,7 +201,7 @@ class History:
 
     Args:
         most_bytes: how many bytes it may take; a message that alone is larger is not kept.
-        now_ns: tells the time, nanoseconds since the epoch.
+        now_ns: returns the current time, nanoseconds since the epoch.
 
     Attributes:
         lock: held while a message is added; to know that none is, hold it.
@@ -226,7 +226,7 @@ class History:
     def add(self, topic: str, data: bytes, at_ns: int | None = None, content: Content | None = None) -> None:
         """Add a message received now, or at another time after those that are kept.
 
-        With its content, see `stillness`, it takes no room of its own where it only repeats what the ones before said.
+        With its content, see `stillness`, it takes no extra memory if it only repeats earlier messages.
         """
         size = _size(data)
         if size > self.most_bytes:
@@ -267,7 +267,7 @@ class History:
         return content._replace(state=b"%d" % self._changes)
 
     def _make_room(self) -> bool:
-        """Thin what is large, or drop the oldest message of all; returns whether there was anything."""
+        """Thin large messages, or drop the oldest message of all; return whether there was one."""
         large = self._largest
         if large is not None and large.size > self.most_bytes // 2 and large.can_be_thinned:
             freed = large.thin(self.most_bytes // _FREED)

@@ -1,6 +1,6 @@
 """Compressed files of recordings whose metadata are missing, after a copy of the file alone or a kill.
 
-rosbag2 compresses files as a whole, or their messages one by one; that, ``metadata.yaml`` alone says.
+rosbag2 compresses files as a whole, or their messages one by one; only ``metadata.yaml`` states which.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _MAGIC = b"\x28\xb5\x2f\xfd"
 
 
 def unpacked(path: Path, folder: Path) -> Path:
-    """Decompress a file into a folder; of one that was cut off, as much as there is.
+    """Decompress a file into a folder; of one that was cut off, its available part.
 
     Raises:
         zstd.ZstdError: it is not compressed with zstd.

@@ -30,7 +30,7 @@ class Part:
     Args:
         path: the file to make, with its suffix.
         compression: one of `linkwright.bag.writing.COMPRESSIONS`.
-        custom_data: what the metadata have besides.
+        custom_data: additional entries of the metadata.
 
     Attributes:
         start_ns: when its first message was received, nanoseconds since the epoch; None before there is one.
@@ -87,7 +87,7 @@ class Part:
             storage.conn.commit()
 
     def close(self) -> _Metadata:
-        """Write the index; returns what the metadata say of this file alone."""
+        """Write the index; return the metadata of this file alone."""
         with ScratchFolder("bag") as folder:  # where the library writes these
             self._writer.metapath = Path(folder) / METADATA
             self._writer.close()
@@ -106,13 +106,13 @@ def write_metadata(folder: Path, parts: Sequence[_Metadata]) -> None:
 
     Args:
         folder: of the recording.
-        parts: what the metadata say of each file alone, one or more.
+        parts: the metadata of each file, one or more.
     """
     write_information(folder, _joined(parts))
 
 
 def write_information(folder: Path, information: _Metadata) -> None:
-    """Write a ``metadata.yaml`` that says this."""
+    """Write a ``metadata.yaml`` with these metadata."""
     text = yaml.safe_dump({INFORMATION: information}, sort_keys=False, allow_unicode=True)
     whole_files.write_whole_file(folder / METADATA, text)
 

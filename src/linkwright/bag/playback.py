@@ -279,7 +279,7 @@ class Playback:
         """Publish the messages up to a time, or as many as go in one turn."""
         self._output.tell_time(stamp_ns)
         if self._next is None:
-            self._next = next(self._stream, None)  # what is still being recorded has more now
+            self._next = next(self._stream, None)  # a recording in progress has grown
         size = 0
         for _ in range(_MOST_MESSAGES):
             if self._next is None or self._next[1] > stamp_ns:

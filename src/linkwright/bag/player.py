@@ -65,7 +65,7 @@ class Player:
     """Plays a recording; everything happens on the dispatcher of its node.
 
     Args:
-        node: the node that publishes; its log tells what happens.
+        node: the node that publishes; its log reports events.
         bag: the recording, which stays open as long as it is played.
         options: how it is played.
 

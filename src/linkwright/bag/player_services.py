@@ -25,11 +25,11 @@ _SERVICES = (
 class PlayerServices:
     """Offers a player's services below the name of its node.
 
-    Names, types and what is refused are those of ``rosbag2_transport::Player``.
+    Names, types and refusals are those of ``rosbag2_transport::Player``.
 
     Args:
         node: the node.
-        player: what is controlled.
+        player: the player that they control.
     """
 
     def __init__(self, node: Node, player: Player) -> None:

@@ -66,7 +66,7 @@ def from_bag(qos: Qos) -> QoSProfile:
     def duration(value: Any) -> Duration:
         return Duration(nanoseconds=value.sec * _NANOSECONDS_PER_SECOND + value.nsec)
 
-    # Fast DDS does not tell others how much a publisher keeps.
+    # Fast DDS does not announce the history depth of a publisher.
     history = policy(HistoryPolicy, qos.history)
     return QoSProfile(
         history=HistoryPolicy.KEEP_LAST if history is HistoryPolicy.UNKNOWN else history,
@@ -133,7 +133,7 @@ def overrides_of(document: object, source: str) -> dict[str, QoSProfile]:
     """The profiles of a ``--qos-profile-overrides-path`` file: topic -> policies by name.
 
     Args:
-        document: what the YAML file says.
+        document: the parsed YAML file.
         source: the file's name, for errors.
 
     Raises:

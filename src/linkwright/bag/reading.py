@@ -67,7 +67,7 @@ class BagReader:
         path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. Of a recording that was killed,
             which has neither ``metadata.yaml`` nor an index, everything is read that was written. A folder may
             also have nothing but the files of one recording, which are numbered then.
-        called: what messages call it; its path where that is left out.
+        called: its name in messages; by default its path.
         parts: the files of the recording, whatever they are called, where several are to be read as one.
 
     Raises:
@@ -123,7 +123,7 @@ class BagReader:
             return self._opened_one(targets[0], self.path, self._called)
         from linkwright.bag.several import SeveralReader
 
-        # Who was killed at the beginning of a file leaves nothing in it.
+        # A recorder that was killed at the beginning of a file leaves an empty one.
         whole = [target for target in targets if target.stat().st_size] or targets
         self._is_cut_off = len(whole) < len(targets)
         return SeveralReader([self._opened_one(path, path, path.name) for path in whole])
@@ -176,7 +176,7 @@ class BagReader:
         found = []
         if not self._is_cut_off and not any(topic.count for topic in self.topics):
             message = phrase("recording '{path}' holds no messages", path=self._called)
-            hint = phrase("`linkwright topic list` and `linkwright topic hz TOPIC` tell what is published")
+            hint = phrase("`linkwright topic list` and `linkwright topic hz TOPIC` show the published topics")
             found.append(Diagnostic("BAG113", message, severity=Severity.WARNING, hint=hint))
         if self._is_cut_off:
             message = phrase(

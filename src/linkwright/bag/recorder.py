@@ -77,7 +77,7 @@ class Recorder:
         self._logger.info("Pausing recording." if self.paused else "Resuming recording.")
 
     def close(self) -> None:
-        """Write what is queued and close the recording; report the requested topics that are not in it."""
+        """Write the queued messages and close the recording; report the requested topics that are not in it."""
         self._flushing.cancel()
         if self._looking is not None:
             self._looking.cancel()

@@ -17,7 +17,7 @@ class RecorderServices:
 
     Args:
         node: the node.
-        recorder: what is controlled.
+        recorder: the recorder that they control.
         writer: where it writes.
         snapshots: whether there is a service that takes them.
     """

@@ -14,7 +14,7 @@ from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import deserialize, get_message
 
 _TOLD_EVERY = 1000
-"""Messages between two calls that tell how much is written."""
+"""Messages between two reports of progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ def save_messages(
         path: the folder to make.
         topics: all that messages are of.
         messages: in the order of their times, packed or not.
-        tell: called now and then with the part that is written, 0 to 1.
+        tell: called now and then with the written fraction, 0 to 1.
 
     Raises:
         LinkwrightError: BAG105, BAG107, BAG108; see `BagWriter`.

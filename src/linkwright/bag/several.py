@@ -22,7 +22,7 @@ class SeveralReader(Reader):
         readers: the open readers of the files; the caller closes them.
     """
 
-    def __init__(self, readers: Sequence[Reader]) -> None:  # what the library's own does is for a path
+    def __init__(self, readers: Sequence[Reader]) -> None:  # the library's own method expects a path
         self.path = readers[0].path
         self.storage = _Storages(sorted(readers, key=lambda reader: reader.start_time))
         self.is_open = True
@@ -65,7 +65,7 @@ class _Storages:
         """Do nothing: the files are open."""
 
     def close(self) -> None:
-        """Do nothing: the files are closed by whoever opened them."""
+        """Do nothing: the caller that opened the files closes them."""
 
     def messages(
         self, connections: Collection[Connection], start: int | None = None, stop: int | None = None

@@ -27,10 +27,10 @@ class Content(NamedTuple):
     """The content of a message without its stamps.
 
     Attributes:
-        what: what it is about: the frames of transforms, since many nodes publish on their topic; else empty.
+        what: its subject: the frames of transforms, since many nodes publish on their topic; else empty.
         state: the serialized values without stamps, and of transforms without poses.
         poses: the numbers of the poses, float64: positions in m and quaternions.
-        told_ns: the simulated time that a message of a clock tells; None for any other message.
+        told_ns: the simulated time in a message of a clock; None for any other message.
     """
 
     what: str
@@ -39,7 +39,7 @@ class Content(NamedTuple):
     told_ns: int | None = None
 
     def is_repeated_by(self, newer: Content) -> bool:
-        """Whether a newer message says the same; poses may differ by a nanometre."""
+        """Return whether a newer message has the same content; poses may differ by a nanometre."""
         if self.state != newer.state or len(self.poses) != len(newer.poses):
             return False
         if self.poses == newer.poses:

@@ -47,7 +47,7 @@ def is_unfinished(path: Path) -> bool:
 
 
 def has_index(path: Path) -> bool:
-    """Whether the end of a finished MCAP file says where its summary is."""
+    """Return whether a finished MCAP file ends with the position of its summary."""
     length = HEAD.size + FOOTER_BODY.size
     with path.open("rb") as file:
         if path.stat().st_size < length + 2 * len(MAGIC):
@@ -74,8 +74,8 @@ class ReadableFile:
     Args:
         path: the file, which is only read.
         size: how many bytes of it are seen.
-        tail: what is seen after them.
-        patches: what is seen elsewise: offset -> bytes.
+        tail: the bytes that follow them.
+        patches: replaced bytes: offset -> bytes.
 
     Attributes:
         name: of the file.
@@ -184,7 +184,7 @@ class _Scan:
 def _summary_of(scan: _Scan, file: BinaryIO) -> bytes:
     """The bytes that have to follow the whole records of a file."""
     if scan.has_loose_messages or not scan.chunks:
-        # The library reads such a file from one end to the other, whatever a summary says.
+        # The library reads such a file from one end to the other, with or without a summary.
         return _record(_DATA_END, bytes(4)) + _record(_FOOTER, bytes(FOOTER_BODY.size)) + MAGIC
     made = bytearray()
     for chunk in scan.chunks:

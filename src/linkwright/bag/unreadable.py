@@ -59,7 +59,7 @@ def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:
         hint = phrase("take the .db3 file that 'ros2 bag record' wrote, with its metadata.yaml")
         return Verdict(phrase("it is a database without the tables of a recording"), hint)
     if head.startswith(_MCAP):
-        hint = phrase("copy it again; 'mcap recover FILE -o OUT.mcap' saves what is whole of it")
+        hint = phrase("copy it again; 'mcap recover FILE -o OUT.mcap' recovers its complete records")
         return Verdict(phrase("it is an MCAP file that is damaged or cut off"), hint)
     if head.lstrip().lower().startswith((b"<!doctype html", b"<html")):
         hint = phrase("the download is not the file: open it in a browser to see the server's answer")
@@ -92,7 +92,7 @@ def _missing_files(folder: Path) -> list[str]:
 
 
 def _has_tables(path: Path) -> bool:
-    """Whether a database has the tables of recordings, or is too damaged to tell."""
+    """Return whether a database has the tables of recordings, or is too damaged to determine that."""
     import sqlite3
 
     try:

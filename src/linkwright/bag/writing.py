@@ -30,7 +30,7 @@ COMPRESSIONS = ("none", "file", "message", "storage")
 """The parts that are compressed with zstd: none, whole files, single messages, or the chunks of an MCAP file."""
 
 _SMALLEST_SPLITS = {"mcap": 1024, "sqlite3": 86016}
-"""The least bytes of a file that rosbag2's storages let be asked for."""
+"""The least file sizes that rosbag2's storages accept, in bytes."""
 
 _REFUSALS = (OSError, sqlite3.Error)
 """The errors of a full disk."""
@@ -38,7 +38,7 @@ _REFUSALS = (OSError, sqlite3.Error)
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 
 _LONGEST_WRITE = 30.0
-"""Seconds that `BagWriter.finish` waits for another thread to write what it is writing: disks may be slow."""
+"""Seconds that `BagWriter.finish` waits for another thread to finish its write: disks may be slow."""
 
 
 class BagWriter:
@@ -277,7 +277,7 @@ class BagWriter:
         """The error when the disk refuses something; nothing more is written then."""
         unfinished.finished(self)
         part, self._part = self._part, None
-        with contextlib.suppress(*_REFUSALS):  # what waits in its buffer is refused again
+        with contextlib.suppress(*_REFUSALS):  # the disk refuses its buffer again
             if part is not None:
                 part.abort()
         reason = error.strerror if isinstance(error, OSError) else str(error)

@@ -31,7 +31,7 @@ from linkwright.urdf.bodies import Bodies
 _Posed = TypeVar("_Posed", Sensor, Light)
 
 _TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic", "fixed": "fixed"}
-"""Types of joints in URDF, and what they are in SDF; a link of another moves freely there."""
+"""URDF joint types and their SDF types; the child link of any other joint moves freely."""
 _LUMP = "_fixed_joint_lump__"
 _FRAME = Inertial(1e-6, inertia=Inertia(1e-9, 1e-9, 1e-9))
 """The mass of a link that has none and is fixed to one that has: without ``<inertial>`` SDF has 1 kg."""
@@ -45,7 +45,7 @@ class Conversion:
 
     Attributes:
         model: the robot as a model of SDF.
-        diagnostics: what is wrong in its ``<gazebo>`` elements, and what has no place in SDF.
+        diagnostics: errors in its ``<gazebo>`` elements, and parts without a place in SDF.
     """
 
     model: Model

@@ -60,7 +60,7 @@ _OTHER_WORDS = frozenset(
         *("canonicalBody", "cfmDamping", "fudgeFactor", "implicitSpringDamper", "stopCfm", "stopErp"),
     }
 )
-"""Words of ``<gazebo>`` without a place in SDF, or in what is read of it."""
+"""Words of ``<gazebo>`` without a place in SDF, or in the part of SDF that is read."""
 _WORDS = frozenset({*_MODEL_WORDS, *_LINK_WORDS, *_COLLISION_WORDS, *_VISUAL_WORDS, *_JOINT_WORDS, *_OTHER_WORDS})
 _SHAPES = frozenset({"collision", "visual"})
 _NEGATED = frozenset({"turnGravityOff"})
@@ -75,7 +75,7 @@ class LinkExtension:
 
     Attributes:
         link: sensors, lights and whether it falls; its shapes, mass and pose are not those of the link.
-        visual: what holds for each of its visuals; geometry and pose are not those of the visual.
+        visual: settings for each of its visuals, except geometry and pose.
         collision: the same for each of its collisions.
     """
 
@@ -89,7 +89,7 @@ class Extensions:
 
     Args:
         robot: the robot.
-        report: takes what is wrong in them.
+        report: receives their errors.
     """
 
     def __init__(self, robot: Robot, report: SdfReport) -> None:

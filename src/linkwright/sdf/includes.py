@@ -34,9 +34,9 @@ class Included:
     Attributes:
         sdf: the file with the included models in the places of their includes, which are gone; an include that leads
             nowhere stays.
-        diagnostics: what is wrong with the included files, and which includes lead nowhere.
+        diagnostics: errors in the included files, and includes of missing files.
         files: the files that were read for it, each once.
-        things: what the includes of worlds led to, by their elements' ids; None where there is none.
+        things: the entities that the includes of worlds name, by their elements' ids; None for a missing one.
     """
 
     sdf: Sdf
@@ -140,7 +140,7 @@ class _Resolver:
     def _included(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Thing | None:
         """The included model, light or actor with the include's changes; None, with a finding, if it is missing."""
         if not include.uri:
-            return None  # which the reader told
+            return None  # which the reader reported
         found = self._finder.model(include.uri, path.parent)
         if isinstance(found, Missing):
             message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=found.reason)

@@ -91,7 +91,7 @@ class Joint:
         type: one of `JOINT_TYPES`.
         parent: a link or frame; ``world`` for the world.
         child: a link or frame.
-        pose: where the joint stands; in the frame of its child where nothing else is said.
+        pose: the pose of the joint; in the frame of its child by default.
         axis: its first axis; None for a joint that has none.
         axis2: its second, of joints of two.
         thread_pitch: of a screw, in metres for each revolution (``screw_thread_pitch``); None where not given.

@@ -94,7 +94,7 @@ LIGHT = ElementRule(
             value("outer_angle", NUMBER, "the angle from which there is nothing", "rad", default="0"),
             value("falloff", NUMBER, "how it fades between the two", default="0"),
         ),
-        value("cast_shadows", TRUTH, "whether what it shines on casts shadows", default="false"),
+        value("cast_shadows", TRUTH, "whether the objects that it lights cast shadows", default="false"),
         value("intensity", NUMBER, "a factor on its colour", default="1"),
         value("light_on", TRUTH, "whether it is lit", default="true"),
     ),

@@ -1,4 +1,4 @@
-"""Worlds of so many links that reading them would take minutes, and GB: counting the links without reading them."""
+"""Counts links without reading a world: reading a huge one would take minutes, and gigabytes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def has_more_links(data: bytes | str, most: int) -> bool:
     """Whether the first world of a text has more links and includes than a number; parsing stops at the first too many.
 
     Args:
-        data: the text; of one that is not well formed nothing is said here.
+        data: the text; errors in its syntax are not reported here.
         most: how many there may be.
     """
     if len(data) <= most * _SHORTEST:

@@ -17,13 +17,13 @@ class Noise:
 
     Attributes:
         type: ``none``, ``gaussian`` or ``gaussian_quantized``.
-        mean: what is added on average.
+        mean: the mean of the noise.
         stddev: the standard deviation.
         bias_mean: the mean of a bias that is drawn once.
         bias_stddev: its standard deviation.
         dynamic_bias_stddev: the standard deviation of a bias that wanders.
         dynamic_bias_correlation_time: how slowly it wanders, in seconds.
-        precision: what values are rounded to, where they are quantized.
+        precision: the step to which quantized values are rounded.
     """
 
     type: str = "none"

@@ -22,9 +22,9 @@ class Physics:
         default: whether this is the one to take among several.
         max_step_size: the step in seconds.
         real_time_factor: how many times faster than real time it shall go at most.
-        real_time_update_rate: steps a real second in Gazebo classic; 0 for as many as there can be.
+        real_time_update_rate: steps per real second in Gazebo classic; 0 for as many as possible.
         max_contacts: how many points of contact of two shapes count at most.
-        gravity: up to SDF 1.5, in m/s2; None where nothing is said.
+        gravity: up to SDF 1.5, in m/s2; None if not given.
     """
 
     name: str = "default_physics"
@@ -50,7 +50,7 @@ PHYSICS = ElementRule(
         value("max_step_size", NUMBER, "the step", "s", default="0.001"),
         value("real_time_factor", NUMBER, "how many times faster than real time it goes at most", default="1"),
         value(
-            "real_time_update_rate", NUMBER, "steps a real second; 0 for as many as there can be", "Hz", default="1000"
+            "real_time_update_rate", NUMBER, "steps per real second; 0 for as many as possible", "Hz", default="1000"
         ),
         value("max_contacts", INTEGER, "how many points of contact of two shapes count at most", default="20"),
         value("gravity", VECTOR3, "gravity, up to SDF 1.5", "m/s2"),

@@ -113,7 +113,7 @@ class Reading:
     """The worlds, models and findings of a document.
 
     Attributes:
-        sdf: what it says; None where it is not SDF.
+        sdf: the parsed document; None if it is not SDF.
         diagnostics: all errors and warnings, in the order of the text.
     """
 
@@ -178,7 +178,7 @@ def _explain_root(root: Element, report: SdfReport) -> None:
 def _check_version(root: Element, report: SdfReport) -> None:
     written = root.attributes.get("version")
     if written is None:
-        return  # which the reader tells
+        return  # which the reader reports
     found = _VERSION(written.strip())
     if found and int(found[1]) <= NEWEST[1]:
         return

@@ -105,9 +105,11 @@ def _circles(things: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -
         if not circle or frozenset(circle) in told:
             continue
         told.add(frozenset(circle))
-        message = phrase("frames stand relative to each other in a circle: {value}", value=" -> ".join(circle))
+        message = phrase("frames are relative to each other in a cycle: {value}", value=" -> ".join(circle))
         named = frames.named.get(circle[0])
-        yield _error("SDF142", message, (named or thing).element, hint=phrase("one of them must stand by itself"))
+        yield _error(
+            "SDF142", message, (named or thing).element, hint=phrase("make one of them independent of the others")
+        )
 
 
 def _circle_of(name: str, frames: Frames) -> tuple[str, ...]:

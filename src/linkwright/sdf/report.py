@@ -1,4 +1,4 @@
-"""Messages on elements of SDF, from their rules and what is written."""
+"""Messages on elements of SDF, from their rules and their text."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class SdfReport(Findings):
         like = nearest(attribute.name, unknown, limit=1)
         hint = phrase('add {name}="..."', name=attribute.name)
         if like:
-            hint = phrase("did you mean '{name}' where it says '{like}'?", name=attribute.name, like=like[0])
+            hint = phrase("did you mean '{name}' instead of '{like}'?", name=attribute.name, like=like[0])
         if owner is element or owner.attributes.get("name") is None:
             message = phrase("<{tag}> has no '{name}'", **told)
         else:
@@ -70,7 +70,7 @@ class SdfReport(Findings):
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
         """Report an invalid value; the default is used in its place.
 
-        Where one number or a vector is wanted, libsdformat takes what the text begins with, and leaves the rest: a
+        For a number or a vector, libsdformat reads the beginning of the text and ignores the rest: a
         warning.
         """
         inside = attribute is rule.text
@@ -101,9 +101,7 @@ class SdfReport(Findings):
         misspelt = next((candidate for candidate in candidates if candidate.tag in like), None)
         hint = phrase("add <{tag}>...</{tag}>", tag=child.tag)
         if misspelt is not None:
-            hint = phrase(
-                "did you mean '{tag}' where it says '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt.tag
-            )
+            hint = phrase("did you mean '{tag}' instead of '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt.tag)
             self._misspelt.append(misspelt)
         self.error(
             "SDF130",

@@ -58,7 +58,7 @@ class Missing(NamedTuple):
 
     Attributes:
         reason: why.
-        hint: what to do.
+        hint: the hint of the message.
         severity: of a finding about it; an information where the resource is likely to be there for Gazebo, which
             fetches models by itself or finds them in folders that this machine does not have.
     """
@@ -85,7 +85,7 @@ class ResourceFinder:
     ``file://PATH`` without a third slash is below one of these, or below the folder around one, as in Gazebo classic,
     or in ``models``, ``media/models`` or ``Media/models`` there.
 
-    Nothing is fetched from the network: of addresses on Fuel only what gz has put into its cache is found.
+    Nothing is fetched from the network: of models on Fuel only those in the cache of gz are found.
 
     Args:
         packages: where packages are.

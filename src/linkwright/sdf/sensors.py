@@ -66,8 +66,8 @@ class Imu:
     Attributes:
         angular_velocity: noise in rad/s.
         linear_acceleration: noise in m/s2.
-        enable_orientation: whether it tells its orientation too.
-        localization: what the orientation is against: ``CUSTOM``, ``NED``, ``ENU``, ``NWU``, ``GRAV_UP`` or
+        enable_orientation: whether it measures its orientation too.
+        localization: the reference of the orientation: ``CUSTOM``, ``NED``, ``ENU``, ``NWU``, ``GRAV_UP`` or
             ``GRAV_DOWN``.
         custom_rpy: roll, pitch, yaw of the custom frame, in radians, in the frame `custom_parent_frame`.
     """
@@ -268,7 +268,7 @@ _IMU = made(
     "the noise and the reference of an IMU",
     noise_xyz("angular_velocity", "noise on the angular velocity"),
     noise_xyz("linear_acceleration", "noise on the acceleration"),
-    value("enable_orientation", TRUTH, "whether it tells its orientation too", default="true"),
+    value("enable_orientation", TRUTH, "whether it measures its orientation too", default="true"),
     made(
         _Reference,
         "orientation_reference_frame",

@@ -61,7 +61,7 @@ class Deletions:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A saved state of a world by Gazebo classic, which replaces what the rest of the file says.
+    """A saved state of a world by Gazebo classic, which overrides the rest of the file.
 
     Attributes:
         world_name: the world.

@@ -240,7 +240,7 @@ SURFACE = made(
     made(
         _ContactGroup,
         "contact",
-        "stiffness, and what it touches",
+        "stiffness, and the shapes it touches",
         made(
             Contact,
             "ode",

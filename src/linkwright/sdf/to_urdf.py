@@ -30,7 +30,7 @@ _TYPES: dict[str, urdf.JointType] = {
     "prismatic": "prismatic",
     "fixed": "fixed",
 }
-"""Types of joints in SDF, and what they are in URDF; all others need a transform of their own: they float."""
+"""SDF joint types and their URDF types; all others need a transform of their own: they float."""
 _UNBOUNDED = 1e16
 """SDF's number for an unbounded limit, which represents it in URDF too, because URDF has none of its own."""
 _AMBIENT, _DIFFUSE = 0.4, 0.8
@@ -50,11 +50,11 @@ class _NoRobotError(Exception):
 def robot_from_sdf(sdf: Sdf, root: Element) -> Reading:
     """Convert the model of an SDF text to a robot.
 
-    The frame of a link of URDF is that of the joint above it: what is in a link moves with it. Addresses of meshes stay
+    The frame of a link of URDF is that of its parent joint: the parts of a link move with it. Addresses of meshes stay
     as they are written. Sensors, lights and plugins have no place in the robot.
 
     Args:
-        sdf: what it says, with its includes resolved.
+        sdf: the parsed document, with its includes resolved.
         root: its element.
 
     Returns:
@@ -120,7 +120,7 @@ class _Converter:
             child = self._frames.link(joint.child)
             if WORLD in (child, self._frames.link(joint.parent)):
                 reason = phrase("{joint} hangs from the world", joint=_named(joint))
-                raise _NoRobotError(reason, joint.element, phrase("a fixed base is said where the robot is spawned"))
+                raise _NoRobotError(reason, joint.element, phrase("set a fixed base where the robot is spawned"))
             if child in above:
                 told = {"link": child, "one": above[child].name, "other": joint.name}
                 reason = phrase("link '{link}' is the child of two joints, '{one}' and '{other}'", **told)

@@ -64,7 +64,7 @@ def save(thing: Sdf | World | Model) -> str:
     The elements inside plugins, and words of SDF without effect here (``<gui>``), are written as they were read.
 
     Args:
-        thing: a world, a model or a whole file; without includes that are resolved.
+        thing: a world, a model or a whole file; without resolved includes.
     """
     if isinstance(thing, World):
         thing = Sdf(VERSION, worlds=(thing,))

@@ -35,7 +35,7 @@ class Actuated(Protocol):
         """Compile MuJoCo's model again if the scene has changed."""
 
     def refresh(self) -> None:
-        """As `renew`, and compute what depends on positions."""
+        """Do the work of `renew`, and compute the values that depend on positions."""
 
     def joint_state(self, name: str) -> tuple[float, float]:
         """Position and velocity of a joint of one axis."""

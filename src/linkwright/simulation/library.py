@@ -24,4 +24,4 @@ def load_mujoco() -> Any:
 
 
 def _unheard(text: str) -> None:
-    """A handler that drops MuJoCo's warnings: they are found in its data, and reported by those who look there."""
+    """A handler that drops MuJoCo's warnings: callers find them in its data, and report them."""

@@ -48,7 +48,7 @@ class Recovery:
         return self._left > 0
 
     def expect(self) -> None:
-        """Look for what overlaps from the next step on, until for some steps nothing does."""
+        """Look for overlaps from the next step on, until there is none for some steps."""
         self._left = _CALM
 
     def step(self) -> None:
@@ -61,7 +61,7 @@ class Recovery:
         mujoco.mj_step2(model, data)
 
     def _bound(self) -> bool:
-        """Take what is too deep for less deep; returns whether anything was."""
+        """Reduce too great depths; return whether there was one."""
         model, data, kinds = self._model, self._data, self._mujoco.mjtConstraint
         types, numbers, contacts = data.efc_type, data.efc_id, data.contact
         touching = contacts.efc_address >= 0

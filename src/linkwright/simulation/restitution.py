@@ -33,7 +33,7 @@ class Stepper:
     """Makes the time steps of a model, with bounces.
 
     Both shapes that touch must have a coefficient, and that of the pair is their product, as in gz. It bounces above
-    the lesser of their thresholds, as in Gazebo Classic, if a threshold is said; gz knows none.
+    the lesser of their thresholds, as in Gazebo Classic, if there is one; gz has none.
 
     Args:
         model: MuJoCo's model.
@@ -51,7 +51,7 @@ class Stepper:
         self._recovery = Recovery(model, data)
 
     def expect_overlaps(self) -> None:
-        """Let what overlaps now part slowly."""
+        """Let bodies that overlap now part slowly."""
         self._recovery.expect()
 
     def make_steps(self, count: int) -> None:
@@ -114,7 +114,7 @@ def _fitted(response: Array, speeds: Array, wanted: list[tuple[float, float]]) -
     Args:
         response: the speed in each direction for an impulse in each, shape (3 contacts, 3 contacts).
         speeds: those that there are, shape (3 contacts,).
-        wanted: for each contact the speed at which it shall part, and its friction.
+        wanted: for each contact the speed of separation, and its friction.
     """
     impulses, speeds = np.zeros(len(speeds)), speeds.copy()
     for _ in range(_ROUNDS):

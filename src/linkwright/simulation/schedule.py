@@ -13,7 +13,7 @@ class Task:
 
     Attributes:
         period: nanoseconds from one call to the next.
-        function: what is called.
+        function: the function to call.
         cancelled: whether it is called no more.
     """
 
@@ -44,7 +44,7 @@ class Schedule:
         return task
 
     def run(self, now: int) -> None:
-        """Call what is due; a task that is due more than once, as time went in longer steps, is called once."""
+        """Call the due tasks; one that is due more than once, because of longer time steps, is called once."""
         while self._heap and self._heap[0][0] <= now:
             due, turn, task = self._heap[0]
             if task.cancelled:

@@ -104,7 +104,7 @@ class Simulation:
 
         Args:
             model: with its includes resolved.
-            name: what it is called; no other has that name.
+            name: its name, which no other model has.
             pose: of its frame in the world.
 
         Raises:
@@ -249,7 +249,7 @@ class Simulation:
                 servo.restart()
 
     def refresh(self) -> None:
-        """As `renew`, and compute what depends on positions."""
+        """Do the work of `renew`, and compute the values that depend on positions."""
         self.renew()
         if not self._current:
             mujoco, model, data = self._mujoco, self.model, self.data
@@ -280,7 +280,7 @@ class Simulation:
         self.schedule.restart()
 
     def advance(self, duration: int) -> None:
-        """Advance simulated time, and call what is scheduled on the way.
+        """Advance simulated time, and run the scheduled calls on the way.
 
         Args:
             duration: nanoseconds; whole steps are made until at least these have passed.
@@ -320,7 +320,7 @@ class Simulation:
         return all(bool((np.abs(state) < _BEYOND).all()) for state in self._state)
 
     def _unstable(self, count: int, positions: Array, velocities: Array) -> UnstableError:
-        """Go back to the last good state, and step by step to the failure: what is fastest there is to blame.
+        """Go back to the last good state, and step by step to the failure: the fastest body there is reported.
 
         The state is left at the last step at which all was well.
         """
@@ -340,7 +340,7 @@ class Simulation:
         data.qpos[:], data.qvel[:] = before
         told = {"time": f"{self.seconds:.3f}", "link": model.body(body).name}
         message = phrase("the simulation became unstable at {time} s, at the link '{link}'", **told)
-        hint = phrase("look at its mass, its inertia and what it overlaps with, or make the time step shorter")
+        hint = phrase("check its mass, its inertia and its overlaps, or make the time step shorter")
         return UnstableError(Diagnostic("SIM120", message, hint=hint))
 
     def body(self, name: str) -> int:

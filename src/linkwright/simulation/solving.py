@@ -1,6 +1,6 @@
 """How MuJoCo solves for forces: by islands of bodies in contact, or for all at once where many robots drive.
 
-Groups by themselves, "islands", may fall asleep, so that what rests costs nothing. But with the discrete integrator
+Groups by themselves, "islands", may fall asleep, so that resting bodies cost nothing. But with the discrete integrator
 each of them goes through the motors of all: for a hundred robots that doubles a step. The forces are the same.
 """
 
@@ -20,7 +20,7 @@ _MOTORS_AN_ISLAND, _MOTORS_ASLEEP = 80, 300
 Measured with 4 to 100 mbots: an island costs 2.5 us, and 0.03 us for each motor; mbot itself, as a box, 9 us.
 """
 _LOOK = 20
-"""Steps from one look to the next: in twice as few what rests may have fallen asleep."""
+"""Steps between two checks: resting bodies may fall asleep within half as many."""
 _TOGETHER = 50
 """The number of checks for which all are solved for together before resting bodies are looked for again."""
 

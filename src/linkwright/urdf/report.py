@@ -132,9 +132,7 @@ class UrdfReport(Findings):
             "add <{tag}/>: {meaning}", tag=f"{child.tag}{_usual_attributes(child)}", meaning=term(child.meaning)
         )
         if misspelt is not None:
-            hint = phrase(
-                "did you mean '{tag}' where it says '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt.tag
-            )
+            hint = phrase("did you mean '{tag}' instead of '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt.tag)
         whose = owner_name(owner)
         if kind:
             whose = phrase("{kind} {owner}", kind=kind, owner=whose)
@@ -226,7 +224,7 @@ def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: Attr
     unknown = [name for name in element.attributes if name not in rule.attribute_rules]
     like = nearest(attribute.name, unknown, limit=1)
     if like:
-        return phrase("did you mean '{name}' where it says '{like}'?", name=attribute.name, like=like[0])
+        return phrase("did you mean '{name}' instead of '{like}'?", name=attribute.name, like=like[0])
     text = element.text().strip()
     if text and not unknown and attribute.type in (TEXT, NUMBER):
         return phrase('write <{tag} {name}="{text}"/>', tag=rule.tag, name=attribute.name, text=text)

@@ -180,7 +180,7 @@ GOOD = (1.0, [1.0, 1.0])
         (trajectory(GOOD, names=("shoulder",)), "Joints on incoming trajectory don't match the controller joints."),
         (trajectory(names=JOINTS), "Empty trajectory received."),
         (trajectory(GOOD, names=("shoulder", "knee")), "Incoming joint knee doesn't match the controller's joints."),
-        (trajectory(GOOD, names=("elbow", "elbow")), "Incoming joint elbow is there twice."),
+        (trajectory(GOOD, names=("elbow", "elbow")), "Incoming joint elbow appears twice."),
         (
             trajectory(GOOD, (1.0, [0.0, 0.0])),
             "Time between points 0 and 1 is not strictly increasing, it is 1.000000 and 1.000000 respectively",

@@ -97,7 +97,7 @@ def test_a_thing_ends_where_it_shall_in_whatever_frame_its_pose_is():
 
 def test_a_frame_that_is_not_there_is_told():
     text = inside('<model name="m"><pose relative_to="none">1 0 0 0 0 0</pose><link name="l"/></model>')
-    with pytest.raises(EditError, match="'m' stands relative to 'none', which cannot be placed"):
+    with pytest.raises(EditError, match="'m' is relative to 'none', which cannot be placed"):
         change(text, [Change("m", pose=(0, 0, 0, 0, 0, 0))])
 
 

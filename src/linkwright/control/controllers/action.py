@@ -25,11 +25,11 @@ class _Server(ActionServer):
 class Goal:
     """An accepted goal, as the thread of the updates uses it.
 
-    It ends once, by `succeed`, `abort` or `cancel`: what is said of it afterwards changes nothing.
+    It ends once, by `succeed`, `abort` or `cancel`: later calls change nothing.
 
     Attributes:
         request: the goal message.
-        ended: whether one of these was said.
+        ended: whether one of these was called.
     """
 
     def __init__(self, handle: ServerGoalHandle, node: ControllerNode) -> None:

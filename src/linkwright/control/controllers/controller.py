@@ -1,4 +1,4 @@
-"""The base class of controllers, and what a manager gives them.
+"""The base class of controllers, and their interface to a manager.
 
 How to write one: a class, declared as an entry point of the group ``linkwright.controllers`` under its type name:
 
@@ -86,12 +86,12 @@ class Controller(ABC, Generic[P]):
     Attributes:
         PARAMETERS: the dataclass with its parameters.
         name: its name.
-        node: what it has of ROS; its parameters are this node's.
+        node: its part of the ROS graph; its parameters are this node's.
         update_rate: how often it is updated, in Hz.
         robot_description: the URDF of the robot; empty if none is known.
         commands: the command interfaces that it has while it is active, in the order that it asked for them.
         states: the state interfaces; likewise.
-        references: what another controller may command in chained mode, see `reference_interfaces`.
+        references: the inputs for another controller in chained mode, see `reference_interfaces`.
         exported: the states that it gives to others, see `exported_states`.
         chained: whether another controller commands its references.
         time_ns: the time of the latest update, in nanoseconds.
@@ -133,7 +133,7 @@ class Controller(ABC, Generic[P]):
 
         return DescriptionLibrary().read(self.robot_description).robot if self.robot_description else None
 
-    # --- what it needs and gives, asked after `on_configure` ----------------------------------------------------------
+    # --- interfaces that it claims and exports, read after `on_configure` --------------------------------------------
 
     def command_interfaces(self) -> InterfaceNames:
         """The names of the command interfaces that it claims while it is active."""
@@ -171,7 +171,7 @@ class Controller(ABC, Generic[P]):
         """Stop: set safe commands, such as zero velocity. `commands` and `states` go afterwards."""
 
     def on_cleanup(self) -> None:
-        """Drop what `on_configure` made; topics and services are removed without it."""
+        """Release what `on_configure` made; topics and services are removed automatically."""
 
     def on_error(self) -> None:
         """Handle an error other than ControllerError in one of the others, or in an update."""

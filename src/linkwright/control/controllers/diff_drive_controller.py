@@ -34,7 +34,7 @@ class Parameters(LimitedDriveParameters):
     left_wheel_names: tuple[str, ...] = parameter((), description="joints of the wheels on the left side")
     right_wheel_names: tuple[str, ...] = parameter((), description="joints of the wheels on the right side")
     wheel_separation: float = parameter(0.0, description="between the wheels of both sides, in m")
-    wheels_per_side: int = parameter(0, description="of no effect: the names of the wheels tell", only=HUMBLE)
+    wheels_per_side: int = parameter(0, description="without effect: the wheel names determine it", only=HUMBLE)
     wheel_radius: float = parameter(0.0, description="in m")
     wheel_separation_multiplier: float = parameter(1.0, description="corrects wheel_separation")
     left_wheel_radius_multiplier: float = parameter(1.0, description="corrects wheel_radius on the left")
@@ -112,7 +112,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
         """Command the wheels, and publish the odometry.
 
         Raises:
-            ControllerError: it moves, and a wheel tells no number.
+            ControllerError: it moves, and a wheel has no valid state.
         """
         wanted = [reference.value for reference in self.references]
         if not all(map(isfinite, wanted)):

@@ -131,7 +131,7 @@ class _Group(_Forwarding[GroupParameters]):
     INTERFACE: str
     """The interface of its joints."""
     STOPS = True
-    """Whether 0 stands still."""
+    """Return whether a command of 0 means standing still."""
 
     def _names(self) -> Sequence[str]:
         if not self.parameters.joints:
@@ -139,7 +139,7 @@ class _Group(_Forwarding[GroupParameters]):
         return [f"{joint}/{self.INTERFACE}" for joint in self.parameters.joints]
 
     def on_deactivate(self) -> None:
-        """Stop what moves."""
+        """Stop moving joints."""
         super().on_deactivate()
         if self.STOPS:
             for command in self.commands:

@@ -1,6 +1,6 @@
 """``joint_state_broadcaster/JointStateBroadcaster``: states of joints on topics.
 
-Source: ros2_controllers (parameters, defaults, topics, NaN for what a joint does not tell). Joints come in the order in
+Source: ros2_controllers (parameters, defaults, topics, NaN for missing states of a joint). Joints come in the order in
 which the hardware has them.
 """
 
@@ -76,7 +76,7 @@ class JointStateBroadcaster(Controller[Parameters]):
             [*(of_joint[place] or unknown for of_joint in joints.values()), *(none for _ in self._extra)]
             for place in range(3)
         ]
-        # What no joint tells, as often the efforts, is the same in each message.
+        # A field that no joint has, such as often the efforts, is the same in each message.
         self._columns = [
             (column, _values(column) if {unknown, none}.issuperset(column) else None) for column in columns
         ]

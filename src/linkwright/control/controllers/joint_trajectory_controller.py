@@ -372,7 +372,7 @@ class JointTrajectoryController(Controller[Parameters]):
             for pid, integral in zip(self._pids, integrals, strict=True):
                 pid.integral = integral
 
-    # --- what it tells ------------------------------------------------------------------------------------------------
+    # --- its messages -------------------------------------------------------------------------------------------------
 
     def _message(self, state: MotionState) -> Any:
         return self._point(positions=state.positions, velocities=state.velocities, accelerations=state.accelerations)

@@ -1,6 +1,6 @@
 """Checking trajectory messages, and converting them for the joints of a controller.
 
-Source: joint_trajectory_controller of ros2_controllers (what is refused, in which words; what missing joints do;
+Source: joint_trajectory_controller of ros2_controllers (refusals and their texts; effects of missing joints;
 tolerances of goals).
 """
 
@@ -51,7 +51,7 @@ def objection(message: Any, parameters: Parameters, now_ns: int) -> str | None:
         if name not in parameters.joints:
             return f"Incoming joint {name} doesn't match the controller's joints."
         if name in names[:number]:
-            return f"Incoming joint {name} is there twice."
+            return f"Incoming joint {name} appears twice."
     if not parameters.allow_nonzero_velocity_at_trajectory_end:
         for name, velocity in zip(names, last.velocities, strict=False):
             if abs(velocity) > _STANDING:
@@ -121,7 +121,7 @@ def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, tell: C
         goal: control_msgs/action/FollowJointTrajectory_Goal.
         joints: those of the controller.
         default: its tolerances; they count where the goal has a mistake.
-        tell: is given sentences about mistakes.
+        tell: receives the messages about errors.
     """
     tolerances = default
     for field, given in (("path_tolerance", goal.path_tolerance), ("goal_tolerance", goal.goal_tolerance)):

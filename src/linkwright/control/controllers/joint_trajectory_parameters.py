@@ -52,7 +52,7 @@ def _state_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
 class Gains(PidParameters):
     """Gains of a joint's PID controller."""
 
-    ff_velocity_scale: float = parameter(0.0, description="how much of the wanted velocity is added to the command")
+    ff_velocity_scale: float = parameter(0.0, description="the fraction of the desired velocity to add")
     angle_wraparound: bool = parameter(False, description="whether the joint turns without an end", only=HUMBLE)
     normalize_error: bool = parameter(False, description="an older name of angle_wraparound", only=HUMBLE)
 

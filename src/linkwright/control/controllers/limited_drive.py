@@ -47,7 +47,7 @@ class LimitedDriveParameters:
     enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
     cmd_vel_timeout: float = parameter(0.5, description="how long a command holds, in seconds")
     publish_limited_velocity: bool = parameter(False, description="whether ~/cmd_vel_out is published")
-    velocity_rolling_window_size: int = parameter(10, description="odometry has the mean of so many velocities")
+    velocity_rolling_window_size: int = parameter(10, description="window of the rolling mean of odometry")
     use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is left out", only=HUMBLE)
     publish_rate: float = parameter(50.0, description="of odometry, in Hz")
     angular: AngularLimits = _ANGULAR
@@ -107,7 +107,7 @@ class LimitedDrive(Controller[P], Generic[P]):
             command.value = 0.0
 
     def _speeds(self, values: list[float], period_s: float) -> list[float] | None:
-        """The speeds of wheels in rad/s from what is measured, or None where no time has passed since."""
+        """Return the speeds of wheels in rad/s from their states, or None if no time has passed."""
         if not self._said.position_feedback:
             return values
         before, self._angles = self._angles or values, values

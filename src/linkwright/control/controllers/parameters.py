@@ -110,7 +110,7 @@ class _Declaration:
 
 
 class ParameterTable(Generic[P]):
-    """The parameters of a node, declared as a dataclass says; they follow later changes.
+    """The parameters of a node, declared from a dataclass; they follow later changes.
 
     Args:
         node: the node.

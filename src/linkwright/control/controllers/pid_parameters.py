@@ -21,7 +21,7 @@ class PidParameters:
     i_clamp_min: float = -inf
     u_clamp_max: float = parameter(inf, description="the greatest command")
     u_clamp_min: float = parameter(-inf, description="the least command")
-    antiwindup: bool = parameter(False, description="bound the integral, and not only what it adds")
+    antiwindup: bool = parameter(False, description="bound the integral, and not only the integral term")
     antiwindup_strategy: str = parameter(NONE, check=one_of(*STRATEGIES))
     tracking_time_constant: float = 0.0
     error_deadband: float = 1e-16

@@ -57,7 +57,7 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
         super().on_activate()
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command what is due on the scaled time, which starts with the trajectory."""
+        """Command the point that is due at the scaled time, which starts with the trajectory."""
         if self._factor is not None and isfinite(self._factor.value):
             self._behind_ns += round((1.0 - max(self._factor.value, 0.0)) * period_s * _SECOND)
         super().update(time_ns - self._behind_ns, period_s)

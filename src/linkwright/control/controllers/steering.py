@@ -53,7 +53,7 @@ class SteeringParameters:
     reduce_wheel_speed_until_steering_reached: bool = parameter(
         False, description="whether wheels are slow while the steering is far from its angle", only=JAZZY
     )
-    velocity_rolling_window_size: int = parameter(10, description="odometry tells the mean of so many velocities")
+    velocity_rolling_window_size: int = parameter(10, description="window of the rolling mean of odometry")
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
     odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
     enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")

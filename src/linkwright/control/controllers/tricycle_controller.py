@@ -23,7 +23,7 @@ from linkwright.messages import get_message
 
 _NONE = (0.0,) * 6
 _NEAR, _FAR = pi / 6.0, pi / 2.0
-"""The angles in rad from what is wanted within which the wheel is as fast as told, and beyond which it hardly moves."""
+"""Steering errors in rad: below the first the wheel has its commanded speed, beyond the second it hardly moves."""
 _CREEPING = 0.01
 
 
@@ -73,7 +73,7 @@ class Parameters:
     odom_only_twist: bool = parameter(False, description="odometry without the pose")
     cmd_vel_timeout: int = parameter(500, description="how long a command holds, in milliseconds")
     publish_ackermann_command: bool = parameter(False, description="whether ~/cmd_ackermann is published")
-    velocity_rolling_window_size: int = parameter(10, description="odometry tells the mean of so many velocities")
+    velocity_rolling_window_size: int = parameter(10, description="window of the rolling mean of odometry")
     use_stamped_vel: bool = parameter(True, description="whether commands have headers")
     traction: TractionLimits = _ANY_TRACTION
     steering: SteeringLimits = _ANY_STEERING
@@ -149,7 +149,7 @@ class TricycleController(Controller[Parameters]):
         """Command the wheel, and publish the odometry.
 
         Raises:
-            ControllerError: the wheel tells no number.
+            ControllerError: the wheel has no valid state.
         """
         measured, angle_now = (state.value for state in self.states)
         if isnan(measured) or isnan(angle_now):

@@ -20,7 +20,7 @@ class VelocityInput:
     """Commands of a topic, ``geometry_msgs/msg/TwistStamped``, which expire after a time.
 
     A command counts from the time in its header; from the update that takes it where it has none, or one that is still
-    to come, so that it grows old in any case. One that is not finite makes the drive stand.
+    to come, so that it grows old in any case. One that is not finite stops the drive.
 
     Args:
         node: the controller's.

@@ -27,7 +27,7 @@ from linkwright.geometry.vectors import Vector3, cross, scaled
 
 GRAVITY = 9.80665
 _FREE_FALL = 1e-3
-"""m/s2, or the same share of any field: what is less tells no direction."""
+"""m/s2, or the same fraction of any field: a smaller vector has no usable direction."""
 _NONE: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
@@ -48,12 +48,12 @@ def attitude(acceleration: Vector3, magnetic: Vector3 | None, world: World) -> Q
     """The orientation of a body at rest.
 
     Args:
-        acceleration: what its accelerometer measures: away from the earth.
-        magnetic: what its magnetometer measures, in any unit; None for an orientation without yaw.
+        acceleration: of its accelerometer: away from the earth.
+        magnetic: of its magnetometer, in any unit; None for an orientation without yaw.
         world: the axes of the world.
 
     Returns:
-        The orientation; None where the measurements tell no direction.
+        The orientation; None if the measurements have no usable direction.
     """
     x, y, z = (each * world.up for each in acceleration)
     if hypot(x, y, z) < _FREE_FALL:
@@ -129,7 +129,7 @@ class MadgwickFilter:
     def _slope_of(self, direction: Vector3, seen: Vector3) -> Quaternion:
         """The gradient of half the squared difference between a direction of the world, seen from the body, and `seen`.
 
-        A small change of the orientation q by dq changes what is seen, q* d q, by dq* d q + q* d dq; its product with
+        A small change of the orientation q by dq changes the reading, q* d q, by dq* d q + q* d dq; its product with
         the difference e is that of dq with -2 d q e.
         """
         x, y, z = rotate(quaternion_inverse(self.orientation), direction)

@@ -47,7 +47,7 @@ class Measurement:
         values: shape (15,).
         covariance: shape (15, 15).
         used: which values count.
-        threshold: how many standard deviations it may be away from what is expected; further away, it is left out.
+        threshold: the most standard deviations from the expected value; a reading further away is rejected.
         control: velocities that were commanded then, shape (6,), and when.
     """
 
@@ -250,7 +250,7 @@ class UnscentedKalmanFilter(KalmanFilter):
         settings: see there.
         alpha: how far from the state the points are.
         kappa: moves the weight from the state to the points.
-        beta: what is known of the distribution; 2 for a normal one.
+        beta: prior knowledge of the distribution; 2 for a normal one.
     """
 
     def __init__(

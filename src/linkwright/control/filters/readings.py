@@ -220,7 +220,7 @@ def _finished(reading: Reading, used: Used, *, two_d: bool) -> Reading:
 
 
 def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
-    """A pose with zeros and no rotation for what is not finite, and which of the 15 values it still gives."""
+    """Return a pose with zeros and no rotation for values that are not finite, and which of the 15 values remain."""
     x, y, z = (each if isfinite(each) else 0.0 for each in pose[:3])
     known = _finite(used, POSITION, np.array(pose[:3]))
     if all(isfinite(each) for each in pose[3:]):

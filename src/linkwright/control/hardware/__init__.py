@@ -1,1 +1,1 @@
-"""Hardware as controllers see it: interfaces, and what ``<ros2_control>`` of a description declares."""
+"""Hardware as controllers see it: interfaces, and the ``<ros2_control>`` of a description."""

@@ -1,7 +1,7 @@
 """``<ros2_control>`` of a description, as data.
 
-Source: hardware_interface's component parser (elements, types, defaults). A joint mimics another as ``<mimic>`` of the
-joint says (Jazzy), or its parameters ``mimic``, ``multiplier`` and ``offset`` (Humble); ``mimic="false"`` forbids it.
+Source: hardware_interface's component parser (elements, types, defaults). A joint mimics another by ``<mimic>`` of the
+joint (Jazzy), or by its parameters ``mimic``, ``multiplier`` and ``offset`` (Humble); ``mimic="false"`` forbids it.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class InterfaceDescription:
 
     Attributes:
         name: ``position``, ...
-        minimum, maximum: what commands are to be between; NaN where nothing is said.
-        initial_value: of states; NaN where nothing is said.
+        minimum, maximum: bounds of commands; NaN if not given.
+        initial_value: of states; NaN if not given.
         limited: whether commands are kept within limits, where the manager does so.
         parameters: all of its parameters as written.
     """
@@ -57,7 +57,7 @@ class ComponentDescription:
         kind: ``joint``, ``sensor`` or ``gpio``.
         commands, states: its interfaces.
         parameters: as written.
-        mimic: what it follows.
+        mimic: the joint that it follows.
     """
 
     name: str

@@ -1,6 +1,6 @@
 """Interfaces of ros2_control: named numbers that hardware and controllers exchange.
 
-Source: hardware_interface of ros2_control (names, units by REP 103, NaN for what is not known yet).
+Source: hardware_interface of ros2_control (names, units by REP 103, NaN for unknown values).
 """
 
 from __future__ import annotations

@@ -190,7 +190,7 @@ class CommandLimits:
 
     Args:
         limiters: of the joints.
-        logger: where it tells.
+        logger: the logger of its warnings.
     """
 
     def __init__(self, limiters: Sequence[JointLimiter], logger: Logger) -> None:

@@ -36,7 +36,7 @@ class Resources:
     """The hardware of a robot.
 
     Args:
-        logger: where it tells what it does.
+        logger: the logger of its events.
 
     Attributes:
         components: the hardware by name.
@@ -230,7 +230,7 @@ class Resources:
         return failed
 
     def write(self, time_ns: int, period_s: float) -> list[Hardware]:
-        """Write to all active hardware; for what is returned see `read`."""
+        """Write to all active hardware; see `read` for the return value."""
         failed = []
         for hardware in self.components.values():
             if hardware.state is ACTIVE:

@@ -52,7 +52,7 @@ class Loaded:
 
     @property
     def is_chainable(self) -> bool:
-        """Whether other controllers can command it, or read what it exports."""
+        """Whether other controllers can command it, or read its exported states."""
         return bool(self.controller.references or self.controller.exported)
 
     def wanted_commands(self, known: list[str]) -> list[str]:

@@ -50,14 +50,14 @@ class ControllerManager:
         node: the manager's node, which takes parameters that are not declared.
         exchange: between the thread of the updates and the graph.
         resources: the hardware.
-        process: what the nodes of the controllers are given.
+        process: the arguments for the nodes of the controllers.
         update_rate: in Hz.
 
     Attributes:
         node, resources, update_rate: see above.
         robot_description: the URDF of the robot.
         controllers: those that are loaded, by name, in the order in which they are updated.
-        limits: what keeps commands within the limits of joints; None where nothing does.
+        limits: keeps commands within the limits of joints; None if limits are not enforced.
         on_change: called when a controller or hardware has another state.
     """
 
@@ -285,7 +285,7 @@ class ControllerManager:
         """Deactivate controllers and activate others.
 
         Returns:
-            Whether that was done as far as the strictness asks, and what is to be said of it.
+            Whether that succeeded as far as the strictness requires, and the message about it.
         """
         if strictness == 0:
             self._logger.warning(
@@ -460,7 +460,7 @@ class ControllerManager:
 
     def _tell_of_wrong_command(self, loaded: Loaded, name: str) -> None:
         loaded.controller.node.logger.error(
-            f"The command '{name}' is not a number; the hardware gets the last position, or 0 for what moves",
+            f"The command '{name}' is not a number; the hardware gets the last position, or 0 for velocity and effort",
             throttle_duration_sec=1.0,
         )
 

@@ -22,7 +22,7 @@ _MORE = (
 
 
 class SwitchRefusedError(Exception):
-    """A request is refused; the text says why."""
+    """A request is refused; the text gives the reason."""
 
 
 @dataclass(slots=True)

@@ -41,7 +41,7 @@ class TractionLimiter:
         self.speed = self._before = 0.0
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """The limited speed, so many seconds after the last one."""
+        """Return the limited speed, for the given seconds after the last one."""
         speed = self.speed
         wanted = _bent(speed, self._before, wanted, self._jerk, seconds)
         bounds = self._acceleration if abs(wanted) >= abs(speed) else self._deceleration
@@ -73,7 +73,7 @@ class SteeringLimiter:
         self.angle = self._before = angle
 
     def follow(self, wanted: float, seconds: float) -> float:
-        """The limited angle, so many seconds after the last one."""
+        """Return the limited angle, for the given seconds after the last one."""
         angle = self.angle
         wanted = _bent(angle, self._before, wanted, self._acceleration, seconds)
         reached = angle + _within(self._velocity, wanted - angle, seconds)

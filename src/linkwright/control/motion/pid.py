@@ -1,6 +1,6 @@
 """PID control, as control_toolbox of ros2_control does it.
 
-Source: control_toolbox's ``Pid`` of Humble and Jazzy. gz's own, which differs in when it bounds what, is
+Source: control_toolbox's ``Pid`` of Humble and Jazzy. gz's own, which bounds terms at other times, is
 `linkwright.simulation.plugins.pid`.
 """
 
@@ -53,7 +53,7 @@ class Pid:
 
     Attributes:
         gains: may be replaced at any time.
-        integral: what the integral adds to the command, before it is bounded; in units of the command.
+        integral: the integral term before it is bounded; in units of the command.
     """
 
     def __init__(self, gains: PidGains) -> None:

@@ -24,7 +24,7 @@ class SimulatedSensor:
     """A simulated sensor of hardware.
 
     Args:
-        measure: gives what it measures, by the names of interfaces.
+        measure: returns its measurements, by the names of interfaces.
         states: its interfaces.
     """
 

@@ -337,7 +337,7 @@ def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
         for entry in state_of(world, old):
             edits += writing.set_attribute(entry, "name", new)
     if len(set(names.values())) < len(names):
-        raise EditError(phrase("two things cannot have one name"))
+        raise EditError(phrase("two entities cannot have the same name"))
     return world.edited([*edits, *renamed_references(world, names)])
 
 
@@ -384,9 +384,7 @@ def _local(world: WorldText, thing: Thing, pose: Pose) -> Pose:
         if placed:
             local = compose(local, world.frames.inside(thing.name).pose(placed))
     except FrameError as error:
-        reason = phrase(
-            "'{name}' stands relative to '{frame}', which cannot be placed", name=thing.name, frame=error.name
-        )
+        reason = phrase("'{name}' is relative to '{frame}', which cannot be placed", name=thing.name, frame=error.name)
         raise EditError(reason) from None
     return writing.pose_from(local)
 

@@ -6,7 +6,7 @@ from linkwright.diagnostics import Phrase
 
 
 class EditError(Exception):
-    """An edit is refused; the text says why, as a sentence without a full stop.
+    """An edit is refused; the text gives the reason, as a sentence without a full stop.
 
     Attributes:
         message: the text.

@@ -28,7 +28,7 @@ _CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
 def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     """Make one model of several, which keep their poses in the world; its frame is in the middle of them.
 
-    A saved state tells no more of them: where it had them, they stand now.
+    Their entries of a saved state are removed; they get those poses themselves.
 
     Args:
         world: the world.
@@ -121,7 +121,7 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
 
 
 def renamed_references_outside(world: WorldText, inside: frozenset[str], group_name: str) -> list[Replacement]:
-    """The edits that adapt references from outside of a group to what is in it."""
+    """Return the edits that adapt references from outside a group to its members."""
     names = {each: f"{group_name}{SEPARATOR}{each}" for each in inside}
     ranges = [writing.range_of(world.thing(each).element) for each in inside]
     return [
@@ -210,7 +210,7 @@ def _let_out(
         attribute = "relative_to" if "relative_to" in pose.attributes else "frame"
         return [*edits, *writing.set_attribute(pose, attribute, f"{names[head]}{colon}{tail}")]
     if base not in ("", MODEL):
-        raise EditError(phrase("'{name}' stands relative to '{frame}', and cannot come out", name=old, frame=base))
+        raise EditError(phrase("'{name}' is relative to '{frame}', and cannot leave the group", name=old, frame=base))
     if model.placement_frame:
         there = compose(there, world.frames.inside(thing.name).inside(old).pose(model.placement_frame))
     local = writing.pose_from(there)

@@ -1,7 +1,7 @@
 """Models of one simple shape: recognising them, making their elements, and their masses.
 
 A wall is a box whose link is called ``wall``. A ramp is a wedge that rises along x, a ``<polyline>`` of three corners
-in a link called ``ramp``: so a file keeps what they are without anything that is not SDF.
+in a link called ``ramp``: so a file keeps their kind within plain SDF.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class SimpleShape:
     Attributes:
         kind: which.
         size: metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere.
-        colour: red, green, blue, alpha from 0 to 1; None where nothing is said.
+        colour: red, green, blue, alpha from 0 to 1; None if not given.
     """
 
     kind: ShapeKind

@@ -39,13 +39,13 @@ class Thing:
 
     Attributes:
         name: its name in the world.
-        kind: what it is.
+        kind: its kind.
         element: where it is written.
-        written: what is written there.
+        written: the parsed element.
         model: the model, with its includes resolved; None for a light, and for an include that leads nowhere.
         light: the light; None for a model.
         place: its frame in the world.
-        shape: what it is, where it is one simple shape that is written in this file.
+        shape: its shape, if it is one simple shape in this file.
     """
 
     name: str
@@ -171,7 +171,7 @@ class WorldText:
             raise EditError(phrase("the text would not be SDF: {reason}", reason=found.message)) from None
 
     def free_name(self, wanted: str, taken: AbstractSet[str] | None = None) -> str:
-        """A free name: the wanted one, or with a number behind it."""
+        """Return a free name: the preferred one, or that one with a number."""
         taken = self.taken if taken is None else taken
         if wanted not in taken:
             return wanted

@@ -1,1 +1,1 @@
-"""Plugins and sensors of models, found through entry points: what libraries of Gazebo classic and gz do."""
+"""Plugins and sensors of models, found through entry points: the work of Gazebo classic's and gz's libraries."""

@@ -32,5 +32,5 @@ _ALTERNATIVES = {
 
 
 def alternative_to(name: str) -> Phrase | None:
-    """Return what to use instead of a plugin's library or a type of sensor; None where nothing does its work."""
+    """Return the alternative to a plugin's library or a type of sensor; None if there is none."""
     return _ALTERNATIVES.get(library_name(name))

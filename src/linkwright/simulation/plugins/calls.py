@@ -1,4 +1,4 @@
-"""The one way in which a simulation calls a plugin: what a plugin throws ends that plugin and nothing else."""
+"""The one way in which a simulation calls a plugin: an exception ends that plugin and nothing else."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class Calls:
     """Calls the functions of a plugin, a sensor or a controller.
 
     Args:
-        failed: called with what a function raised; it may `close` these calls.
+        failed: called with the exception of a function; it may `close` these calls.
 
     Attributes:
-        number: the number of the call that is being made, from 1; 0 between two calls. What may change at any time,
-            such as who subscribes to a topic, is asked once in a call (`Output.is_wanted`).
+        number: the number of the current call, from 1; 0 between two calls. A state that may change at any time,
+            such as the subscriptions of a topic, is read once in a call (`Output.is_wanted`).
         is_closed: whether nothing is called any more.
     """
 
@@ -72,7 +72,7 @@ def findings_of(error: Exception, name: str, element: Element | None) -> list[Di
     """The findings for an error of a plugin.
 
     Args:
-        error: what it raised: a `LinkwrightError` speaks for itself, all else is a fault of its code (SIM138).
+        error: its exception: a `LinkwrightError` is reported as it is, any other one as a fault of its code (SIM138).
         name: the plugin's or sensor's.
         element: where it is declared, if anywhere.
     """

@@ -60,7 +60,7 @@ class Entities:
         """The pose of a model or link in the world.
 
         Raises:
-            LinkwrightError: SIM141 there is no such thing.
+            LinkwrightError: SIM141 there is no such entity.
         """
         if name in _WHOLE_WORLD:
             return IDENTITY
@@ -94,7 +94,7 @@ class Entities:
         """Set pose and twist of a model from a message ``gazebo_msgs/msg/EntityState``.
 
         Raises:
-            LinkwrightError: SIM141 there is no such thing; SIM103 it is fixed to the world.
+            LinkwrightError: SIM141 there is no such entity; SIM103 it is fixed to the world.
         """
         name, frame = self.model(state.name), self.frame(state.reference_frame)
         self._simulation.set_model_pose(name, compose(frame, transform_in(state.pose)))
@@ -102,7 +102,7 @@ class Entities:
         self._simulation.set_model_velocity(name, linear, angular)
 
     def answer_get(self, service: str, request: Any, response: Any, tell: Callable[[Phrase], object]) -> Any:
-        """Answer ``gazebo_msgs/srv/GetEntityState``; why it did not work goes to `tell`, such as a logger."""
+        """Answer ``gazebo_msgs/srv/GetEntityState``; `tell`, such as a logger, receives the reason of a failure."""
         response.header = Header(Time.from_nanoseconds(self._simulation.time), request.reference_frame or WORLD)
 
         def get() -> None:
@@ -111,7 +111,7 @@ class Entities:
         return _answered_without_text(response, get, service, tell)
 
     def answer_set(self, service: str, request: Any, response: Any, tell: Callable[[Phrase], object]) -> Any:
-        """Answer ``gazebo_msgs/srv/SetEntityState``; why it did not work goes to `tell`, such as a logger."""
+        """Answer ``gazebo_msgs/srv/SetEntityState``; `tell`, such as a logger, receives the reason of a failure."""
         return _answered_without_text(response, partial(self.put, request.state), service, tell)
 
     def _one(self, name: str, known: Collection[str]) -> str:
@@ -129,7 +129,7 @@ def _nothing(name: str, known: Collection[str]) -> LinkwrightError:
 
 
 def answered(response: Any, work: Callable[[], str]) -> Any:
-    """A response with `success` and `status_message`, which tells why it did not work."""
+    """Return a response with `success` and `status_message`, the reason of a failure."""
     try:
         response.success, response.status_message = True, work()
     except LinkwrightError as error:
@@ -140,7 +140,7 @@ def answered(response: Any, work: Callable[[], str]) -> Any:
 def _answered_without_text(
     response: Any, work: Callable[[], object], service: str, tell: Callable[[Phrase], object]
 ) -> Any:
-    """A response with `success` alone; why it did not work goes to `tell`, such as a logger."""
+    """Return a response with `success` alone; `tell`, such as a logger, receives the reason of a failure."""
     try:
         work()
         response.success = True
@@ -159,7 +159,7 @@ def refused(service: str, error: LinkwrightError) -> Phrase:
 
 
 def told(finding: Diagnostic) -> str:
-    """A finding in one line: where, what, and what to do about it."""
+    """Return a finding in one line: place, message and hint."""
     place = f"{finding.span}: " if finding.span else ""
     hint = f" ({finding.hint})" if finding.hint else ""
     return f"{place}{finding.message}{hint}"

@@ -1,7 +1,7 @@
 """Ackermann steering of gz: ``gz-sim-ackermann-steering-system``.
 
 Source: gz-sim (parameters, topics, defaults, the angles of the wheels, odometry; ``angular.z`` of a command is how fast
-the car turns). Other than there a wheel is steered to its angle as fast as the gain says, whatever pulls at it.
+the car turns). Unlike there, the gain determines how fast a wheel is steered to its angle, under any load.
 """
 
 from __future__ import annotations

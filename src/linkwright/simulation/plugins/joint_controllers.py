@@ -1,6 +1,6 @@
 """Joint controllers of gz: ``gz-sim-joint-position-controller-system`` and ``gz-sim-joint-controller-system``.
 
-Source: gz-sim (parameters, topics, defaults, what velocity commands mean). Commands are ``std_msgs/msg/Float64``, of
+Source: gz-sim (parameters, topics, defaults, meaning of velocity commands). Commands are ``std_msgs/msg/Float64``, of
 which a bridge makes the messages of gz.
 """
 

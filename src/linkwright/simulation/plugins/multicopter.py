@@ -29,7 +29,7 @@ from linkwright.xmltree import Element
 Array = npt.NDArray[np.float64]
 
 _SPIN_GAIN = 1e-3
-"""Torque in N m for each rad/s that a rotor turns too slowly: what is seen of it; its pull does not depend on that."""
+"""Torque in N m for each rad/s of a rotor's speed error; only its visible rotation depends on it, not its pull."""
 _PARALLEL = 1e-3
 
 
@@ -54,12 +54,12 @@ class MotorParameters:
 
 
 class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
-    """A rotor; it turns as fast as a controller of its model or a topic says, with the delay of a motor.
+    """A rotor; it follows the speed commands of a controller or a topic, with the delay of a motor.
 
     The topic has the speeds of all rotors, in rad/s; where a controller flies the model, that one is obeyed.
 
     Attributes:
-        wanted: how fast it is to turn, in rad/s.
+        wanted: the commanded speed, in rad/s.
         speed: how fast it turns.
     """
 

@@ -31,7 +31,7 @@ _FIRST_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
 
 
 class _Outlet:
-    """The publishers of a topic, as what the exchange hands messages to; an error ends the plugin, not the others.
+    """The publishers of a topic, to which the exchange hands messages; an error ends only their plugin.
 
     Args:
         output: the topic.
@@ -163,7 +163,7 @@ class PluginNode:
 
     @property
     def graph_node(self) -> Node:
-        """The node itself, for what is not here, such as actions: its callbacks run on the event loop."""
+        """The node itself, for features such as actions: its callbacks run on the event loop."""
         return self._node
 
     @property
@@ -181,7 +181,7 @@ class PluginNode:
 
         Args:
             msg_type: the class of its messages, or the name of the type.
-            topic: relative, absolute or private name. What may not be in names, in those of gz it may, is replaced.
+            topic: relative, absolute or private name. Characters that gz allows and ROS does not are replaced.
             qos: the quality of service; a number is a depth.
             usual: for topics of gz, the name that they have on robots: it is published under that one too, where the
                 simulation is asked for it and no other plugin has it.
@@ -233,7 +233,7 @@ class PluginNode:
         It also warns where several nodes command at the same time.
 
         Args:
-            rest: ends what the last command has set in motion; says whether there was anything to end, which is logged.
+            rest: stops the motion of the last command; returns whether there was one, which is logged.
         """
 
         def lost(publisher: EndpointInfo) -> None:
@@ -304,7 +304,7 @@ class PluginNode:
 
     def _rest(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
         if rest():
-            self.logger.warning(phrase("{who}: what it moved is stopped", who=who_was_lost(publisher)))
+            self.logger.warning(phrase("{who}: the motion stops", who=who_was_lost(publisher)))
 
     def _sound(self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any) -> None:
         """Pass a command on if its numbers are finite; stop otherwise."""

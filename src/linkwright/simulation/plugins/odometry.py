@@ -25,7 +25,7 @@ _UNKNOWN = 1e12
 
 
 def planar_variances(x: float, y: float, yaw: float) -> Variances:
-    """Variances for motion in a plane: large ones for what is not measured, unless all are 0."""
+    """Variances for motion in a plane: large ones for values that are not measured, unless all are 0."""
     return (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if x or y or yaw else _NONE
 
 

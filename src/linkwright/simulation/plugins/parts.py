@@ -1,4 +1,4 @@
-"""The parts of a model that have poses: the models in it, links, and what is fixed to links."""
+"""The parts of a model that have poses: nested models, links, and parts that are fixed to links."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Part:
     """Something with a pose.
 
     Attributes:
-        kind: what it is.
+        kind: its kind.
         name: with the models and the link that it is in, ``robot::arm::link``.
         parent: the name of the model, link or world that its pose is given in.
         pose: gives that pose now.
@@ -45,7 +45,7 @@ class Part:
 
 
 def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
-    """The parts of a model of a simulation, each model and link before what is in it.
+    """The parts of a model of a simulation, each model and link before its parts.
 
     Args:
         simulation: the world that the model is in.

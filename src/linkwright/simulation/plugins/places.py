@@ -32,7 +32,7 @@ def of_model(world: World, model: Model, path: str) -> Iterator[PluginPlace]:
     Args:
         world: the world, as it was read.
         model: with its includes resolved.
-        path: what it is called in the world.
+        path: its name in the world.
     """
     frames = Frames(model)
     yield from _of_model(world, model, path, frames)

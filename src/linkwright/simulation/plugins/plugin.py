@@ -57,7 +57,7 @@ class PlacedSensor:
 
     Attributes:
         name: with the models, the link or the joint that it is in: ``robot::head::camera``.
-        sensor: what is written about it.
+        sensor: the parsed sensor.
         link: the link that carries it, named as in the simulation; of one in a joint the child of that.
         joint: the joint that it is in; empty for a sensor of a link.
         pose: where it is in the frame of `link`.
@@ -147,7 +147,7 @@ class SimulatedPlugin(Generic[P]):
         self._environment = environment
         self._tasks: list[Task] = []
 
-    # --- what one has of its own --------------------------------------------------------------------------------------
+    # --- methods for plugins to override ------------------------------------------------------------------------------
 
     def start(self) -> None:
         """Find links and joints, make topics, register with `every`.
@@ -182,7 +182,7 @@ class SimulatedPlugin(Generic[P]):
         """Values that predecessors left under names of their choice, when the model was changed."""
         return self._environment.left
 
-    # --- what it needs ------------------------------------------------------------------------------------------------
+    # --- methods for plugins to call ----------------------------------------------------------------------------------
 
     @property
     def sensor(self) -> PlacedSensor:

@@ -1,7 +1,7 @@
 """Services that get and set physical properties of models, links and joints: ``libgazebo_ros_properties.so``.
 
-Source: gazebo_ros_pkgs for ROS 2 (services and their answers). What only the physics engine ODE has is neither told nor
-set. Lights are neither.
+Source: gazebo_ros_pkgs for ROS 2 (services and their answers). The services neither return nor set
+lights, and settings that only the physics engine ODE has.
 """
 
 from __future__ import annotations

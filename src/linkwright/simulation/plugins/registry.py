@@ -36,9 +36,9 @@ _SENSORS_OF_SYSTEMS = {
     "logical-camera": ("logical_camera",),
     "cpu-lidar": ("lidar",),
 }
-"""The systems of gz that publish what sensors measure, and the types of these; each is simulated."""
+"""The systems of gz that publish measurements, and the types of their sensors; each is simulated."""
 _OWN_SYSTEMS = ("physics", "user-commands", "label")
-"""The systems of gz for what the simulation itself does: move, take and delete models, label it."""
+"""The systems of gz for features of the simulation itself: moving, spawning and deleting models, labels."""
 _NONE = ("", "__default__")
 """Values of ``filename`` for no library, in files that programs wrote."""
 _BUILT_IN = frozenset(
@@ -60,7 +60,7 @@ def is_of_gz(filename: str) -> bool:
 
 
 def needs_nothing(filename: str) -> bool:
-    """Whether the simulation itself does what a library does."""
+    """Return whether the simulation itself does the work of a library."""
     return filename in _NONE or library_name(filename) in _BUILT_IN
 
 

@@ -18,7 +18,7 @@ def make_renderer(simulation: Simulation, way: str = "") -> Renderer:
 
     Args:
         simulation: the world.
-        way: one of `WAYS`; by default what the environment variable ``MUJOCO_GL`` names if it is one, else the first
+        way: one of `WAYS`; by default the one that the environment variable ``MUJOCO_GL`` names, else the first
             that works here.
 
     Raises:
@@ -31,7 +31,7 @@ def make_renderer(simulation: Simulation, way: str = "") -> Renderer:
     for each in ways:
         try:
             return _made(simulation, each)
-        except Exception:  # noqa: BLE001, PERF203, S112 - what is not there fails in many ways
+        except Exception:  # noqa: BLE001, PERF203, S112 - a missing library fails in many ways
             continue
     raise AssertionError("MuJoCo's rays need nothing, and never fail")
 

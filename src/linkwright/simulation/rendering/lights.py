@@ -23,7 +23,7 @@ class PlacedLight:
     """A light with its pose in the world.
 
     Attributes:
-        light: what is said of it.
+        light: the parsed light.
         position: in m, shape (3,).
         direction: where it shines, a unit vector of shape (3,).
         colour: red, green, blue from 0 to 1, with its intensity: shape (3,).

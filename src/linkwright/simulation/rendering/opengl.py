@@ -97,7 +97,7 @@ class OpenGlRenderer:
             raise
 
     def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
-        """Render what a camera sees now."""
+        """Render the current view of a camera."""
         self._gl.make_current()
         hole = optics.pinhole
         self._simulation.refresh()
@@ -334,7 +334,7 @@ def _context_class(backend: str) -> Any:
     try:
         return import_module(f"mujoco.{backend}").GLContext
     finally:
-        if before is None:  # what MuJoCo sets is not meant for the programs that this one starts
+        if before is None:  # child processes must not inherit the variables that MuJoCo sets
             os.environ.pop("PYOPENGL_PLATFORM", None)
 
 

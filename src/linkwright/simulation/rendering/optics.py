@@ -88,7 +88,7 @@ class Optics:
 
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
-        """The six planes around what is seen, for square pixels without distortion.
+        """The six planes of the view frustum, for square pixels without distortion.
 
         Returns:
             Their outward normals, of length 1, in the axes right, down and forwards: shape (6, 3); and the places of

@@ -24,7 +24,7 @@ class Hits:
     Attributes:
         distances: in lengths of the ray, inf for nothing: shape (n,), float32.
         geoms: of MuJoCo's model, -1 for none: shape (n,), int32.
-        normals: of the surface, unit vectors to either side: shape (n, 3), float32; None where they are not wanted.
+        normals: of the surface, unit vectors to either side: shape (n, 3), float32; None if not requested.
     """
 
     distances: Any

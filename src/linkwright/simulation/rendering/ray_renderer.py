@@ -38,7 +38,7 @@ class RayRenderer:
         self._revision = -1
 
     def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
-        """Render what a camera sees now."""
+        """Render the current view of a camera."""
         axes = axes_of(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
         hits = self._caster.cast(View(optics, origin, axes, rays), normals=Wanted.COLOUR in wanted)

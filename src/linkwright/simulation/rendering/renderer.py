@@ -49,12 +49,12 @@ class Renderer(Protocol):
     """How it does so, for people."""
 
     def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
-        """Render what a camera sees now.
+        """Render the current view of a camera.
 
         Args:
             optics: how it projects.
             pose: where it is in the world; it looks along x, with z up.
-            wanted: what is needed.
+            wanted: the requested parts.
         """
 
     def close(self) -> None:

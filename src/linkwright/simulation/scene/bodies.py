@@ -58,8 +58,8 @@ class BodyWriter:
         meshes: where meshes come from.
 
     Attributes:
-        diagnostics: what could not be taken over.
-        unsaid: names of the geoms that touch and of whose friction nothing is said.
+        diagnostics: findings on parts that cannot be simulated.
+        unsaid: names of the colliding geoms without a given friction.
         grips: how much they grip where a motor turns them, by the names of the geoms.
     """
 

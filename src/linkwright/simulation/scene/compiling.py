@@ -23,7 +23,7 @@ _BYTES_A_PAIR, _BYTES = 3, 1 << 28
 
 
 def count_links(models: Iterable[Model]) -> int:
-    """The number of links of models, if so many can be simulated.
+    """Return the number of links of models, if that many can be simulated.
 
     Raises:
         LinkwrightError: SIM105 they are too many.
@@ -48,7 +48,7 @@ def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, 
     """Compile a scene to MuJoCo's model and data.
 
     Args:
-        scene: what is simulated.
+        scene: the simulated scene.
         before: the model and data that there were, whose state is kept.
 
     Raises:
@@ -70,7 +70,7 @@ def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, 
     except (ValueError, mujoco.FatalError) as error:
         said = str(error).removeprefix("Error: ").splitlines()[0]
         raise LinkwrightError(
-            Diagnostic("SIM104", phrase("MuJoCo cannot take this world: {said}", said=foreign(said)))
+            Diagnostic("SIM104", phrase("MuJoCo cannot simulate this world: {said}", said=foreign(said)))
         ) from None
 
 

@@ -35,7 +35,7 @@ def read_heights(path: Path) -> Heights:
         raise missing_extra("SIM114", error) from None
     try:
         with catch_warnings():
-            simplefilter("ignore")  # what is wrong with it is said here
+            simplefilter("ignore")  # its errors are reported here
             with Image.open(path) as image:
                 kind = image.mode
                 shown = image if kind in ("L", "I", "F", "I;16", "I;16B") else image.convert("L")

@@ -44,7 +44,7 @@ class MeshLibrary:
 
     Attributes:
         spec: the specification that gets them.
-        diagnostics: what could not be had.
+        diagnostics: findings on meshes and images that cannot be used.
         used: the files that were asked for since this was cleared, and when they were changed, in ns since the epoch.
     """
 

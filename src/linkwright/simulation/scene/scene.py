@@ -81,7 +81,7 @@ class Scene:
     """A world as a specification of MuJoCo.
 
     Bodies and joints are named as in the world: ``robot::arm::tip``; a second axis of a joint has ``#2`` behind its
-    name, and what lets a body move freely ``#free`` behind that of the body.
+    name, and free joints ``#free`` behind that of the body.
 
     Args:
         world: with its includes resolved, and as it was saved (`linkwright.sdf.saved`).
@@ -146,7 +146,7 @@ class Scene:
         return self._connections.in_order(names)
 
     def step_of(self, world: World) -> float:
-        """The time step of a world in s; a millisecond where it says 0, with a warning."""
+        """Return the time step of a world in s; a millisecond if it is 0, with a warning."""
         physics = physics_of(world)
         if physics.max_step_size:
             return physics.max_step_size
@@ -190,14 +190,14 @@ class Scene:
         option.gravity = list(gravity_of(world))
         option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
         option.impratio = 10.0
-        option.noslip_iterations = 3  # a wheel that is sped up at once would jump: what slips is pushed off the ground
+        option.noslip_iterations = 3  # a wheel that is sped up at once would jump: slipping pushes it off the ground
         option.integrator = self._mujoco.mjtIntegrator.mjINT_DISCRETE
         option.enableflags |= self._mujoco.mjtEnableBit.mjENBL_SLEEP
         option.disableflags |= self._mujoco.mjtDisableBit.mjDSBL_AUTORESET
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """Findings on what could not be simulated."""
+        """Findings on parts that cannot be simulated."""
         return [*self._findings, *self._writer.diagnostics, *self._meshes.diagnostics]
 
     def add(self, model: Model, name: str, pose: Transform) -> SceneModel:
@@ -364,7 +364,7 @@ class Scene:
                 self.spec.add_exclude(name=f"{name}{number}", bodyname1=one, bodyname2=other)
 
     def unweld(self, parent: str, child: str) -> None:
-        """Remove what `weld` has added."""
+        """Remove the constraint that `weld` has added."""
         name = _weld_name(parent, child)
         parts = (*self.spec.equalities, *self.spec.excludes)
         for part in [part for part in parts if part.name.startswith(name)]:
@@ -454,7 +454,7 @@ class Scene:
             owner, separator, _ = joint.name.rpartition(SEPARATOR)
             leader = f"{owner}{separator}{axis.mimic.joint}{SECOND_AXIS if axis.mimic.axis == 'axis2' else ''}"
             if leader.removesuffix(SECOND_AXIS) not in self.joints:
-                continue  # `check` tells
+                continue  # `check` reports it
             equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT)
             equality.name1, equality.name2 = f"{joint.name}{SECOND_AXIS if number else ''}", leader
             offset = axis.mimic.offset - axis.mimic.multiplier * axis.mimic.reference

@@ -80,7 +80,7 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
                 continue  # `check` reports it
             ends_are_there = placed.child in links and (placed.parent in links or placed.parent == WORLD)
             if ends_are_there and placed.parent != placed.child:
-                while placed.name in joints:  # MuJoCo has no two of a name; `check` tells
+                while placed.name in joints:  # names in MuJoCo are unique; `check` reports it
                     placed = replace(placed, name=f"{placed.name}~")
                 joints[placed.name] = placed
     return _trees(links, joints.values())

@@ -59,7 +59,7 @@ def make_sliding(body: Any, unsaid: set[str]) -> None:
 
     Args:
         body: a body of the specification.
-        unsaid: names of the geoms of whose friction nothing was said: they slide, the others are soft only.
+        unsaid: names of the geoms without a given friction: they slide, the others are only soft.
     """
     for geom in body.geoms:
         if geom.group == COLLISION_GROUP and geom.type == load_mujoco().mjtGeom.mjGEOM_SPHERE:

@@ -20,7 +20,7 @@ from linkwright.sdf.shapes import Plane, Shape
 _SIDE, _FLOOR = 4, 16
 """Into how many squares a side of a box and a plane are cut each way: light is computed at corners."""
 _AROUND, _DOWN = 64, 32
-"""Into how many parts what is round is cut, round its axis and along it."""
+"""The numbers of parts of a round shape, round its axis and along it."""
 _SIDES = (
     ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     ((-1, 0, 0), (0, -1, 0), (0, 0, 1)),
@@ -39,7 +39,7 @@ _LEAST_AREA = 1e-15
 def wrapped(shape: Shape) -> Triangles | None:
     """A shape with texture coordinates; None for one that has none.
 
-    A plane is so great as it is said to be drawn, and has z for its normal.
+    A plane has the size of its visual, and z as its normal.
     """
     match shape:
         case Box(size) if min(size) > 0:
@@ -55,7 +55,7 @@ def wrapped(shape: Shape) -> Triangles | None:
         case Sphere(radius) if radius > 0:
             downs = [down / _DOWN for down in reversed(range(_DOWN + 1))]
             upright = _rings([(radius * sin(down * pi), radius * cos(down * pi), down) for down in downs])
-            faces = upright.indices.reshape(-1, 3)[:, ::-1]  # what is exchanged is seen in a mirror
+            faces = upright.indices.reshape(-1, 3)[:, ::-1]  # exchanged axes mirror the image
             return replace(upright, positions=upright.positions[:, [0, 2, 1]], indices=faces.ravel())
     return None
 

@@ -36,7 +36,7 @@ class Globe:
     """The position of a world on earth.
 
     Args:
-        place: what the world says; None for where latitude and longitude are 0.
+        place: the coordinates of the world; None for latitude and longitude 0.
     """
 
     def __init__(self, place: SphericalCoordinates | None) -> None:
@@ -98,7 +98,7 @@ class NavsatSensor:
 
     Args:
         mount: where it is.
-        navsat: what is said of it; None for no noise.
+        navsat: the parsed sensor; None for no noise.
         place: where the world is on earth.
         generator: where its noise comes from.
     """
@@ -134,7 +134,7 @@ class AltimeterSensor:
 
     Args:
         mount: where it is.
-        altimeter: what is said of it; None for no noise.
+        altimeter: the parsed sensor; None for no noise.
         generator: where its noise comes from.
     """
 

@@ -18,7 +18,7 @@ class ForceTorqueSensor:
     Args:
         simulation: the world.
         joint: the name of the joint in the world; it may be fixed.
-        sensor: what is said of it; None for SDF's defaults.
+        sensor: the parsed sensor; None for SDF's defaults.
         offset: the sensor in the frame of the joint.
         generator: where its noise comes from.
 
@@ -47,7 +47,7 @@ class ForceTorqueSensor:
     def measure(self) -> tuple[Array, Array]:
         """The force in N and the torque in N m, in the axes that the sensor is configured for.
 
-        With ``parent_to_child`` they are what the parent does to the child, otherwise the opposite.
+        With ``parent_to_child`` they act from the parent on the child, otherwise from the child on the parent.
 
         Raises:
             KeyError: its links are gone.

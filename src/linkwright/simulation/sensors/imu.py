@@ -45,7 +45,7 @@ class ImuSensor:
 
     Args:
         mount: where it is.
-        imu: what is said of it; None for no noise.
+        imu: the parsed sensor; None for no noise.
         initial_reference: whether the orientation is against that at the start instead of the world.
         generator: where its noise comes from.
     """

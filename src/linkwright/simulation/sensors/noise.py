@@ -1,6 +1,6 @@
 """Noise of sensors, as ``<noise>`` of SDF describes it.
 
-Source: what the elements of ``<noise>`` mean, SDFormat specification 1.12, and how the ``GaussianNoiseModel`` of Gazebo
+Source: the elements of ``<noise>``, SDFormat specification 1.12, and the ``GaussianNoiseModel`` of Gazebo
 lets a bias wander.
 """
 
@@ -22,7 +22,7 @@ class NoiseSource:
     """Adds noise to one value, or to many of the same kind.
 
     Args:
-        noise: what is said of it, in the unit of the values.
+        noise: the parsed noise, in the unit of the values.
         generator: where chance comes from.
     """
 
@@ -84,7 +84,7 @@ class VectorNoise:
     """Noise on the three components of a vector.
 
     Args:
-        noise: what is said of each part.
+        noise: the parsed noise of each part.
         generator: where chance comes from.
     """
 

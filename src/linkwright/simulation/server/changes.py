@@ -125,7 +125,7 @@ def check(world: World, simulation: Simulation, coming: Sequence[Coming], finder
         finder: where meshes are.
 
     Returns:
-        What could not be taken over.
+        The findings on parts that cannot be simulated.
 
     Raises:
         LinkwrightError: SIM104, SIM105, SIM140 they cannot.

@@ -75,7 +75,7 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
 
 
 def _lacks_shapes(robot: Robot) -> bool:
-    """Whether what is written as a shape of a link is none, or not as it has to be; urdfdom refuses such robots."""
+    """Return whether a shape of a link is missing or invalid; urdfdom refuses such robots."""
     return any(
         len(link.visuals) + len(link.collisions) < sum(element.tag in _SHAPED for element in link.element.elements())
         for link in robot.links.values()

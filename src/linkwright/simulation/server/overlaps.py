@@ -16,7 +16,7 @@ _MOST = 8
 
 
 def overlaps(simulation: Simulation, names: Container[str] | None = None) -> list[Diagnostic]:
-    """Warnings on what is inside of something else now, the deepest first.
+    """Return warnings about bodies that overlap now, the deepest first.
 
     Args:
         simulation: the world.

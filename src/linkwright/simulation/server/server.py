@@ -52,7 +52,7 @@ class ServerOptions:
     """Options of a simulation.
 
     Attributes:
-        seed: what all random numbers follow from.
+        seed: the seed of all random numbers.
         usual_names: whether topics of gz, such as ``/model/robot/cmd_vel``, have their usual names too: ``/cmd_vel``
             for the first robot that has one.
         gazebo_mistakes: whether plugins make the known mistakes of Gazebo.
@@ -82,8 +82,8 @@ class SimulationServer:
         on_change: called after models have come or gone.
         on_reset: called after a reset.
         on_findings: called after `findings` are others.
-        on_failure: called with what the code of a plugin raised, after it was logged.
-        left: what plugins leave for those that come in their places.
+        on_failure: called with the exception of a plugin's code, after it was logged.
+        left: the states that plugins leave for their successors.
     """
 
     def __init__(self, simulation: Simulation, node: Node, options: ServerOptions | None = None) -> None:
@@ -112,7 +112,7 @@ class SimulationServer:
         self._load(_WORLD, of_world(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
-        self.tell(overlaps(self.simulation))  # not before: plugins attach what is meant to overlap
+        self.tell(overlaps(self.simulation))  # not before: plugins attach models that are meant to overlap
         self._changed()
 
     @property
@@ -158,7 +158,7 @@ class SimulationServer:
 
         Args:
             model: with its includes resolved.
-            name: what both are called.
+            name: the name of both.
 
         Raises:
             LinkwrightError: SIM141 there is none of that name; SIM140 it cannot be placed or moved, and nothing has
@@ -469,7 +469,7 @@ def is_shared(place: PluginPlace) -> bool:
 
 
 def _kinds(place: PluginPlace) -> list[str]:
-    """The words for an unknown plugin or sensor; empty for what the simulation does itself."""
+    """The name of an unknown plugin or sensor; empty for features of the simulation itself."""
     if place.plugin is None:
         return [] if place.sensor is None else [place.sensor.sensor.type]
     return [] if needs_nothing(place.plugin.filename) else [place.plugin.filename]

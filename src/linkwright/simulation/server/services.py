@@ -110,15 +110,15 @@ class Services:
 
         Args:
             text: the description.
-            name: what it is called; that in the description if empty.
+            name: its name; that in the description if empty.
             pose: of its frame, before which its own pose comes.
             namespace: of the nodes of its plugins that name none.
 
         Returns:
-            What it is called.
+            Its name.
 
         Raises:
-            LinkwrightError: what is wrong with it.
+            LinkwrightError: its errors.
         """
         return self._put(entity_from(text, self._server.simulation.finder, self._library), name, pose, namespace)
 
@@ -178,7 +178,7 @@ class Services:
         response.success = True
         return response
 
-    # --- where things are ---------------------------------------------------------------------------------------------
+    # --- poses of entities --------------------------------------------------------------------------------------------
 
     def _get_state(self, request: Any, response: Any) -> Any:
         return self._entities.answer_get("/get_entity_state", request, response, self._server.node.get_logger().error)

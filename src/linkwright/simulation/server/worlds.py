@@ -22,9 +22,9 @@ class LoadedWorld(NamedTuple):
     """A world with its includes resolved.
 
     Attributes:
-        world: what it says.
+        world: the parsed world.
         finder: where its files are.
-        diagnostics: what is remarkable about it.
+        diagnostics: findings about it.
         path: the file.
         files: all files that it was made of.
         read_ns: before when none of them was read, in nanoseconds since the epoch.

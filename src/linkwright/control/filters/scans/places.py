@@ -52,7 +52,7 @@ class AngularBoundsInPlaceFilter(ScanFilter):
 
 @dataclass(slots=True)
 class SectorFilter(ScanFilter):
-    """``LaserScanSectorFilter``: removes what is between two angles and two ranges, or all else."""
+    """``LaserScanSectorFilter``: removes the ranges between two angles and two distances, or all others."""
 
     angle_min: float = 0.0
     angle_max: float = 0.0

@@ -1,6 +1,6 @@
 """Lidars and sonars: ``gazebo_ros_ray_sensor``, the lasers of ROS 1, and ``gpu_lidar`` of gz.
 
-Source: gazebo_ros_pkgs for ROS 2 (types of output, the middle row of several, what a Range is made of), for ROS 1
+Source: gazebo_ros_pkgs for ROS 2 (types of output, the middle row of several, the value of a Range), for ROS 1
 (names), velodyne_simulator (points), gz-sensors and gz-msgs (topics, points).
 """
 
@@ -45,7 +45,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return self.is_wanted() or self._rays.is_wanted
 
     def measure(self) -> None:
-        """Measure, and publish to those who subscribe."""
+        """Measure, and publish to the subscribers."""
         scan = self.lidar.measure()
         if self._rays.is_wanted:
             self._rays.publish(self._rays_message(scan))

@@ -22,7 +22,7 @@ ENCODINGS = {
     "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8", "BAYER_GBRG8": "bayer_gbrg8",
     "BAYER_GRBG8": "bayer_grbg8", "BAYER_RGGR8": "bayer_rggb8",
 }  # fmt: skip
-"""The formats of SDF, and what ROS calls them."""
+"""The formats of SDF, and their names in ROS."""
 OF_DEPTHS = frozenset({"R_FLOAT16", "R_FLOAT32", "FLOAT32"})
 """The formats of depth cameras in files for gz; they do not specify colours."""
 USUAL_ENCODING = "bgr8"
@@ -43,7 +43,7 @@ class PixelNoise:
     def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
         self._noise = noise
         self._generator = generator
-        self._more: Pixels = np.empty(0, np.uint8)  # what is added to each colour, and what is taken off it
+        self._more: Pixels = np.empty(0, np.uint8)  # positive and negative noise of each colour
         self._less: Pixels = np.empty(0, np.uint8)
 
     def apply(self, colour: Pixels) -> Pixels:
