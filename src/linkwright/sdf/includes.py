@@ -24,7 +24,7 @@ _DEEPEST = 64
 _MOST = 100_000
 """The greatest number of models from a file: where models include others twice each, few lines make more."""
 
-Thing = Model | Light | Actor
+Entity = Model | Light | Actor
 
 
 @dataclass
@@ -36,13 +36,13 @@ class Included:
             nowhere stays.
         diagnostics: errors in the included files, and includes of missing files.
         files: the files that were read for it, each once.
-        things: the entities that the includes of worlds name, by their elements' ids; None for a missing one.
+        entities: the entities that the includes of worlds name, by their elements' ids; None for a missing one.
     """
 
     sdf: Sdf
     diagnostics: list[Diagnostic] = field(default_factory=list)
     files: dict[Path, None] = field(default_factory=dict)
-    things: dict[int, Thing | None] = field(default_factory=dict)
+    entities: dict[int, Entity | None] = field(default_factory=dict)
 
 
 def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
@@ -56,7 +56,7 @@ def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
     resolver = _Resolver(finder)
     worlds = tuple(resolver.world(world, path) for world in sdf.worlds)
     models = tuple(resolver.model(model, path, ()) for model in sdf.models)
-    return Included(replace(sdf, worlds=worlds, models=models), resolver.diagnostics, resolver.files, resolver.things)
+    return Included(replace(sdf, worlds=worlds, models=models), resolver.diagnostics, resolver.files, resolver.entities)
 
 
 class _Named(Protocol):
@@ -72,7 +72,7 @@ class _Resolver:
     def __init__(self, finder: ResourceFinder) -> None:
         self.diagnostics: list[Diagnostic] = []
         self.files: dict[Path, None] = {}
-        self.things: dict[int, Thing | None] = {}
+        self.entities: dict[int, Entity | None] = {}
         self._finder = finder
         self._readings: dict[Path, Reading | None] = {}
         self._count = 0
@@ -82,14 +82,14 @@ class _Resolver:
         lights, actors, left = list(world.lights), list(world.actors), []
         names = _names(models, world.frames, world.joints)
         for include in world.includes:
-            thing = self.things[id(include.element)] = self._included(include, path, ())
-            self._check_name(thing, include, names)
-            if isinstance(thing, Model):
-                models.append(thing)
-            elif isinstance(thing, Light):
-                lights.append(thing)
-            elif isinstance(thing, Actor):
-                actors.append(thing)
+            entity = self.entities[id(include.element)] = self._included(include, path, ())
+            self._check_name(entity, include, names)
+            if isinstance(entity, Model):
+                models.append(entity)
+            elif isinstance(entity, Light):
+                lights.append(entity)
+            elif isinstance(entity, Actor):
+                actors.append(entity)
             else:
                 left.append(include)
         populations = [
@@ -113,15 +113,15 @@ class _Resolver:
         left = []
         names = _names(model.links, model.joints, model.frames, inner)
         for include in model.includes:
-            thing = self._included(include, path, chain)
+            entity = self._included(include, path, chain)
             if not include.merge:
-                self._check_name(thing, include, names)
-            if not isinstance(thing, Model):
+                self._check_name(entity, include, names)
+            if not isinstance(entity, Model):
                 left.append(include)
             elif include.merge:
-                parts.append((include, thing))
+                parts.append((include, entity))
             else:
-                inner.append(thing)
+                inner.append(entity)
         whole = replace(model, models=tuple(inner), includes=tuple(left))
         for include, part in parts:
             whole = self._merged(whole, part, include)
@@ -134,25 +134,25 @@ class _Resolver:
             message = phrase(
                 "'{attribute}' names '{name}', which does not exist", attribute="placement_frame", name=error.name
             )
-            self._tell("SDF141", message, include, None, Severity.ERROR)
+            self._report("SDF141", message, include, None, Severity.ERROR)
             return merged(whole, replace(part, placement_frame=""))
 
-    def _included(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Thing | None:
+    def _included(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Entity | None:
         """The included model, light or actor with the include's changes; None, with a finding, if it is missing."""
         if not include.uri:
             return None  # which the reader reported
         found = self._finder.model(include.uri, path.parent)
         if isinstance(found, Missing):
             message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=found.reason)
-            self._tell("SDF160", message, include, found.hint, found.severity)
+            self._report("SDF160", message, include, found.hint, found.severity)
             return None
         if found in chain or found == path or len(chain) >= _DEEPEST:
-            self._tell("SDF161", phrase("'{uri}' includes itself", uri=include.uri), include, None)
+            self._report("SDF161", phrase("'{uri}' includes itself", uri=include.uri), include, None)
             return None
         self._count += 1
         if self._count > _MOST:
             if self._count == _MOST + 1:
-                self._tell("SDF161", phrase("more than {count} models are included", count=_MOST), include, None)
+                self._report("SDF161", phrase("more than {count} models are included", count=_MOST), include, None)
             return None
         reading = self._read(found, include)
         if reading is None or reading.sdf is None:
@@ -162,20 +162,20 @@ class _Resolver:
             model = self.model(sdf.models[0], found, (*chain, path))
             return _as_included(model, include)
         if sdf.lights or sdf.actors:
-            thing: Light | Actor = sdf.lights[0] if sdf.lights else sdf.actors[0]
-            return replace(thing, name=include.name or thing.name, pose=include.pose or thing.pose)
-        self._tell("SDF160", phrase("'{uri}' is left out: there is no model in it", uri=include.uri), include, None)
+            entity: Light | Actor = sdf.lights[0] if sdf.lights else sdf.actors[0]
+            return replace(entity, name=include.name or entity.name, pose=include.pose or entity.pose)
+        self._report("SDF160", phrase("'{uri}' is left out: there is no model in it", uri=include.uri), include, None)
         return None
 
-    def _check_name(self, thing: Thing | None, include: Include, names: set[str]) -> None:
+    def _check_name(self, entity: Entity | None, include: Include, names: set[str]) -> None:
         """Report an included model whose name is taken, and record the name."""
-        if not isinstance(thing, Model):
+        if not isinstance(entity, Model):
             return
-        if thing.name in names:
+        if entity.name in names:
             hint = phrase("give it a name of its own: <include><name>...</name>")
-            message = phrase("{kind} '{name}' is defined twice", kind=term("model"), name=thing.name)
-            self._tell("SDF110", message, include, hint, Severity.ERROR)
-        names.add(thing.name)
+            message = phrase("{kind} '{name}' is defined twice", kind=term("model"), name=entity.name)
+            self._report("SDF110", message, include, hint, Severity.ERROR)
+        names.add(entity.name)
 
     def _read(self, path: Path, include: Include) -> Reading | None:
         """Read an included file; its findings are reported once, with the place of the include."""
@@ -195,7 +195,7 @@ class _Resolver:
         self._readings[path] = reading
         return reading
 
-    def _tell(
+    def _report(
         self,
         code: str,
         message: Phrase,

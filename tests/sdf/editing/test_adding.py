@@ -21,7 +21,7 @@ SIZES = {"box": (1, 2, 3), "cylinder": (0.1, 2), "sphere": (0.3,), "wall": (4, 0
 def test_a_shape_is_what_it_was_when_it_is_read_again(kind):
     before = world_text(PLAIN)
     text, name = add_shape(before, kind, POSE, SIZES[kind])
-    thing = text.things[name]
+    thing = text.entities[name]
     assert (thing.shape.kind, thing.shape.size) == (kind, SIZES[kind])
     assert thing.pose.pose == Pose(POSE[:3], POSE[3:])
     assert thing.static == (kind in ("wall", "ramp"))
@@ -29,13 +29,13 @@ def test_a_shape_is_what_it_was_when_it_is_read_again(kind):
     assert delete(text, [name]).text == PLAIN
     usual, name = add_shape(before, kind, POSE)
     larger = change(usual, [Change(name, size=SIZES[kind], static=False)])
-    assert larger.things[name].shape.size == SIZES[kind]
-    assert change(text, [Change(name, static=False)]).things[name].shape.size == SIZES[kind]
+    assert larger.entities[name].shape.size == SIZES[kind]
+    assert change(text, [Change(name, static=False)]).entities[name].shape.size == SIZES[kind]
 
 
 def test_a_new_shape_weighs_a_kilogram_and_has_the_inertia_of_a_solid():
     text, name = add_shape(inside(), "cylinder", POSE, (0.5, 2.0))
-    inertial = text.things[name].model.links[0].inertial
+    inertial = text.entities[name].model.links[0].inertial
     assert inertial.mass == 1.0
     assert inertial.inertia.izz == pytest.approx(0.125)
     assert inertial.inertia.ixx == pytest.approx((3 * 0.25 + 4) / 12, rel=1e-5)
@@ -69,7 +69,7 @@ def test_new_things_come_behind_the_last_and_are_set_in_as_the_others_are():
 @pytest.mark.parametrize("kind", ["point", "directional", "spot"])
 def test_lights_are_of_their_kind(kind):
     text, name = add_light(inside(), kind, POSE)
-    light = text.things[name].light
+    light = text.entities[name].light
     assert (name, light.type) == (f"{kind}_light", kind)
     assert (light.spot is not None) == (kind == "spot")
     assert not text.errors
@@ -83,9 +83,9 @@ def test_a_model_is_included_by_its_address_with_a_free_name(tmp_path):
     assert name == "box_2"
     lines = ("<uri>model://crate</uri>", "<name>box_2</name>", "<pose>1 2 3 0 0 0.5</pose>")
     assert "    <include>\n      " + "\n      ".join(lines) + "\n    </include>\n" in text.text
-    assert text.things[name].place[:3] == (1, 2, 3)
+    assert text.entities[name].place[:3] == (1, 2, 3)
     text, name = add_include(text, "model://sun", POSE)
-    assert (name, text.things[name].kind) == ("sun", "light")
+    assert (name, text.entities[name].kind) == ("sun", "light")
     with pytest.raises(EditError, match="there is no model 'nothing' on the search path"):
         add_include(text, "model://nothing", POSE)
     with pytest.raises(EditError, match="names no model"):

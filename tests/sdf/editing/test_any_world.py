@@ -63,10 +63,10 @@ def test_what_is_moved_is_there_and_all_else_where_it_was(text, pose, name):
         f"<sdf version='1.9'><world name='w'><model name='m'><pose>{' '.join(map(length, pose))}</pose>"
         "<link name='l'/></model></world></sdf>"
     )
-    assert close(after.things[name].place, wanted.things["m"].place, 1e-5)
+    assert close(after.entities[name].place, wanted.entities["m"].place, 1e-5)
     for other in {"a", "b&c", "d"} - {name}:
-        assert after.things[other].place == before.things[other].place
-    element = before.things[name].element
+        assert after.entities[other].place == before.entities[other].place
+    element = before.entities[name].element
     start = element.offset
     behind = len(text) - text.index("</model>", start)
     assert after.text[:start] == text[:start]
@@ -77,14 +77,14 @@ def test_what_is_moved_is_there_and_all_else_where_it_was(text, pose, name):
 @given(worlds(), SIZES, st.booleans())
 def test_sizes_and_names_and_back_again_give_the_same_text(text, size, twice):
     before = world_text(text)
-    old = before.things["a"].shape.size
+    old = before.entities["a"].shape.size
     names = ["a", "d"] if twice else ["a"]
     after = change(before, [Change(name, new_name=f"new {name}", size=size) for name in names])
-    assert after.things["new a"].shape.size == size
+    assert after.entities["new a"].shape.size == size
     masses = [model.links[0].inertial for model in before.world.models]
-    back = [Change(f"new {name}", new_name=name, size=before.things[name].shape.size) for name in names]
+    back = [Change(f"new {name}", new_name=name, size=before.entities[name].shape.size) for name in names]
     again = change(after, back)
-    assert again.things["a"].shape.size == old
+    assert again.entities["a"].shape.size == old
     if not any(masses):
         assert again.text == text
 
@@ -96,10 +96,10 @@ def test_copies_deleted_give_the_same_text(text, offset):
     copied, names = copy(before, ["a", "b&c", "d"], offset)
     assert names == ["a_2", "b&c_2", "d_2"]
     for name, new in zip(["a", "b&c", "d"], names, strict=True):
-        there = before.things[name].place
+        there = before.entities[name].place
         moved = (*(a + b for a, b in zip(there[:3], offset, strict=True)), *there[3:])
-        assert close(copied.things[new].place, moved, 1e-5)
-        assert before.things[name].element.text() == copied.things[name].element.text()
+        assert close(copied.entities[new].place, moved, 1e-5)
+        assert before.entities[name].element.text() == copied.entities[name].element.text()
     assert "".join(delete(copied, names).text.split()) == "".join(text.split())
 
 
@@ -108,7 +108,7 @@ def test_copies_deleted_give_the_same_text(text, offset):
 def test_groups_taken_apart_are_where_they_were(text):
     before = world_text(text)
     grouped = group(before, ["a", "d"], "g")
-    assert set(grouped.things) == {"g", "b&c"}
+    assert set(grouped.entities) == {"g", "b&c"}
     there, apart = places(before), ungroup(grouped, "g")[0]
     for name, pose in places(apart).items():
         assert close(pose, there[name], 1e-5)

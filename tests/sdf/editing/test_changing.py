@@ -24,7 +24,7 @@ def changed(text: str, *changes: Change) -> list[str]:
 
 
 def test_what_stands_in_a_world_is_told():
-    things = world_text(PLAIN).things
+    things = world_text(PLAIN).entities
     assert list(things) == ["ground_plane", "box", "lamp"]
     assert [thing.kind for thing in things.values()] == ["model", "model", "light"]
     assert things["ground_plane"].static
@@ -69,7 +69,7 @@ def test_a_pose_keeps_its_form(written, result):
     text = inside(f'<model name="m">{written}<link name="l"/></model>')
     moved = change(text, [Change("m", pose=(4, 2, 3, 0, 0, pi / 4))])
     assert result in moved.text
-    place = moved.things["m"].place
+    place = moved.entities["m"].place
     assert (*place[:3], *rotate(place[3:], (1, 0, 0))) == pytest.approx((4, 2, 3, cos(pi / 4), sin(pi / 4), 0))
 
 
@@ -88,11 +88,11 @@ def test_a_thing_ends_where_it_shall_in_whatever_frame_its_pose_is():
     }
     moved = change(text, [Change(name, pose=pose) for name, pose in wanted.items()])
     for name, pose in wanted.items():
-        assert moved.things[name].place[:3] == pytest.approx(pose[:3], abs=1e-8)
+        assert moved.entities[name].place[:3] == pytest.approx(pose[:3], abs=1e-8)
     assert moved.text.count("relative_to") == 3
     again = change(moved, [Change(name, pose=pose) for name, pose in wanted.items()])
-    for name, thing in again.things.items():
-        assert thing.place == pytest.approx(moved.things[name].place, abs=1e-8)
+    for name, thing in again.entities.items():
+        assert thing.place == pytest.approx(moved.entities[name].place, abs=1e-8)
 
 
 def test_a_frame_that_is_not_there_is_told():
@@ -127,17 +127,17 @@ def test_a_colour_takes_the_place_of_a_script():
         "<material><ambient>0.9 0.4 0.1 1</ambient><diffuse>0.9 0.4 0.1 1</diffuse></material>",
         "<material><script><uri>file://media/gazebo.material</uri><name>Gazebo/Red</name></script></material>",
     )
-    assert world_text(text).things["box"].shape.colour == (1, 0, 0, 1)
+    assert world_text(text).entities["box"].shape.colour == (1, 0, 0, 1)
     after = change(world_text(text), [Change("box", colour=(0, 1, 0, 0.5))])
     assert "<material><ambient>0 1 0 0.5</ambient><diffuse>0 1 0 0.5</diffuse></material>" in after.text
-    assert after.things["box"].shape.colour == (0, 1, 0, 0.5)
+    assert after.entities["box"].shape.colour == (0, 1, 0, 0.5)
     assert changed(PLAIN, Change("lamp", colour=(1, 0, 0, 1)))[-1] == "+ <diffuse>1 0 0 1</diffuse>"
 
 
 def test_what_moves_no_more_says_so_and_what_moves_again_has_a_mass():
     still = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
-    assert still.things["box"].static
-    assert not still.things["ground_plane"].static
+    assert still.entities["box"].static
+    assert not still.entities["ground_plane"].static
     assert "<pose>2 0 0.250 0 0 0</pose>\n      <static>true</static>\n" in still.text
     bare = PLAIN.replace(PLAIN[PLAIN.index("        <inertial>") : PLAIN.index("        <collision")], "")
     still = change(world_text(bare), [Change("box", static=True)])
@@ -186,14 +186,14 @@ def test_some_names_cannot_be_given(name, why):
 def test_an_include_has_its_name_and_all_else_as_it_is_written():
     after = change(world_text(PLAIN), [Change("ground_plane", new_name="floor", static=True)])
     assert "<include><uri>model://ground_plane</uri><name>floor</name></include>" in after.text
-    assert list(after.things) == ["floor", "box", "lamp"]
+    assert list(after.entities) == ["floor", "box", "lamp"]
 
 
 def test_copies_have_free_names_and_stand_beside():
     text, names = copy(world_text(PLAIN), ["box", "lamp", "ground_plane"], (1, 0, 0))
     assert names == ["box_2", "lamp_2", "ground_plane_2"]
-    assert text.things["box_2"].place == pytest.approx((3, 0, 0.25, 0, 0, 0, 1))
-    assert text.things["lamp_2"].place[:3] == (1, 0, 3)
+    assert text.entities["box_2"].place == pytest.approx((3, 0, 0.25, 0, 0, 0, 1))
+    assert text.entities["lamp_2"].place[:3] == (1, 0, 3)
     assert BOX.replace("'box'", "'box_2'").replace(">2 0 0.250", ">3 0 0.250") in text.text
     again, names = copy(text, ["box_2", "box"], (0, 1, 0))
     assert names == ["box_3", "box_4"]
@@ -213,7 +213,7 @@ def test_what_something_refers_to_stays_unless_that_goes_too():
     )
     with pytest.raises(EditError, match="'a' cannot be deleted: 'b' refers to it"):
         delete(text, ["a"])
-    assert not delete(text, ["b", "a"]).things
+    assert not delete(text, ["b", "a"]).entities
 
 
 def test_line_ends_stay():
@@ -232,7 +232,7 @@ def test_a_file_that_no_simulator_writes_is_edited_all_the_same():
     assert "<size>2 2 2</size>" in after.text
     assert "<model name='m'><pose>1 0 0 0 0 0</pose><link" in after.text
     entity = text.replace("'1 1 1'", "'<box/>'").replace("<size>&size;</size>", "<size>1 1 1</size>&size;")
-    assert change(world_text(entity), [Change("m", static=True)]).things["m"].static
+    assert change(world_text(entity), [Change("m", static=True)]).entities["m"].static
 
 
 def test_a_thing_that_comes_from_an_entity_is_told():

@@ -44,7 +44,7 @@ def test_encoding_mark_and_line_ends_are_those_of_the_file(tmp_path, mark, encod
     after = data.removeprefix(mark).decode(encoding)
     shown = "&#26426;&#22120;&#20154; é" if encoding == "latin-1" else "机器人 é"
     assert after == text.replace("'box'", f"'{shown}'")
-    assert "机器人 é" in EditedWorld.of_file(path, NOWHERE).world.things
+    assert "机器人 é" in EditedWorld.of_file(path, NOWHERE).world.entities
 
 
 def test_a_change_that_changes_nothing_is_no_step(tmp_path):
@@ -101,7 +101,7 @@ def test_a_world_that_xacro_makes_is_saved_as_what_came_of_it(tmp_path):
     world.save("made.world")
     assert world.file == tmp_path / "made.world"
     assert "${" in path.read_text()
-    assert EditedWorld.of_file(world.file, NOWHERE).world.things["机器人 é"].place[0] == 2
+    assert EditedWorld.of_file(world.file, NOWHERE).world.entities["机器人 é"].place[0] == 2
 
 
 def test_worlds_that_come_with_the_program_are_not_written(tmp_path):

@@ -1,16 +1,16 @@
 """Losslessly editing worlds: a text becomes another one that differs only where the edit requires it."""
 
 from linkwright.sdf.editing.adding import NewShape, add_include, add_light, add_shape
-from linkwright.sdf.editing.changing import Change, change, copy, delete, pose_of_thing
+from linkwright.sdf.editing.changing import Change, change, copy, delete, pose_of_entity
 from linkwright.sdf.editing.errors import EditError
 from linkwright.sdf.editing.grouping import group, ungroup
-from linkwright.sdf.editing.text import Thing, WorldText
+from linkwright.sdf.editing.text import Entity, WorldText
 
 __all__ = [
     "Change",
     "EditError",
+    "Entity",
     "NewShape",
-    "Thing",
     "WorldText",
     "add_include",
     "add_light",
@@ -19,6 +19,6 @@ __all__ = [
     "copy",
     "delete",
     "group",
-    "pose_of_thing",
+    "pose_of_entity",
     "ungroup",
 ]

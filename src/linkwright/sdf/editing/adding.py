@@ -141,10 +141,10 @@ def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[
         raise EditError(found.reason)
     alone = World(includes=(Include(address),))
     included = resolve_includes(Sdf("1.6", worlds=(alone,)), world.path, world.finder).sdf.worlds[0]
-    things: tuple[Model | Light, ...] = (*included.models, *included.lights)
-    if not things:
+    entities: tuple[Model | Light, ...] = (*included.models, *included.lights)
+    if not entities:
         raise EditError(phrase("there is no model in '{address}'", address=address))
-    name = world.free_name(things[0].name)
+    name = world.free_name(entities[0].name)
     pose_of_it = writing.pose_element(pose_in_world(pose))
     return _with(world, made("include", made("uri", address), made("name", name), pose_of_it)), name
 

@@ -24,7 +24,7 @@ from linkwright.sdf.editing.shapes import (
     solid,
     tensor,
 )
-from linkwright.sdf.editing.text import Thing, WorldText
+from linkwright.sdf.editing.text import Entity, WorldText
 from linkwright.sdf.frames import FrameError, transform_of
 from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.models import Include, Model
@@ -44,7 +44,7 @@ class Change:
     """The properties to be changed; None for those that stay.
 
     Attributes:
-        name: the thing.
+        name: the entity.
         pose: in the world: x, y, z in m, roll, pitch, yaw in rad.
         size: of a model that is one simple shape, see `SimpleShape`.
         new_name: another name.
@@ -74,7 +74,7 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
     values: list[Replacement] = []
     poses: dict[str, Pose] = {}
     for each in changes:
-        values += _values(world.thing(each.name), each)
+        values += _values(world.entity(each.name), each)
         if each.pose is not None:
             poses[each.name] = pose_in_world(each.pose)
     world = _with_poses(world, poses, values)
@@ -87,7 +87,7 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
 
     Args:
         world: the world.
-        names: the things.
+        names: the entities.
         offset: x, y, z in m from each to its copy.
 
     Returns:
@@ -102,12 +102,12 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
     poses: dict[str, Pose] = {}
     taken = set(world.taken)
     for name in dict.fromkeys(names):
-        thing = world.thing(name)
+        entity = world.entity(name)
         free = world.free_name(name, taken)
         taken.add(free)
-        x, y, z = (a + b for a, b in zip(thing.place[:3], offset, strict=True))
-        poses[free] = Pose((x, y, z), pose_of_thing(thing).rpy)
-        edits.append(_copied(thing, free))
+        x, y, z = (a + b for a, b in zip(entity.place[:3], offset, strict=True))
+        poses[free] = Pose((x, y, z), pose_of_entity(entity).rpy)
+        edits.append(_copied(entity, free))
     return _with_poses(world.edited(edits), poses), list(poses)
 
 
@@ -117,8 +117,8 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
     Raises:
         EditError: one does not exist, or a remaining element refers to it.
     """
-    gone = {name: world.thing(name) for name in names}
-    elements = {id(thing.element) for thing in gone.values()}
+    gone = {name: world.entity(name) for name in names}
+    elements = {id(entity.element) for entity in gone.values()}
     for child in world.element.elements():
         if id(child) in elements:
             continue
@@ -127,7 +127,7 @@ def delete(world: WorldText, names: Iterable[str]) -> WorldText:
             if head in gone:
                 where = child.attributes.get("name") or child.tag
                 raise EditError(phrase("'{name}' cannot be deleted: '{user}' refers to it", name=head, user=where))
-    edits = [writing.removed(thing.element) for thing in gone.values()]
+    edits = [writing.removed(entity.element) for entity in gone.values()]
     edits += [writing.removed(entry) for name in gone for entry in state_of(world, name)]
     return world.edited(edits)
 
@@ -144,38 +144,38 @@ def pose_in_world(numbers: Sequence[float]) -> Pose:
     return Pose((x, y, z), (roll, pitch, yaw))
 
 
-def pose_of_thing(thing: Thing) -> Pose:
-    """The pose of a thing in the world: exactly the numbers of the file, where they mean that."""
-    own = thing.pose
-    if own.pose.quaternion is None and not own.relative_to and transform_of(own.pose) == thing.place:
+def pose_of_entity(entity: Entity) -> Pose:
+    """The pose of an entity in the world: exactly the numbers of the file, where they mean that."""
+    own = entity.pose
+    if own.pose.quaternion is None and not own.relative_to and transform_of(own.pose) == entity.place:
         return own.pose
-    return writing.pose_from(thing.place)
+    return writing.pose_from(entity.place)
 
 
-def moved(world: WorldText, thing: Thing, pose: Pose) -> list[Replacement]:
-    """Return the edits that move a thing to a pose in the world, whatever frame its own pose is given in.
+def moved(world: WorldText, entity: Entity, pose: Pose) -> list[Replacement]:
+    """Return the edits that move an entity to a pose in the world, whatever frame its own pose is given in.
 
     Raises:
         EditError: that frame does not exist.
     """
     wanted = transform_of(pose)
-    edits = place(thing, _local(world, thing, pose))
-    for entry in state_of(world, thing.name):
-        edits += _state_moved(entry, thing.place, wanted, pose)
+    edits = place(entity, _local(world, entity, pose))
+    for entry in state_of(world, entity.name):
+        edits += _state_moved(entry, entity.place, wanted, pose)
     return edits
 
 
-def place(thing: Thing, pose: Pose) -> list[Replacement]:
-    """The edits that write the pose of a thing, in the frame that it is given in."""
-    element = thing.element.first("pose")
+def place(entity: Entity, pose: Pose) -> list[Replacement]:
+    """The edits that write the pose of an entity, in the frame that it is given in."""
+    element = entity.element.first("pose")
     if element is not None:
         return writing.set_pose(element, pose)
-    after = _FIRST if isinstance(thing.written, Include) else ()
-    return [writing.inserted_in(thing.element, [writing.pose_element(pose)], after=after, first=not after)]
+    after = _FIRST if isinstance(entity.written, Include) else ()
+    return [writing.inserted_in(entity.element, [writing.pose_element(pose)], after=after, first=not after)]
 
 
 def state_of(world: WorldText, name: str) -> list[Element]:
-    """The part of the last saved state that holds a thing."""
+    """The part of the last saved state that holds an entity."""
     state = world.state
     entries = () if state is None else (*state.elements("model"), *state.elements("light"))
     return [entry for entry in entries if entry.attributes.get("name") == name]
@@ -187,7 +187,7 @@ def named_in(element: Element, attribute: str | None) -> str:
 
 
 def renamed_references(world: WorldText, names: dict[str, str]) -> list[Replacement]:
-    """The edits that rename a thing, or its parts, in everything that refers to them."""
+    """The edits that rename an entity, or its parts, in everything that refers to them."""
     edits: list[Replacement] = []
     for element, attribute in writing.references(world.element):
         written = named_in(element, attribute)
@@ -205,27 +205,27 @@ def renamed_references(world: WorldText, names: dict[str, str]) -> list[Replacem
 # --- single values -------------------------------------------------------------------------------------------------
 
 
-def _values(thing: Thing, wanted: Change) -> list[Replacement]:
+def _values(entity: Entity, wanted: Change) -> list[Replacement]:
     edits: list[Replacement] = []
-    if wanted.size is not None and (thing.shape is None or tuple(wanted.size) != thing.shape.size):
-        edits += _resized(thing, tuple(wanted.size))
+    if wanted.size is not None and (entity.shape is None or tuple(wanted.size) != entity.shape.size):
+        edits += _resized(entity, tuple(wanted.size))
     if wanted.colour is not None:
-        edits += _coloured(thing, wanted.colour)
-    if wanted.static is not None and wanted.static != thing.static:
-        edits += _static(thing, wanted.static, wanted.size)
+        edits += _coloured(entity, wanted.colour)
+    if wanted.static is not None and wanted.static != entity.static:
+        edits += _static(entity, wanted.static, wanted.size)
     return edits
 
 
-def _resized(thing: Thing, size: tuple[float, ...]) -> list[Replacement]:
-    shape = thing.shape
+def _resized(entity: Entity, size: tuple[float, ...]) -> list[Replacement]:
+    shape = entity.shape
     if shape is None:
-        raise EditError(phrase("'{name}' cannot be resized: it is not a simple shape", name=thing.name))
+        raise EditError(phrase("'{name}' cannot be resized: it is not a simple shape", name=entity.name))
     if not is_size(shape.kind, size):
         raise EditError(
             phrase("'{numbers}' is not a valid size of a {kind}", numbers=" ".join(map(str, size)), kind=shape.kind)
         )
-    assert isinstance(thing.written, Model), "only models that are written here have a shape"
-    link = thing.written.links[0]
+    assert isinstance(entity.written, Model), "only models that are written here have a shape"
+    link = entity.written.links[0]
     edits: list[Replacement] = []
     shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
     for part in shapes:
@@ -277,15 +277,15 @@ def _same_values(owner: Element, new: Element) -> list[Replacement]:
     return edits
 
 
-def _coloured(thing: Thing, colour: Sequence[float]) -> list[Replacement]:
+def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
     if len(colour) != 4 or not all(isfinite(each) and 0 <= each <= 1 for each in colour):
         raise EditError(phrase("a colour has four numbers from 0 to 1: red green blue alpha"))
-    if thing.kind == "light" and not isinstance(thing.written, Include):
-        return writing.set_child(thing.element, "diffuse", colour)
-    if thing.shape is None or not isinstance(thing.written, Model):
-        raise EditError(phrase("the colour of '{name}' cannot be changed: it is not a simple shape", name=thing.name))
+    if entity.kind == "light" and not isinstance(entity.written, Include):
+        return writing.set_child(entity.element, "diffuse", colour)
+    if entity.shape is None or not isinstance(entity.written, Model):
+        raise EditError(phrase("the colour of '{name}' cannot be changed: it is not a simple shape", name=entity.name))
     edits: list[Replacement] = []
-    for visual in thing.written.links[0].visuals:
+    for visual in entity.written.links[0].visuals:
         assert visual.element is not None, "it was read from the text"
         material = visual.element.first("material")
         if material is None:
@@ -306,21 +306,21 @@ def _coloured(thing: Thing, colour: Sequence[float]) -> list[Replacement]:
     return edits
 
 
-def _static(thing: Thing, static: bool, size: Sequence[float] | None) -> list[Replacement]:
-    if thing.kind != "model":
-        raise EditError(phrase("'{name}' is a light, and does not move anyway", name=thing.name))
+def _static(entity: Entity, static: bool, size: Sequence[float] | None) -> list[Replacement]:
+    if entity.kind != "model":
+        raise EditError(phrase("'{name}' is a light, and does not move anyway", name=entity.name))
     text = "true" if static else "false"
-    child = thing.element.first("static")
+    child = entity.element.first("static")
     if child is not None:
         edits = writing.set_text(child, text)
     else:
-        after = ("uri", "name", "pose") if isinstance(thing.written, Include) else ("pose",)
-        first = thing.element.first("pose") is None and not isinstance(thing.written, Include)
-        edits = [writing.inserted_in(thing.element, [made("static", text)], after=after, first=first)]
-    if not static and thing.shape is not None and isinstance(thing.written, Model):
-        link = thing.written.links[0]
+        after = ("uri", "name", "pose") if isinstance(entity.written, Include) else ("pose",)
+        first = entity.element.first("pose") is None and not isinstance(entity.written, Include)
+        edits = [writing.inserted_in(entity.element, [made("static", text)], after=after, first=first)]
+    if not static and entity.shape is not None and isinstance(entity.written, Model):
+        link = entity.written.links[0]
         if link.inertial is None and link.element is not None:
-            new = inertial(thing.shape.kind, tuple(size or thing.shape.size), _NEW_MASS)
+            new = inertial(entity.shape.kind, tuple(size or entity.shape.size), _NEW_MASS)
             edits.append(writing.inserted_in(link.element, [new], first=True))
     return edits
 
@@ -331,9 +331,9 @@ def _static(thing: Thing, static: bool, size: Sequence[float] | None) -> list[Re
 def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
     edits: list[Replacement] = []
     for old, new in names.items():
-        thing = world.thing(old)
+        entity = world.entity(old)
         world.check_name(new)
-        edits += _named(thing, new)
+        edits += _named(entity, new)
         for entry in state_of(world, old):
             edits += writing.set_attribute(entry, "name", new)
     if len(set(names.values())) < len(names):
@@ -341,17 +341,17 @@ def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
     return world.edited([*edits, *renamed_references(world, names)])
 
 
-def _named(thing: Thing, name: str) -> list[Replacement]:
-    if isinstance(thing.written, Include):
-        return writing.set_child(thing.element, "name", name, after=("uri",))
-    return writing.set_attribute(thing.element, "name", name)
+def _named(entity: Entity, name: str) -> list[Replacement]:
+    if isinstance(entity.written, Include):
+        return writing.set_child(entity.element, "name", name, after=("uri",))
+    return writing.set_attribute(entity.element, "name", name)
 
 
-def _copied(thing: Thing, name: str) -> Replacement:
-    """Return the edit that copies a thing behind it, on separate lines if the thing is on separate lines."""
-    text, (start, end) = writing.text_of(thing.element), writing.range_of(thing.element)
+def _copied(entity: Entity, name: str) -> Replacement:
+    """Return the edit that copies an entity behind it, on separate lines if the entity is on separate lines."""
+    text, (start, end) = writing.text_of(entity.element), writing.range_of(entity.element)
     copy = text[start:end]
-    for edit in sorted(_named(thing, name), key=lambda edit: edit.start, reverse=True):
+    for edit in sorted(_named(entity, name), key=lambda edit: edit.start, reverse=True):
         copy = copy[: edit.start - start] + edit.text + copy[edit.end - start :]
     indent = indentation(text, start)
     between = "" if indent is None else f"{newline_of(text)}{indent}"
@@ -362,60 +362,60 @@ def _copied(thing: Thing, name: str) -> Replacement:
 
 
 def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replacement] = ()) -> WorldText:
-    """Edits together with new poses of things; a thing is moved after the one that its pose is relative to."""
-    alone = [name for name in poses if not world.thing(name).pose.relative_to]
-    edits = [*edits, *(edit for name in alone for edit in moved(world, world.thing(name), poses[name]))]
+    """Edits together with new poses of entities; an entity is moved after the one that its pose is relative to."""
+    alone = [name for name in poses if not world.entity(name).pose.relative_to]
+    edits = [*edits, *(edit for name in alone for edit in moved(world, world.entity(name), poses[name]))]
     world = world.edited(edits)
     for name in sorted(poses.keys() - set(alone), key=lambda name: (_depth(world, name), name)):
-        world = world.edited(moved(world, world.thing(name), poses[name]))
+        world = world.edited(moved(world, world.entity(name), poses[name]))
     return world
 
 
-def _local(world: WorldText, thing: Thing, pose: Pose) -> Pose:
-    """A pose in the world, expressed in the frame in which a thing's pose is given."""
-    relative_to = thing.pose.relative_to
-    placed = thing.model.placement_frame if thing.model is not None else ""
-    if isinstance(thing.written, Model | Include):
-        placed = thing.written.placement_frame or placed
+def _local(world: WorldText, entity: Entity, pose: Pose) -> Pose:
+    """A pose in the world, expressed in the frame in which an entity's pose is given."""
+    relative_to = entity.pose.relative_to
+    placed = entity.model.placement_frame if entity.model is not None else ""
+    if isinstance(entity.written, Model | Include):
+        placed = entity.written.placement_frame or placed
     if not relative_to and not placed:
         return pose
     try:
         local = compose(invert(world.frames.pose(relative_to)) if relative_to else IDENTITY, transform_of(pose))
         if placed:
-            local = compose(local, world.frames.inside(thing.name).pose(placed))
+            local = compose(local, world.frames.inside(entity.name).pose(placed))
     except FrameError as error:
-        reason = phrase("'{name}' is relative to '{frame}', which cannot be placed", name=thing.name, frame=error.name)
+        reason = phrase("'{name}' is relative to '{frame}', which cannot be placed", name=entity.name, frame=error.name)
         raise EditError(reason) from None
     return writing.pose_from(local)
 
 
 def _state_moved(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
-    """Move the saved state of a thing, whose parts have poses in the frame of the world as well."""
+    """Move the saved state of an entity, whose parts have poses in the frame of the world as well."""
     by = compose(new, invert(old))
     edits: list[Replacement] = []
     for element in entry.walk():
-        told = element.first("pose") if element.tag in ("model", "link", "light") else None
-        if told is None:
+        written = element.first("pose") if element.tag in ("model", "link", "light") else None
+        if written is None:
             continue
         if element is entry:
-            edits += writing.set_pose(told, pose)
+            edits += writing.set_pose(written, pose)
             continue
         try:
-            numbers = POSE_NUMBERS.read(told.text())
+            numbers = POSE_NUMBERS.read(written.text())
             there = transform_of(pose_of(numbers, degrees=False, rotation_format="euler_rpy"))
         except ValueError:
             continue
-        edits += writing.set_pose(told, writing.pose_from(compose(by, there)))
+        edits += writing.set_pose(written, writing.pose_from(compose(by, there)))
     return edits
 
 
 def _depth(world: WorldText, name: str) -> int:
-    """The length of the chain of frames to which the pose of a thing is relative."""
+    """The length of the chain of frames to which the pose of an entity is relative."""
     depth, seen = 0, set[str]()
-    thing = world.things.get(name)
-    while thing is not None and thing.name not in seen:
-        seen.add(thing.name)
-        thing = world.things.get(thing.pose.relative_to.partition(SEPARATOR)[0])
+    entity = world.entities.get(name)
+    while entity is not None and entity.name not in seen:
+        seen.add(entity.name)
+        entity = world.entities.get(entity.pose.relative_to.partition(SEPARATOR)[0])
         depth += 1
     return depth
 

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf.editing import writing
-from linkwright.sdf.editing.changing import named_in, place, pose_of_thing, renamed_references, state_of
+from linkwright.sdf.editing.changing import named_in, place, pose_of_entity, renamed_references, state_of
 from linkwright.sdf.editing.errors import EditError
 from linkwright.sdf.editing.shapes import lengths, made
-from linkwright.sdf.editing.text import Thing, WorldText
+from linkwright.sdf.editing.text import Entity, WorldText
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.models import Include, Model
 from linkwright.sdf.poses import MODEL, SEPARATOR
@@ -38,31 +38,31 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     Raises:
         EditError: they cannot be one model.
     """
-    things = [world.thing(fromkey) for fromkey in dict.fromkeys(names)]
-    _check_group(things)
+    entities = [world.entity(fromkey) for fromkey in dict.fromkeys(names)]
+    _check_group(entities)
     name = world.free_name(name.strip() or "group")
     world.check_name(name)
-    inside = frozenset(thing.name for thing in things)
-    x, y, z = (round(sum(thing.place[axis] for thing in things) / len(things), _DIGITS) for axis in range(3))
+    inside = frozenset(entity.name for entity in entities)
+    x, y, z = (round(sum(entity.place[axis] for entity in entities) / len(entities), _DIGITS) for axis in range(3))
     origin: Transform = (x, y, z, 0.0, 0.0, 0.0, 1.0)
     edits: list[Replacement] = []
-    for thing in things:
-        edits += [writing.removed(entry) for entry in state_of(world, thing.name)]
-        base = thing.pose.relative_to
-        if base.partition(SEPARATOR)[0] in inside and not state_of(world, thing.name):
+    for entity in entities:
+        edits += [writing.removed(entry) for entry in state_of(world, entity.name)]
+        base = entity.pose.relative_to
+        if base.partition(SEPARATOR)[0] in inside and not state_of(world, entity.name):
             continue  # its pose is relative to another one in the group, and stays so
-        edits += _placed_in(world, thing, origin)
+        edits += _placed_in(world, entity, origin)
     edits += renamed_references_outside(world, inside, name)
     text = world.text
-    first = min(things, key=lambda thing: thing.element.offset)
+    first = min(entities, key=lambda entity: entity.element.offset)
     start = writing.range_of(first.element)[0]
     blanks, newline = indentation(text, start) or "", newline_of(text)
     inner = blanks + _STEP
-    static = f"{newline}{inner}<static>true</static>" if things[0].static else ""
+    static = f"{newline}{inner}<static>true</static>" if entities[0].static else ""
     head = f'<model name="{escaped(name)}">{newline}{inner}<pose>{lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>{static}'
     parts = []
-    for thing in sorted(things, key=lambda thing: thing.element.offset):
-        begin, end = writing.range_of(thing.element)
+    for entity in sorted(entities, key=lambda entity: entity.element.offset):
+        begin, end = writing.range_of(entity.element)
         own = [edit for edit in edits if begin <= edit.start and edit.end <= end]
         edits = [edit for edit in edits if edit not in own]
         moved = [
@@ -72,7 +72,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     whole = newline.join([head, *parts, f"{blanks}</model>"])
     begin, end = writing.range_of(first.element)
     edits.append(Replacement(begin, end, whole))
-    edits += [writing.removed(thing.element) for thing in things if thing is not first]
+    edits += [writing.removed(entity.element) for entity in entities if entity is not first]
     return world.edited(edits)
 
 
@@ -85,20 +85,20 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     Raises:
         EditError: the model is more than its parts, or another file's.
     """
-    thing = world.thing(name)
-    model = thing.written
+    entity = world.entity(name)
+    model = entity.written
     if not isinstance(model, Model):
         raise EditError(phrase("'{name}' is not a group that is written in this file", name=name))
-    if not thing.parts or model.joints or model.frames or model.plugins or model.links:
+    if not entity.parts or model.joints or model.frames or model.plugins or model.links:
         raise EditError(phrase("'{name}' is more than the models in it, and cannot be taken apart", name=name))
-    parts = [element for element in thing.element.elements() if element.tag in ("model", "include")]
-    if len(parts) != len(thing.parts):
+    parts = [element for element in entity.element.elements() if element.tag in ("model", "include")]
+    if len(parts) != len(entity.parts):
         raise EditError(phrase("'{name}' cannot be taken apart: one of its includes does not exist", name=name))
-    names = _names_of(world, thing, parts)
+    names = _names_of(world, entity, parts)
     edits: list[Replacement] = [writing.removed(entry) for entry in state_of(world, name)]
     frames = world.frames.inside(name)
-    for element, old in zip(parts, _old_names(thing, parts), strict=True):
-        edits += _let_out(world, thing, element, old, names, compose(thing.place, frames.pose(old)))
+    for element, old in zip(parts, _old_names(entity, parts), strict=True):
+        edits += _let_out(world, entity, element, old, names, compose(entity.place, frames.pose(old)))
     for element, attribute in writing.references(world.element):
         head, colon, tail = named_in(element, attribute).partition(SEPARATOR)
         part, more, rest = tail.partition(SEPARATOR)
@@ -108,9 +108,9 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
             raise EditError(phrase("'{name}' cannot be taken apart: something refers to it", name=name))
         written = f"{names[part]}{more}{rest}"
         edits += writing.set_reference(element, attribute, written)
-    edits += [writing.removed(element) for tag in ("pose", "static") for element in thing.element.elements(tag)]
-    begin, end = writing.range_of(thing.element)
-    first, last = writing.content_of(thing.element)
+    edits += [writing.removed(element) for tag in ("pose", "static") for element in entity.element.elements(tag)]
+    begin, end = writing.range_of(entity.element)
+    first, last = writing.content_of(entity.element)
     own = [Replacement(e.start - first, e.end - first, e.text) for e in edits if begin <= e.start and e.end <= end]
     edits = [edit for edit in edits if not (begin <= edit.start and edit.end <= end)]
     blanks = indentation(world.text, begin)
@@ -123,7 +123,7 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
 def renamed_references_outside(world: WorldText, inside: frozenset[str], group_name: str) -> list[Replacement]:
     """Return the edits that adapt references from outside a group to its members."""
     names = {each: f"{group_name}{SEPARATOR}{each}" for each in inside}
-    ranges = [writing.range_of(world.thing(each).element) for each in inside]
+    ranges = [writing.range_of(world.entity(each).element) for each in inside]
     return [
         renamed_reference
         for renamed_reference in renamed_references(world, names)
@@ -131,15 +131,15 @@ def renamed_references_outside(world: WorldText, inside: frozenset[str], group_n
     ]
 
 
-def _check_group(things: Sequence[Thing]) -> None:
-    if len(things) < 2:
+def _check_group(entities: Sequence[Entity]) -> None:
+    if len(entities) < 2:
         raise EditError(phrase("a group is made of two models at least"))
-    light = next((thing for thing in things if thing.kind == "light"), None)
+    light = next((entity for entity in entities if entity.kind == "light"), None)
     if light is not None:
         raise EditError(phrase("'{name}' is a light, which cannot be part of a model", name=light.name))
-    other = next((thing for thing in things if thing.static != things[0].static), None)
+    other = next((entity for entity in entities if entity.static != entities[0].static), None)
     if other is not None:
-        static, moving = (other, things[0]) if other.static else (things[0], other)
+        static, moving = (other, entities[0]) if other.static else (entities[0], other)
         raise EditError(
             phrase(
                 "'{static}' is static and '{moving}' is not: make both the same", static=static.name, moving=moving.name
@@ -147,47 +147,47 @@ def _check_group(things: Sequence[Thing]) -> None:
         )
 
 
-def _placed_in(world: WorldText, thing: Thing, origin: Transform) -> list[Replacement]:
-    """Write the pose of a thing in the frame of a group with a pose, so that it stays where it is."""
-    written = pose_of_thing(thing)
+def _placed_in(world: WorldText, entity: Entity, origin: Transform) -> list[Replacement]:
+    """Write the pose of an entity in the frame of a group with a pose, so that it stays where it is."""
+    written = pose_of_entity(entity)
     x, y, z = (a - b for a, b in zip(written.xyz, origin[:3], strict=True))
     local = Pose((x, y, z), written.rpy)
-    placed = thing.model.placement_frame if thing.model is not None else ""
+    placed = entity.model.placement_frame if entity.model is not None else ""
     if placed:
-        inner = compose(transform_of(local), world.frames.inside(thing.name).pose(placed))
+        inner = compose(transform_of(local), world.frames.inside(entity.name).pose(placed))
         local = writing.pose_from(inner)
-    edits = place(thing, local)
-    pose = thing.element.first("pose")
+    edits = place(entity, local)
+    pose = entity.element.first("pose")
     if pose is not None:
         edits += [edit for name in ("relative_to", "frame") for edit in writing.without_attribute(pose, name)]
     return edits
 
 
-def _old_names(thing: Thing, parts: Sequence[Element]) -> list[str]:
+def _old_names(entity: Entity, parts: Sequence[Element]) -> list[str]:
     """The names of parts within their group, in document order: models first, then includes."""
-    assert isinstance(thing.written, Model), "groups are models"
-    assert thing.model is not None, "groups are models"
-    models = [id(model.element) for model in thing.written.models]
-    includes = [id(include.element) for include in thing.written.includes]
-    order = {each: thing.model.models[index].name for index, each in enumerate((*models, *includes))}
+    assert isinstance(entity.written, Model), "groups are models"
+    assert entity.model is not None, "groups are models"
+    models = [id(model.element) for model in entity.written.models]
+    includes = [id(include.element) for include in entity.written.includes]
+    order = {each: entity.model.models[index].name for index, each in enumerate((*models, *includes))}
     return [order[id(part)] for part in parts]
 
 
-def _names_of(world: WorldText, thing: Thing, parts: Sequence[Element]) -> dict[str, str]:
+def _names_of(world: WorldText, entity: Entity, parts: Sequence[Element]) -> dict[str, str]:
     names: dict[str, str] = {}
-    taken = world.taken - {thing.name}
-    for old in _old_names(thing, parts):
+    taken = world.taken - {entity.name}
+    for old in _old_names(entity, parts):
         names[old] = world.free_name(old, taken)
         taken |= {names[old]}
     return names
 
 
 def _let_out(
-    world: WorldText, thing: Thing, element: Element, old: str, names: dict[str, str], there: Transform
+    world: WorldText, entity: Entity, element: Element, old: str, names: dict[str, str], there: Transform
 ) -> list[Replacement]:
     """The edits in a part of a group that is taken out of it."""
-    assert thing.model is not None, "groups are models"
-    model = next(model for model in thing.model.models if model.name == old)
+    assert entity.model is not None, "groups are models"
+    model = next(model for model in entity.model.models if model.name == old)
     edits: list[Replacement] = []
     if names[old] != old:
         edits += (
@@ -195,7 +195,7 @@ def _let_out(
             if element.tag == "include"
             else writing.set_attribute(element, "name", names[old])
         )
-    if thing.static and not model.static:
+    if entity.static and not model.static:
         after = ("uri", "name", "pose")
         child = element.first("static")
         edits += (
@@ -212,9 +212,9 @@ def _let_out(
     if base not in ("", MODEL):
         raise EditError(phrase("'{name}' is relative to '{frame}', and cannot leave the group", name=old, frame=base))
     if model.placement_frame:
-        there = compose(there, world.frames.inside(thing.name).inside(old).pose(model.placement_frame))
+        there = compose(there, world.frames.inside(entity.name).inside(old).pose(model.placement_frame))
     local = writing.pose_from(there)
-    part = Thing(old, "model", element, Include("") if element.tag == "include" else model, model, None, there, None)
+    part = Entity(old, "model", element, Include("") if element.tag == "include" else model, model, None, there, None)
     edits += place(part, local)
     if pose is not None:
         edits += [edit for name in ("relative_to", "frame") for edit in writing.without_attribute(pose, name)]

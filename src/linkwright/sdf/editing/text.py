@@ -34,7 +34,7 @@ _NUMBERED = re.compile(r"(.+?)_\d+").fullmatch
 
 
 @dataclass(frozen=True, slots=True)
-class Thing:
+class Entity:
     """A model or light of a world.
 
     Attributes:
@@ -84,12 +84,12 @@ class WorldText:
         text: SDF.
         path: the file of the text; its folder is the base of relative addresses.
         finder: finds the included models.
-        reserved: names that new things cannot have, because the running world uses them.
+        reserved: names that new entities cannot have, because the running world uses them.
 
     Attributes:
         world: the world, with includes resolved and all poses of the last saved state.
         frames: the frames of that.
-        things: its models and lights by their names, in the order of the text.
+        entities: its models and lights by their names, in the order of the text.
 
     Raises:
         LinkwrightError: it is not XML.
@@ -117,7 +117,7 @@ class WorldText:
         self.frames = Frames(self.world)
         self._models = {model.name: model for model in reversed(self.world.models)}
         self._lights = {light.name: light for light in reversed(self.world.lights)}
-        self.things: Mapping[str, Thing] = dict(self._things())
+        self.entities: Mapping[str, Entity] = dict(self._entities())
 
     @property
     def errors(self) -> list[Diagnostic]:
@@ -126,25 +126,25 @@ class WorldText:
 
     @cached_property
     def taken(self) -> frozenset[str]:
-        """The names that a new thing cannot have."""
+        """The names that a new entity cannot have."""
         world, state = self.world, self.world.states[-1] if self.world.states else None
         gone = state.deletions.names if state is not None else ()
         beside: tuple[Actor | Frame | Joint, ...] = (*world.actors, *world.frames, *world.joints)
-        return self.reserved.union({WORLD, *self.things, *(each.name for each in beside), *gone})
+        return self.reserved.union({WORLD, *self.entities, *(each.name for each in beside), *gone})
 
     @property
     def state(self) -> Element | None:
         """The last saved state, whose poses come before those of the models."""
         return self.world.states[-1].element if self.world.states else None
 
-    def thing(self, name: str) -> Thing:
+    def entity(self, name: str) -> Entity:
         """Find a model or light by its name.
 
         Raises:
             EditError: there is none.
         """
         try:
-            return self.things[name]
+            return self.entities[name]
         except KeyError:
             raise EditError(phrase("there is no '{name}' in the world's file", name=name)) from None
 
@@ -183,7 +183,7 @@ class WorldText:
         return f"{stem}_{number}"
 
     def check_name(self, name: str) -> None:
-        """Check the name of a new thing.
+        """Check the name of a new entity.
 
         Raises:
             EditError: it is empty, taken, or means something else in SDF.
@@ -195,7 +195,7 @@ class WorldText:
         if name in self.taken:
             raise EditError(phrase("there is something named '{name}' already", name=name))
 
-    def _things(self) -> Iterator[tuple[str, Thing]]:
+    def _entities(self) -> Iterator[tuple[str, Entity]]:
         seen: set[str] = set()
         state = self._written.states[-1] if self._written.states else None
         gone = frozenset(state.deletions.names) if state is not None else frozenset[str]()
@@ -203,30 +203,30 @@ class WorldText:
         if state is not None:
             found += [*state.insertions.models, *state.insertions.lights]
         for each in sorted(found, key=lambda each: 0 if each.element is None else each.element.offset):
-            thing = self._thing(each)
-            if thing is not None and thing.name not in seen and thing.name not in gone:
-                seen.add(thing.name)
-                yield thing.name, thing
+            entity = self._entity(each)
+            if entity is not None and entity.name not in seen and entity.name not in gone:
+                seen.add(entity.name)
+                yield entity.name, entity
 
-    def _thing(self, written: Model | Light | Include) -> Thing | None:
+    def _entity(self, written: Model | Light | Include) -> Entity | None:
         element = written.element
         assert element is not None, "it was read from the text"
-        found = self._included.things.get(id(element)) if isinstance(written, Include) else written
+        found = self._included.entities.get(id(element)) if isinstance(written, Include) else written
         if isinstance(found, Model):
             model = self._models.get(found.name, found)
             shape = simple_shape(written) if isinstance(written, Model) else None
-            return Thing(found.name, "model", element, written, model, None, self._place(model), shape)
+            return Entity(found.name, "model", element, written, model, None, self._place(model), shape)
         if isinstance(found, Light):
             light = self._lights.get(found.name, found)
-            return Thing(found.name, "light", element, written, None, light, self._place(light), None)
+            return Entity(found.name, "light", element, written, None, light, self._place(light), None)
         if isinstance(written, Include) and found is None:
             name = written.name or written.uri.strip().rstrip("/").rpartition("/")[2]
             pose = written.pose or AT_ORIGIN
-            return Thing(name, "model", element, written, None, None, transform_of(pose.pose), None)
+            return Entity(name, "model", element, written, None, None, transform_of(pose.pose), None)
         return None  # an actor
 
-    def _place(self, thing: Model | Light) -> Transform:
+    def _place(self, entity: Model | Light) -> Transform:
         try:
-            return self.frames.pose(thing.name) if isinstance(thing, Model) else self.frames.placed(thing.pose)
+            return self.frames.pose(entity.name) if isinstance(entity, Model) else self.frames.placed(entity.pose)
         except FrameError:
-            return transform_of(thing.pose.pose)  # the check of frames reports the error
+            return transform_of(entity.pose.pose)  # the check of frames reports the error

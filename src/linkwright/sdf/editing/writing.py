@@ -79,11 +79,11 @@ def set_numbers(element: Element, numbers: Sequence[float]) -> list[Replacement]
     return [
         Replacement(start + word.start(), start + word.end(), length(number))
         for word, number in zip(words, numbers, strict=True)
-        if not _says(word[0], number)
+        if not _has_value(word[0], number)
     ]
 
 
-def _says(word: str, number: float) -> bool:
+def _has_value(word: str, number: float) -> bool:
     try:
         return bool(abs(float(word) - number) <= _NO_DIFFERENCE)
     except ValueError:

@@ -118,7 +118,7 @@ class EditedWorld:
     def reserve(self, names: Iterable[str]) -> None:
         """Keep new models and lights from taking these names, unless the world has them itself."""
         world = self.world
-        self.world = WorldText(world.text, world.path, world.finder, frozenset(names) - world.things.keys())
+        self.world = WorldText(world.text, world.path, world.finder, frozenset(names) - world.entities.keys())
 
     def edit(self, change: Callable[[WorldText], WorldText]) -> None:
         """Change the world, in one step of undo.

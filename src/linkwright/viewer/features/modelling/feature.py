@@ -190,7 +190,7 @@ class ModellingFeature(PageFeature):
             with suppress(EditError, LinkwrightError):  # it may be another one, on another machine
                 found = await asyncio.to_thread(EditedWorld.of_file, path.absolute(), packages)
                 if found.world.world.name == told.world.world.name:
-                    await asyncio.to_thread(found.reserve, told.world.things)
+                    await asyncio.to_thread(found.reserve, told.world.entities)
                     return found
         return told
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import (
     Change,
-    Thing,
+    Entity,
     WorldText,
     add_include,
     add_light,
@@ -14,7 +14,7 @@ from linkwright.sdf.editing import (
     copy,
     delete,
     group,
-    pose_of_thing,
+    pose_of_entity,
     ungroup,
 )
 from linkwright.sdf.models import Include
@@ -36,11 +36,11 @@ from linkwright.viewer.protocol.modelling import (
 
 def things_of(world: WorldText) -> list[WorldThing]:
     """The models and lights of a world."""
-    return [_thing(thing) for thing in world.things.values()]
+    return [_thing(thing) for thing in world.entities.values()]
 
 
-def _thing(thing: Thing) -> WorldThing:
-    pose, shape = pose_of_thing(thing), thing.shape
+def _thing(thing: Entity) -> WorldThing:
+    pose, shape = pose_of_entity(thing), thing.shape
     colour = shape.colour if shape is not None else thing.light.diffuse if thing.light is not None else None
     return WorldThing(
         name=thing.name,
