@@ -77,7 +77,7 @@ class _Failing(SimulatedPlugin[_Parameters]):
     def reset(self) -> None:
         self.parameters.reach("reset")
 
-    def go_on(self, before) -> None:
+    def resume(self, before) -> None:
         self.parameters.reach("going on")
 
     def stop(self) -> None:

@@ -266,5 +266,5 @@ async def test_a_magnetometer_feels_the_field_in_its_axes():
 async def test_warnings_and_errors_are_told_one_after_another():
     warning = Diagnostic("SIM100", "odd", severity=Severity.WARNING)
     async with served(GROUND) as (server, _, log):
-        server.tell([warning, Diagnostic("SIM100", "wrong"), warning])
+        server.report([warning, Diagnostic("SIM100", "wrong"), warning])
         assert [(each.level, each.text) for each in log] == [(LogLevel.WARN, "odd"), (LogLevel.ERROR, "wrong")]

@@ -87,7 +87,7 @@ class _Track:
             self._runs[content.what] = _Run(stamp_ns, content)
             return None
         place = None if run.second is None else self._place(run.second)
-        is_clock = content.told_ns is not None
+        is_clock = content.clock_ns is not None
         if place is None or (is_clock and place != len(self.kept) - 1):
             run.second = number
             self._lasting.add(number)
@@ -219,7 +219,7 @@ class History:
         self._tracks: dict[str, _Track] = {}
         self._oldest: list[tuple[int, str, _Track]] = []
         self._largest: _Track | None = None
-        self._told_ns = 0
+        self._clock_ns = 0
         self._changes = 0
         self._shrinker = Shrinker(self._replace)
 
@@ -236,14 +236,14 @@ class History:
             track = self._tracks.get(topic)
             if track is None:
                 track = self._tracks[topic] = _Track(topic)
-            if content is not None and content.told_ns is not None:
-                content = self._as_time_passes(content, content.told_ns)
+            if content is not None and content.clock_ns is not None:
+                content = self._as_time_passes(content, content.clock_ns)
             more = None if content is None else track.repeat(self._newest_ns, self.count, data, content)
             if more is not None:
                 self.size += more
                 return
             track.append(self._newest_ns, self.count, data)
-            if content is None or content.told_ns is None:
+            if content is None or content.clock_ns is None:
                 self._changes += 1
             self._queue(track)
             if self._largest is None or track.size > self._largest.size:
@@ -259,11 +259,11 @@ class History:
         """Stop packing; the messages are kept as they are."""
         self._shrinker.close()
 
-    def _as_time_passes(self, content: Content, told_ns: int) -> Content:
+    def _as_time_passes(self, content: Content, clock_ns: int) -> Content:
         """Return the content of a clock, which repeats while no other message arrives and time is not reset."""
-        if told_ns < self._told_ns:
+        if clock_ns < self._clock_ns:
             self._changes += 1
-        self._told_ns = told_ns
+        self._clock_ns = clock_ns
         return content._replace(state=b"%d" % self._changes)
 
     def _make_room(self) -> bool:

@@ -118,23 +118,23 @@ class Playback:
         self.playing = True
         self._ticked_ns = self._steady_ns()
         self._set_alarm()
-        self._tell()
+        self._notify()
 
     def pause(self) -> None:
         """Pause."""
         if self.playing:
             self._stop()
-            self._tell()
+            self._notify()
 
     def set_speed(self, speed: float) -> None:
         """Set the speed, within `SLOWEST` and `FASTEST`."""
         self.speed = min(FASTEST, max(SLOWEST, speed))
-        self._tell()
+        self._notify()
 
     def set_loop(self, loop: bool) -> None:
         """Set whether to start again at the end."""
         self.loop = loop
-        self._tell()
+        self._notify()
 
     def seek(self, stamp_ns: int) -> None:
         """Jump to another time once the loop is free; of several pending seeks, only the newest counts.
@@ -166,7 +166,7 @@ class Playback:
                 self._next = next(self._stream, None) if self._next is None else self._next
                 if self._next is not None:
                     self._show_until(self._next[1])
-                    self._tell()
+                    self._notify()
         except LinkwrightError as error:
             self._fail(error)
 
@@ -179,7 +179,7 @@ class Playback:
                 self._show_until(following[1])
         if following is not None and self._aim() < following[1]:
             self.seek(following[1])
-        self._tell()
+        self._notify()
 
     def take_over(self, stamp_ns: int) -> None:
         """Continue from a time whose state listeners have already."""
@@ -248,7 +248,7 @@ class Playback:
         for message in state:
             self._output.publish(*message)
         self._ticked_ns = self._steady_ns()
-        self._tell()
+        self._notify()
 
     def _open_stream(self) -> None:
         """Continue after the last published message."""
@@ -308,9 +308,9 @@ class Playback:
     def _fail(self, error: LinkwrightError) -> None:
         self._stop()
         self._failed(error)
-        self._tell()
+        self._notify()
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         for each in self.changed:
             each()
 

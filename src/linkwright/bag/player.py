@@ -211,7 +211,7 @@ class Player:
         assert self._next is not None
         topic, stamp_ns, data = self._next
         if self._clock is not None and (self._options.clock_before_all or topic in self._options.clock_topics):
-            self._tell_time(stamp_ns)
+            self._publish_time(stamp_ns)
         self._publishers[topic].publish(data)
         self.message_count += 1
         self._next = next(self._stream, None)
@@ -270,9 +270,9 @@ class Player:
             return None
         publisher: Publisher[Any] = self._node.create_publisher(get_message("rosgraph_msgs/msg/Clock"), "/clock", 10)
         if options.clock_hz:
-            self._node.create_timer(1.0 / options.clock_hz, lambda: self._tell_time(self.now_ns()))
+            self._node.create_timer(1.0 / options.clock_hz, lambda: self._publish_time(self.now_ns()))
         return publisher
 
-    def _tell_time(self, stamp_ns: int) -> None:
+    def _publish_time(self, stamp_ns: int) -> None:
         if self._clock is not None:
             self._clock.publish(self._clock.msg_type(clock=Time.from_nanoseconds(stamp_ns)))

@@ -326,10 +326,10 @@ def _ignore_profiles_of_files(storage: Any) -> None:
 
     Otherwise recordings from before rosbag2 kept profiles in files, and some converted ones, are read without messages.
     """
-    told = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
+    listed = {(connection.topic, connection.msgtype): connection for connection in storage.connections}
     for file in storage.storages:
         for number, each in enumerate(file.connections):
-            known = told.get((each.topic, each.msgtype), each)
+            known = listed.get((each.topic, each.msgtype), each)
             file.connections[number] = each._replace(ext=known.ext, digest=known.digest)
 
 

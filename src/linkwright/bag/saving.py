@@ -58,10 +58,10 @@ def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
     found, now = None, None
     for name, stamp_ns, data in messages:
         if name == CLOCK_TOPIC:
-            told = _told_ns(data)
-            if now is not None and told < now:
+            stamp = _clock_ns(data)
+            if now is not None and stamp < now:
                 found = stamp_ns
-            now = told
+            now = stamp
     return found
 
 
@@ -70,17 +70,17 @@ def in_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
 
     Messages before the first one of ``/clock`` get its time; without ``/clock``, all stay as they are.
     """
-    now = next((_told_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
+    now = next((_clock_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
     if now is None:
         return list(messages)
     found = []
     for name, _, data in messages:
         if name == CLOCK_TOPIC:
-            now = _told_ns(data)
+            now = _clock_ns(data)
         found.append((name, now, data))
     return found
 
 
-def _told_ns(data: bytes) -> int:
+def _clock_ns(data: bytes) -> int:
     clock = deserialize(data, get_message("rosgraph_msgs/msg/Clock")).clock
     return int(clock.sec) * 1_000_000_000 + int(clock.nanosec)

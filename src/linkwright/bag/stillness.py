@@ -30,13 +30,13 @@ class Content(NamedTuple):
         what: its subject: the frames of transforms, since many nodes publish on their topic; else empty.
         state: the serialized values without stamps, and of transforms without poses.
         poses: the numbers of the poses, float64: positions in m and quaternions.
-        told_ns: the simulated time in a message of a clock; None for any other message.
+        clock_ns: the simulated time in a message of a clock; None for any other message.
     """
 
     what: str
     state: bytes
     poses: bytes = b""
-    told_ns: int | None = None
+    clock_ns: int | None = None
 
     def is_repeated_by(self, newer: Content) -> bool:
         """Return whether a newer message has the same content; poses may differ by a nanometre."""
@@ -65,7 +65,7 @@ def content_of(type_name: str, data: bytes) -> Content | None:
 
 def clock_between(earlier: bytes, later: bytes, share: float) -> bytes:
     """A message of a clock between two others, whose times passed evenly: after a share of the way, 0 to 1."""
-    (first, last) = (content.told_ns or 0 for content in map(_content_of_clock, (earlier, later)) if content)
+    (first, last) = (content.clock_ns or 0 for content in map(_content_of_clock, (earlier, later)) if content)
     return earlier[:_CAPSULE] + _TOLD.pack(*divmod(first + round(share * (last - first)), _SECOND))
 
 
@@ -73,7 +73,7 @@ def _content_of_clock(data: bytes) -> Content | None:
     if len(data) < _CAPSULE + _TOLD.size or data[1] != _LITTLE:
         return None
     seconds, nanoseconds = _TOLD.unpack_from(data, _CAPSULE)
-    return Content("", b"", told_ns=seconds * _SECOND + nanoseconds)
+    return Content("", b"", clock_ns=seconds * _SECOND + nanoseconds)
 
 
 @cache

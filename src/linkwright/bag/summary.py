@@ -34,7 +34,7 @@ def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, in
         topics: the topics with their types and message counts.
     """
     start, end = span_ns
-    told = [
+    lines = [
         f"Topic: {topic.name} | Type: {topic.type_name} | Count: {topic.count} | "
         f"Serialization Format: {topic.serialization_format}"
         for topic in topics
@@ -47,7 +47,7 @@ def layout(files: Sequence[str], size: int, storage: str, span_ns: tuple[int, in
         ("Start:", _moment(start)),
         ("End:", _moment(end)),
         ("Messages:", str(sum(topic.count for topic in topics))),
-        ("Topic information:", "\n".join(told)),
+        ("Topic information:", "\n".join(lines)),
     ]
     blank = " " * 19
     return "\n" + "".join(f"{name:19}{text.replace(chr(10), chr(10) + blank)}".rstrip() + "\n" for name, text in rows)

@@ -41,11 +41,11 @@ def verdict_on(path: Path, error: Exception) -> Verdict:
             head = file.read(_HEAD)
     except OSError:
         head = None
-    said = foreign(str(error).strip().rstrip(".") or type(error).__name__)
+    reason = foreign(str(error).strip().rstrip(".") or type(error).__name__)
     if head is not None and (found := _by_its_beginning(path, head)) is not None:
         is_mcap = head.startswith(_MCAP)  # the library knows what is wrong with an MCAP file
-        return found._replace(note=phrase("the reader says: {words}", words=said)) if is_mcap else found
-    return Verdict(said, None)
+        return found._replace(note=phrase("the reader says: {words}", words=reason)) if is_mcap else found
+    return Verdict(reason, None)
 
 
 def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:

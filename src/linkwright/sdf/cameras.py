@@ -15,7 +15,7 @@ from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, made, v
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class ImageFormat:
     """Size in pixels and format of a camera's image, as ``R8G8B8``."""
 
     width: int = 320
@@ -80,7 +80,7 @@ class Camera:
     name: str = ""
     pose: RawPose = AT_ORIGIN
     horizontal_fov: float = 1.047
-    image: Picture = Picture()
+    image: ImageFormat = ImageFormat()
     clip: Clip = Clip()
     noise: Noise = NO_NOISE
     distortion: Distortion | None = None
@@ -125,13 +125,13 @@ CAMERA = ElementRule(
         POSE,
         value("horizontal_fov", NUMBER, "the horizontal field of view", "rad", default="1.047"),
         made(
-            Picture,
+            ImageFormat,
             "image",
             "its images",
             value("width", INTEGER, "pixels in a row", default="320"),
             value("height", INTEGER, "rows", default="240"),
             value("format", TEXT, "the format of a pixel, such as R8G8B8 or L8", default="R8G8B8"),
-            default=Picture(),
+            default=ImageFormat(),
         ),
         made(Clip, "clip", "the distances that it sees", *_CLIP_PARTS, default=Clip()),
         noise_rule(),

@@ -36,11 +36,11 @@ def alike(one: Any, other: Any) -> bool:
 def _same_elements(one: Element | None, other: Element | None) -> bool:
     if one is None or other is None:
         return one is other
-    return _said(one) == _said(other)
+    return _content(one) == _content(other)
 
 
-def _said(element: Element) -> tuple[object, ...]:
-    inside = tuple(map(_said, element.elements()))
+def _content(element: Element) -> tuple[object, ...]:
+    inside = tuple(map(_content, element.elements()))
     return element.tag, element.attributes, element.text().split(), inside
 
 

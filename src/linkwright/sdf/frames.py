@@ -61,9 +61,9 @@ class Frames:
         self.owner = owner
         named: dict[str, Framed] = {}
         links = owner.links if isinstance(owner, Model) else ()
-        things: tuple[Framed, ...] = (*links, *owner.frames, *owner.joints, *owner.models)
-        for thing in things:
-            named.setdefault(thing.name, thing)
+        parts: tuple[Framed, ...] = (*links, *owner.frames, *owner.joints, *owner.models)
+        for part in parts:
+            named.setdefault(part.name, part)
         self.named = named
         self._roots = frozenset({"", MODEL} if isinstance(owner, Model) else {"", WORLD})
         self._inner: dict[str, Frames] = {}

@@ -82,14 +82,14 @@ class _Converter:
         if self._lumps:
             bodies = self._with_mass(bodies)
         parts = [part for body in bodies for part in body.parts]
-        told = {part.link.name: self._extensions.link(part.link) for part in parts}
+        extensions = {part.link.name: self._extensions.link(part.link) for part in parts}
         joints = [self._joint(body, body.joint) for body in bodies if body.joint is not None]
-        self._tell_of_usual_mass(bodies)
+        self._report_default_mass(bodies)
         known = self._extensions.model(self._robot)
         return replace(
             known,
             name=self._robot.name,
-            links=(*(self._link(body, told) for body in bodies), *known.links),
+            links=(*(self._link(body, extensions) for body in bodies), *known.links),
             joints=(*(joint for joint in joints if joint is not None), *known.joints),
             frames=(*(frame for body in bodies for frame in self._frames(body)), *known.frames),
             element=self._robot.element,
@@ -114,10 +114,10 @@ class _Converter:
                 kept.append(body)
             else:
                 left_out.add(body.name)
-                self._tell_without_mass(body)
+                self._report_massless(body)
         return kept
 
-    def _tell_without_mass(self, body: Body) -> None:
+    def _report_massless(self, body: Body) -> None:
         element = body.parts[0].link.element
         if element is None:
             return
@@ -126,7 +126,7 @@ class _Converter:
             message = phrase("link '{name}' has no mass, so it is left out with all that hangs from it", name=body.name)
         self._report.warning("SDF170", message, element, hint=phrase("give it an <inertial> with a mass"))
 
-    def _tell_of_usual_mass(self, bodies: list[Body]) -> None:
+    def _report_default_mass(self, bodies: list[Body]) -> None:
         """Warn of a movable body without mass: SDF gives it 1 kg, where gz leaves it out."""
         if self._lumps:
             return
@@ -141,23 +141,25 @@ class _Converter:
             hint = phrase("give each an <inertial>: `linkwright inertia` works them out")
             self._report.warning("SDF172", message, element, hint=hint)
 
-    def _link(self, body: Body, told: dict[str, LinkExtension]) -> Link:
-        said = told[body.name].link
+    def _link(self, body: Body, extensions: dict[str, LinkExtension]) -> Link:
+        extension = extensions[body.name].link
         link = body.parts[0].link
-        others = [told[part.link.name].link for part in body.parts[1:]]
+        others = [extensions[part.link.name].link for part in body.parts[1:]]
         poses = [part.pose for part in body.parts[1:]]
         sensors = [_moved(sensor, pose) for other, pose in zip(others, poses, strict=True) for sensor in other.sensors]
         lights = [_moved(light, pose) for other, pose in zip(others, poses, strict=True) for light in other.lights]
         return replace(
-            said,
+            extension,
             pose=self._pose(body),
             inertial=_inertial(body.parts) or self._weightless(link),
-            visuals=(*_visuals(body, told), *said.visuals),
-            collisions=(*_collisions(body, told), *said.collisions),
-            sensors=(*said.sensors, *sensors),
-            lights=(*said.lights, *lights),
-            gravity=said.gravity and all(other.gravity for other in others),
-            self_collide=next((link.self_collide for link in (said, *others) if link.self_collide is not None), None),
+            visuals=(*_visuals(body, extensions), *extension.visuals),
+            collisions=(*_collisions(body, extensions), *extension.collisions),
+            sensors=(*extension.sensors, *sensors),
+            lights=(*extension.lights, *lights),
+            gravity=extension.gravity and all(other.gravity for other in others),
+            self_collide=next(
+                (link.self_collide for link in (extension, *others) if link.self_collide is not None), None
+            ),
             element=link.element,
         )
 
@@ -181,17 +183,17 @@ class _Converter:
                 hint = phrase("two prismatic joints and a continuous one move in a plane")
                 self._report.warning("SDF171", message, joint.element, hint=hint)
             return None
-        said = self._extensions.joint(joint, self._robot)
+        extension = self._extensions.joint(joint, self._robot)
         kind, axis = _TYPES[joint.type], None
         if kind != "fixed":
-            axis = _axis(joint, said.axis or Axis())
+            axis = _axis(joint, extension.axis or Axis())
         elif self._lumps and self._extensions.becomes_revolute(joint):
             kind, axis = "revolute", Axis(limit=AxisLimit(0.0, 0.0))
         if joint.name in self._robot.links and joint.element is not None:
             message = phrase("joint '{name}' has the name of a link, which SDF does not allow", name=joint.name)
             self._report.warning("SDF171", message, joint.element, "name", hint=phrase("give each a name of its own"))
         return replace(
-            said,
+            extension,
             type=kind,
             parent=body.parent,
             child=body.name,
@@ -205,14 +207,14 @@ class _Converter:
         for part in body.parts[1:]:
             joint, link = part.joint, part.link
             assert joint is not None
-            self._tell_of_sensors(joint)
+            self._report_sensors(joint)
             if joint.name in self._robot.links:
                 yield Frame(link.name, joint.parent, RawPose(joint.origin), link.element)
             else:
                 yield Frame(joint.name, joint.parent, RawPose(joint.origin), joint.element)
                 yield Frame(link.name, joint.name, element=link.element)
 
-    def _tell_of_sensors(self, joint: urdf.Joint) -> None:
+    def _report_sensors(self, joint: urdf.Joint) -> None:
         for sensor in self._extensions.joint(joint, self._robot).sensors:
             if sensor.element is not None:
                 message = phrase(
@@ -231,11 +233,11 @@ def _from_parent(body: Body) -> RawPose:
     return RawPose(body.pose, MODEL if body.parent == WORLD else body.parent)
 
 
-def _moved(thing: _Posed, pose: Transform) -> _Posed:
+def _moved(posed: _Posed, pose: Transform) -> _Posed:
     """A part of a link, moved to the frame of its body."""
-    if thing.pose.relative_to:
-        return thing
-    return replace(thing, pose=RawPose(pose_of(compose(pose, transform_of(thing.pose.pose)))))
+    if posed.pose.relative_to:
+        return posed
+    return replace(posed, pose=RawPose(pose_of(compose(pose, transform_of(posed.pose.pose)))))
 
 
 def _placed(pose: Pose, part: Part) -> RawPose:
@@ -255,25 +257,25 @@ def _inertial(parts: Sequence[Part]) -> Inertial | None:
     return Inertial(first.mass, RawPose(first.origin), tensor, element=first.element)
 
 
-def _visuals(body: Body, told: Mapping[str, LinkExtension]) -> Iterator[Visual]:
+def _visuals(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator[Visual]:
     shown = ((part, visual) for part in body.parts for visual in part.link.visuals)
     for count, (part, visual) in enumerate(shown):
-        said = told[part.link.name].visual
+        extension = extensions[part.link.name].visual
         yield replace(
-            said,
+            extension,
             name=_name_of_shape(body, part, visual.name, "visual", count),
             geometry=_shape(visual.geometry),
             pose=_placed(visual.origin, part),
-            material=_material(visual.material, said.material),
+            material=_material(visual.material, extension.material),
             element=visual.element,
         )
 
 
-def _collisions(body: Body, told: Mapping[str, LinkExtension]) -> Iterator[Collision]:
+def _collisions(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator[Collision]:
     solid = ((part, collision) for part in body.parts for collision in part.link.collisions)
     for count, (part, collision) in enumerate(solid):
         yield replace(
-            told[part.link.name].collision,
+            extensions[part.link.name].collision,
             name=_name_of_shape(body, part, collision.name, "collision", count),
             geometry=_shape(collision.geometry),
             pose=_placed(collision.origin, part),
@@ -295,13 +297,17 @@ def _shape(geometry: urdf.Geometry) -> shapes.Shape:
     return geometry
 
 
-def _material(written: urdf.Material | None, said: Material | None) -> Material | None:
+def _material(written: urdf.Material | None, extension: Material | None) -> Material | None:
     """The material of a visual, with the colours and scripts of ``<gazebo>``, which come first."""
-    if said is not None and said.script is not None and (look := gazebo_look(said.script.name)) is not None:
-        return painted(said, look)
-    if written is None or (said is not None and (said.diffuse or said.ambient)):
-        return said
-    found = said or Material()
+    if (
+        extension is not None
+        and extension.script is not None
+        and (look := gazebo_look(extension.script.name)) is not None
+    ):
+        return painted(extension, look)
+    if written is None or (extension is not None and (extension.diffuse or extension.ambient)):
+        return extension
+    found = extension or Material()
     if written.rgba is not None:
         red, green, blue, alpha = written.rgba
         color = (_brighter(red), _brighter(green), _brighter(blue), alpha)
@@ -315,9 +321,9 @@ def _brighter(part: float) -> float:
     return min(max(part * _BRIGHTER, 0.0), 1.0)
 
 
-def _axis(joint: urdf.Joint, said: Axis) -> Axis:
+def _axis(joint: urdf.Joint, extension: Axis) -> Axis:
     """The axis of a joint, with the spring of ``<gazebo>``."""
-    limit, dynamics, mimic = AxisLimit(), said.dynamics, None
+    limit, dynamics, mimic = AxisLimit(), extension.dynamics, None
     if joint.limit is not None:
         limit = AxisLimit(effort=joint.limit.effort, velocity=joint.limit.velocity)
         if joint.type != "continuous":
@@ -327,4 +333,4 @@ def _axis(joint: urdf.Joint, said: Axis) -> Axis:
         dynamics = replace(dynamics, damping=joint.dynamics.damping, friction=joint.dynamics.friction)
     if joint.mimic is not None:
         mimic = AxisMimic(joint.mimic.joint, multiplier=joint.mimic.multiplier, offset=joint.mimic.offset)
-    return replace(said, xyz=joint.axis, limit=limit, dynamics=dynamics, mimic=mimic)
+    return replace(extension, xyz=joint.axis, limit=limit, dynamics=dynamics, mimic=mimic)

@@ -115,8 +115,8 @@ class Extensions:
         for gazebo in self._by_name.get(link.name, ()):
             whole.children += _blobs(gazebo)
             for shape, words, rule in ((visual, _VISUAL_WORDS, VISUAL), (collision, _COLLISION_WORDS, COLLISION)):
-                for said in gazebo.elements(shape.tag):
-                    _take(shape, said)
+                for element in gazebo.elements(shape.tag):
+                    _merge(shape, element)
                 self._add_words(shape, gazebo, words, rule)
             self._add_words(whole, gazebo, _LINK_WORDS, LINK)
         return LinkExtension(
@@ -147,14 +147,14 @@ class Extensions:
         return self._is_true(joint, _MADE_REVOLUTE) and not self.stays_fixed(joint)
 
     def _is_true(self, joint: urdf.Joint, word: str) -> bool:
-        said = (element for gazebo in self._by_name.get(joint.name, ()) for element in gazebo.elements(word))
-        return any(_said(element).casefold() in _TRUE for element in said)
+        elements = (element for gazebo in self._by_name.get(joint.name, ()) for element in gazebo.elements(word))
+        return any(_text_of(element).casefold() in _TRUE for element in elements)
 
     def _add_words(self, whole: Element, gazebo: Element, words: _Words, rule: ElementRule) -> None:
         """Add the elements for words to an element; the last of several equal words counts."""
         for word in gazebo.elements():
             for path in words.get(word.tag, ()):
-                place, text = _rule_at(rule, path), _said(word)
+                place, text = _rule_at(rule, path), _text_of(word)
                 assert place.text is not None
                 if place.text.type is TRUTH:
                     text = _truth(word.tag, text)
@@ -180,9 +180,9 @@ def _blobs(gazebo: Element) -> Iterator[Element]:
     return (element for element in gazebo.elements() if element.tag not in _WORDS and element.tag not in _SHAPES)
 
 
-def _take(shape: Element, said: Element) -> None:
+def _merge(shape: Element, given: Element) -> None:
     """Merge the settings of all shapes of a link; a later surface or material replaces an earlier one."""
-    for element in said.elements():
+    for element in given.elements():
         if element.tag in ("surface", "material"):
             shape.children = [other for other in shape.elements() if other.tag != element.tag]
         shape.children.append(_copied(element))
@@ -211,17 +211,17 @@ def _with_text(word: Element, text: str) -> Element:
     return element
 
 
-def _said(word: Element) -> str:
+def _text_of(word: Element) -> str:
     """The value of a word, in its attribute ``value`` or inside."""
     return word.attributes.get("value", word.text()).strip()
 
 
 def _truth(word: str, text: str) -> str:
     """Return a boolean as ``true`` or ``false``; any other text becomes the word's default value."""
-    said = text.casefold()
+    folded = text.casefold()
     if word in _NEGATED:
-        return "true" if said in _FALSE else "false"
-    return "true" if said in _TRUE else "false"
+        return "true" if folded in _FALSE else "false"
+    return "true" if folded in _TRUE else "false"
 
 
 def _rule_at(rule: ElementRule, path: str) -> ElementRule:

@@ -126,8 +126,8 @@ def _axis(xyz: tuple[Vector3, str] | None, use_parent_model_frame: bool, **parts
     return Axis(direction, expressed_in or (MODEL if use_parent_model_frame else ""), **parts)
 
 
-def _direction(said: Vector3, expressed_in: str) -> tuple[Vector3, str]:
-    return said, expressed_in
+def _direction(axis: Vector3, expressed_in: str) -> tuple[Vector3, str]:
+    return axis, expressed_in
 
 
 def _limit(lower: float, upper: float, effort: float, velocity: float, **rest: float) -> AxisLimit:
@@ -170,7 +170,7 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
                 "the direction, a vector of length 1",
                 default="0 0 1",
                 usual=True,
-                field="said",
+                field="axis",
                 get=lambda axis: axis.xyz,
             ),
             make=_direction,

@@ -45,17 +45,17 @@ def merged(whole: Model, part: Model) -> Model:
     )
 
 
-def _moved(thing: _Posed, frame: str) -> _Posed:
+def _moved(posed: _Posed, frame: str) -> _Posed:
     """A part whose pose is relative to its model's frame, now relative to the frame that replaces it."""
-    pose = thing.pose
-    is_attached = isinstance(thing, Frame) and thing.attached_to != ""
+    pose = posed.pose
+    is_attached = isinstance(posed, Frame) and posed.attached_to != ""
     if pose.relative_to == MODEL or (pose.relative_to == "" and not is_attached):
-        return replace(thing, pose=RawPose(pose.pose, frame))
-    return thing
+        return replace(posed, pose=RawPose(pose.pose, frame))
+    return posed
 
 
-def _attached(thing: Frame, frame: str) -> Frame:
-    return replace(thing, attached_to=frame) if thing.attached_to in ("", MODEL) else thing
+def _attached(attached: Frame, frame: str) -> Frame:
+    return replace(attached, attached_to=frame) if attached.attached_to in ("", MODEL) else attached
 
 
 def _connected(joint: Joint, frame: str) -> Joint:

@@ -61,9 +61,9 @@ _NOISE_PARTS = (
 )
 
 
-def _noise_of(type: str, said_type: str, **parts: float) -> Noise:  # noqa: A002 - the attribute's name
+def _noise_of(type: str, old_type: str, **parts: float) -> Noise:  # noqa: A002 - the attribute's name
     """Read noise; older files name its type by an element, and mere numbers are Gaussian noise, as in Gazebo."""
-    return Noise(said_type or type or ("gaussian" if any(parts.values()) else "none"), **parts)
+    return Noise(old_type or type or ("gaussian" if any(parts.values()) else "none"), **parts)
 
 
 def noise_rule(tag: str = "noise", meaning: str = "noise on the value", target: str = "") -> ElementRule:
@@ -73,7 +73,7 @@ def noise_rule(tag: str = "noise", meaning: str = "noise on the value", target: 
         meaning,
         (AttributeRule("type", TEXT, "none, gaussian or gaussian_quantized", default=""),),
         (
-            value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="said_type", get=unwritten),
+            value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="old_type", get=unwritten),
             *_NOISE_PARTS,
         ),
         make=_noise_of,

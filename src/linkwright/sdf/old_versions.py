@@ -46,7 +46,7 @@ def upgraded(element: Element, rule: ElementRule) -> Element:
     for name, value in element.attributes.items():
         tag = _RENAMED.get((rule.tag, name), name)
         if name not in rule.attribute_rules and tag in rule.child_rules and tag not in present:
-            new.children.append(_said(element, rule.child_rules[tag], value))
+            new.children.append(_value_element(element, rule.child_rules[tag], value))
     if rule.text is not None and not element.text().strip():
         value = next((element.attributes[name] for name in _VALUES if name in element.attributes), "")
         new.children.append(Text(value))
@@ -65,11 +65,11 @@ def _child(child: Element, rule: ElementRule) -> Node:
     return new
 
 
-def _said(element: Element, rule: ElementRule, value: str) -> Element:
+def _value_element(element: Element, rule: ElementRule, value: str) -> Element:
     """The element for an attribute of another one."""
     new = Element(rule.tag, None, element.source, element.offset, element.origin)
     if "name" in rule.child_rules:
-        new.children.append(_said(element, rule.child_rules["name"], value))
+        new.children.append(_value_element(element, rule.child_rules["name"], value))
     else:
         new.children.append(Text(value))
     return new

@@ -36,18 +36,18 @@ class RawPose:
 AT_ORIGIN = RawPose()
 
 
-def _written(**said: Any) -> dict[str, Any]:
-    return said
+def _written(**values: Any) -> dict[str, Any]:
+    return values
 
 
-def _read(said: dict[str, Any], element: Element, owner: Element, report: Report) -> Any:
+def _read(values: dict[str, Any], element: Element, owner: Element, report: Report) -> Any:
     try:
-        pose = pose_of(said["numbers"], said["degrees"], said["rotation_format"])
+        pose = pose_of(values["numbers"], values["degrees"], values["rotation_format"])
     except ValueError:
         assert POSE.text is not None
         report.malformed(element, POSE, POSE.text, owner)
         return UNREADABLE
-    return RawPose(pose, said["relative_to"] or said["frame"])
+    return RawPose(pose, values["relative_to"] or values["frame"])
 
 
 POSE = ElementRule(

@@ -97,18 +97,18 @@ def _pose(pose: RawPose | None, element: Element | None, frames: Frames) -> Iter
     yield _unknown(written, attribute, pose.relative_to, frames)
 
 
-def _circles(things: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
+def _circles(parts: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
     """The cycles of frames whose poses are relative to each other, each at its first frame."""
-    told: set[frozenset[str]] = set()
-    for thing in things:
-        circle = _circle_of(thing.name, frames)
-        if not circle or frozenset(circle) in told:
+    reported: set[frozenset[str]] = set()
+    for part in parts:
+        circle = _circle_of(part.name, frames)
+        if not circle or frozenset(circle) in reported:
             continue
-        told.add(frozenset(circle))
+        reported.add(frozenset(circle))
         message = phrase("frames are relative to each other in a cycle: {value}", value=" -> ".join(circle))
         named = frames.named.get(circle[0])
         yield _error(
-            "SDF142", message, (named or thing).element, hint=phrase("make one of them independent of the others")
+            "SDF142", message, (named or part).element, hint=phrase("make one of them independent of the others")
         )
 
 
@@ -141,7 +141,7 @@ def _unknown(element: Element | None, attribute: str, name: str, frames: Frames)
 
 
 def _linkable(frames: Frames) -> list[str]:
-    return [name for name, thing in frames.named.items() if not isinstance(thing, Joint)]
+    return [name for name, part in frames.named.items() if not isinstance(part, Joint)]
 
 
 def _described(element: Element | None) -> Phrase:

@@ -55,16 +55,16 @@ class SdfReport(Findings):
             message = phrase("<{tag}> of {owner} is empty", tag=rule.tag, owner=described(owner))
             self.error("SDF120", message, element, hint=phrase("write <{tag}>...</{tag}>", tag=rule.tag))
             return
-        told = {"tag": rule.tag, "name": attribute.name}
+        values = {"tag": rule.tag, "name": attribute.name}
         unknown = [name for name in element.attributes if name not in rule.attribute_rules]
         like = nearest(attribute.name, unknown, limit=1)
         hint = phrase('add {name}="..."', name=attribute.name)
         if like:
             hint = phrase("did you mean '{name}' instead of '{like}'?", name=attribute.name, like=like[0])
         if owner is element or owner.attributes.get("name") is None:
-            message = phrase("<{tag}> has no '{name}'", **told)
+            message = phrase("<{tag}> has no '{name}'", **values)
         else:
-            message = phrase("<{tag}> of {owner} has no '{name}'", **told, owner=described(owner))
+            message = phrase("<{tag}> of {owner} has no '{name}'", **values, owner=described(owner))
         self.error("SDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
@@ -205,36 +205,36 @@ def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner:
 
 def _explained(place: Phrase, text: str, attribute: AttributeRule, element: Element) -> tuple[Phrase, Phrase | None]:
     """The message and hint for a text that is not a value of the attribute's type."""
-    told = {"place": place, "value": text}
+    values = {"place": place, "value": text}
     if attribute.type in COUNTS:
-        return _miscounted(told, text, COUNTS[attribute.type], element)
+        return _miscounted(values, text, COUNTS[attribute.type], element)
     if attribute.type is TRUTH:
-        return phrase("{place} is neither true nor false: '{value}'", **told), phrase("write true or false")
+        return phrase("{place} is neither true nor false: '{value}'", **values), phrase("write true or false")
     if attribute.type in (NUMBER, TIME):
-        return phrase("{place} is not a number: '{value}'", **told), number_hint(text)
+        return phrase("{place} is not a number: '{value}'", **values), number_hint(text)
     if attribute.type is INTEGER:
-        return phrase("{place} is not an integer: '{value}'", **told), None
+        return phrase("{place} is not an integer: '{value}'", **values), None
     words = attribute.type.name.split(" | ")
     hint = did_you_mean(text, words) or phrase("it is one of {names}", names=joined(words))
-    return phrase("{place} is not known: '{value}'", **told), hint
+    return phrase("{place} is not known: '{value}'", **values), hint
 
 
-def _miscounted(told: dict[str, Any], text: str, count: int, element: Element) -> tuple[Phrase, Phrase | None]:
+def _miscounted(values: dict[str, Any], text: str, count: int, element: Element) -> tuple[Phrase, Phrase | None]:
     is_quaternion = element.attributes.get("rotation_format") == "quat_xyzw"
     count += is_quaternion
     try:
         found = len(numbers(text))
     except ValueError:
-        return phrase("{place} is not {count} numbers: '{value}'", **told, count=count), vector_hint(text, count)
+        return phrase("{place} is not {count} numbers: '{value}'", **values, count=count), vector_hint(text, count)
     if found == count and not all(map(isfinite, numbers(text))):
-        return phrase("{place} is not {count} numbers: '{value}'", **told, count=count), None
+        return phrase("{place} is not {count} numbers: '{value}'", **values, count=count), None
     if found == count:
-        return phrase("the quaternion in {place} has no length: '{value}'", **told), phrase("no rotation is 0 0 0 1")
+        return phrase("the quaternion in {place} has no length: '{value}'", **values), phrase("no rotation is 0 0 0 1")
     message = counted(
         "{place} has 1 number where {wanted} are expected: '{value}'",
         "{place} has {count} numbers where {wanted} are expected: '{value}'",
         found,
-        **told,
+        **values,
         wanted=count,
     )
     return message, phrase('add rotation_format="quat_xyzw"') if found == 7 else None

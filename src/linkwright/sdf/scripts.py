@@ -199,11 +199,11 @@ def read_script(text: str) -> dict[str, Look]:
         elif head in "{}":
             depth = max(0, depth + (1 if head == "{" else -1))
         elif current and depth:
-            found[current] = _told(found[current], head, words)
+            found[current] = _with_word(found[current], head, words)
     return found
 
 
-def _told(look: Look, word: str, values: list[str]) -> Look:
+def _with_word(look: Look, word: str, values: list[str]) -> Look:
     if word == "texture" and values and not look.image:
         return look._replace(image=values[0].strip('"'))
     if word in _COLORS and getattr(look, word) is None:
@@ -212,8 +212,8 @@ def _told(look: Look, word: str, values: list[str]) -> Look:
             # The last of four or five numbers of a specular colour is how narrow it shines.
             alpha = numbers[3] if len(numbers) == 4 and (word != "specular" or len(values) == 5) else 1.0
             if len(numbers) >= 3:
-                said: dict[str, Any] = {word: (numbers[0], numbers[1], numbers[2], alpha)}
-                return look._replace(**said)
+                colours: dict[str, Any] = {word: (numbers[0], numbers[1], numbers[2], alpha)}
+                return look._replace(**colours)
     return look
 
 

@@ -258,8 +258,8 @@ def _imu_of(orientation_reference_frame: _Reference, **parts: Any) -> Imu:
     )
 
 
-def _custom(said: Vector3, parent_frame: str) -> tuple[Vector3, str]:
-    return said, parent_frame
+def _custom(angles: Vector3, parent_frame: str) -> tuple[Vector3, str]:
+    return angles, parent_frame
 
 
 _IMU = made(
@@ -279,7 +279,7 @@ _IMU = made(
             "roll, pitch, yaw of the custom frame",
             (AttributeRule("parent_frame", TEXT, "the frame that it is against", default="", get=itemgetter(1)),),
             text=AttributeRule(
-                "text", VECTOR3, "roll, pitch, yaw", "rad", default="0 0 0", field="said", get=itemgetter(0)
+                "text", VECTOR3, "roll, pitch, yaw", "rad", default="0 0 0", field="angles", get=itemgetter(0)
             ),
             make=_custom,
             default=((0.0, 0.0, 0.0), ""),

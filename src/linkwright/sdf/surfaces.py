@@ -130,8 +130,8 @@ def _friction(mu: float, mu2: float, fdir1: tuple[Vector3, str] | None, slip1: f
     return Friction(mu, mu2, direction, slip1, slip2, expressed_in)
 
 
-def _direction(said: Vector3, old: str, new: str) -> tuple[Vector3, str]:
-    return said, new or old
+def _direction(direction: Vector3, old: str, new: str) -> tuple[Vector3, str]:
+    return direction, new or old
 
 
 def _surface(friction: _FrictionGroup | None, contact: _ContactGroup | None, bounce: _Bounce | None) -> Surface:
@@ -199,7 +199,7 @@ _ODE_FRICTION = made(
             VECTOR3,
             "the direction",
             default="0 0 0",
-            field="said",
+            field="direction",
             get=lambda friction: friction.direction,
         ),
         make=_direction,

@@ -45,9 +45,9 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
             raise
         hint = phrase('a world begins with <sdf version="...">; was the file saved?')
         raise LinkwrightError(found.but(hint=hint)) from None
-    told = (*warnings, *more)
+    findings = (*warnings, *more)
     return document, tuple(
-        diagnostic.but(severity=Severity.INFO) if diagnostic.code == _NOT_XML else diagnostic for diagnostic in told
+        diagnostic.but(severity=Severity.INFO) if diagnostic.code == _NOT_XML else diagnostic for diagnostic in findings
     )
 
 

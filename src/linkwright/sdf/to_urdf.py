@@ -65,11 +65,11 @@ def robot_from_sdf(sdf: Sdf, root: Element) -> Reading:
     try:
         return Reading(_Converter(_only_model(sdf, root)).robot(), ())
     except _NoRobotError as error:
-        said = phrase("this SDF cannot be a robot description: {reason}", reason=error.reason)
-        report.reject("SDF180", said, error.element or root, hint=error.hint)
+        message = phrase("this SDF cannot be a robot description: {reason}", reason=error.reason)
+        report.reject("SDF180", message, error.element or root, hint=error.hint)
     except FrameError as error:
-        said = phrase("this SDF cannot be a robot description: there is no frame '{name}'", name=error.name)
-        report.reject("SDF180", said, root)
+        message = phrase("this SDF cannot be a robot description: there is no frame '{name}'", name=error.name)
+        report.reject("SDF180", message, root)
     return Reading(None, report.in_order())
 
 
@@ -122,16 +122,16 @@ class _Converter:
                 reason = phrase("{joint} hangs from the world", joint=_named(joint))
                 raise _NoRobotError(reason, joint.element, phrase("set a fixed base where the robot is spawned"))
             if child in above:
-                told = {"link": child, "one": above[child].name, "other": joint.name}
-                reason = phrase("link '{link}' is the child of two joints, '{one}' and '{other}'", **told)
+                values = {"link": child, "one": above[child].name, "other": joint.name}
+                reason = phrase("link '{link}' is the child of two joints, '{one}' and '{other}'", **values)
                 raise _NoRobotError(reason, joint.element, phrase("URDF knows trees only; leave one of them out"))
             above[child] = joint
         return above
 
     def _check_tree(self, root: str, above: dict[str, Joint]) -> None:
         if root in above:
-            told = {"link": root, "joint": above[root].name}
-            reason = phrase("the canonical link '{link}' is the child of joint '{joint}'", **told)
+            values = {"link": root, "joint": above[root].name}
+            reason = phrase("the canonical link '{link}' is the child of joint '{joint}'", **values)
             hint = phrase("name the link that all others hang from: <model canonical_link='...'>")
             raise _NoRobotError(reason, above[root].element, hint)
         for link in self._model.links:
@@ -144,8 +144,8 @@ class _Converter:
                     raise _NoRobotError(reason, above[name].element)
                 chain[name] = None
             if name != root:
-                told = {"link": name, "root": root}
-                reason = phrase("link '{link}' is joined to nothing above it, as is '{root}'", **told)
+                values = {"link": name, "root": root}
+                reason = phrase("link '{link}' is joined to nothing above it, as is '{root}'", **values)
                 hint = phrase("join them with a fixed joint")
                 raise _NoRobotError(reason, next(link.element for link in self._model.links if link.name == name), hint)
 
@@ -189,11 +189,11 @@ class _Converter:
         )
 
     def _inertial(self, link: Link, in_joint: Transform) -> urdf.Inertial:
-        said = link.inertial or Inertial()
-        tensor = said.inertia
-        origin = pose_of(compose(in_joint, self._frames.in_link(said.pose, link.name)))
+        inertial = link.inertial or Inertial()
+        tensor = inertial.inertia
+        origin = pose_of(compose(in_joint, self._frames.in_link(inertial.pose, link.name)))
         return urdf.Inertial(
-            said.mass,
+            inertial.mass,
             tensor.ixx,
             tensor.ixy,
             tensor.ixz,
@@ -201,7 +201,7 @@ class _Converter:
             tensor.iyz,
             tensor.izz,
             origin,
-            said.element,
+            inertial.element,
         )
 
     def _visual(self, visual: Visual, link: Link, in_joint: Transform) -> urdf.Visual:
@@ -225,16 +225,16 @@ def _named(joint: Joint) -> Phrase:
 
 
 def _limit(axis: Axis) -> urdf.Limit:
-    said = axis.limit
-    lower, upper = max(said.lower, -_UNBOUNDED), min(said.upper, _UNBOUNDED)
-    return urdf.Limit(lower, upper, min(said.effort, _UNBOUNDED), min(said.velocity, _UNBOUNDED))
+    limit = axis.limit
+    lower, upper = max(limit.lower, -_UNBOUNDED), min(limit.upper, _UNBOUNDED)
+    return urdf.Limit(lower, upper, min(limit.effort, _UNBOUNDED), min(limit.velocity, _UNBOUNDED))
 
 
 def _mimic(axis: Axis) -> urdf.Mimic | None:
-    said = axis.mimic
-    if said is None:
+    mimic = axis.mimic
+    if mimic is None:
         return None
-    return urdf.Mimic(said.joint, said.multiplier, said.offset - said.multiplier * said.reference)
+    return urdf.Mimic(mimic.joint, mimic.multiplier, mimic.offset - mimic.multiplier * mimic.reference)
 
 
 def _geometry(part: Visual | Collision) -> urdf.Geometry:
@@ -243,8 +243,8 @@ def _geometry(part: Visual | Collision) -> urdf.Geometry:
         return urdf.Mesh(shape.uri, shape.scale)
     if isinstance(shape, Box | Cylinder | Capsule | Sphere):
         return shape
-    told = {"shape": term(type(shape).__name__.lower()), "name": part.name}
-    reason = phrase("'{name}' has the shape <{shape}>, which URDF has not", **told)
+    values = {"shape": term(type(shape).__name__.lower()), "name": part.name}
+    reason = phrase("'{name}' has the shape <{shape}>, which URDF has not", **values)
     raise _NoRobotError(reason, part.element, phrase("use a box, a cylinder, a sphere or a mesh"))
 
 

@@ -167,12 +167,12 @@ def value(
 
 def values(tag: str, kind: ValueType, meaning: str, *, field: str = "") -> ElementRule:
     """An element with one value that may occur any number of times."""
-    rule = AttributeRule("text", kind, meaning, field="said", get=_only)
+    rule = AttributeRule("text", kind, meaning, field="value", get=_only)
     return ElementRule(tag, meaning, text=rule, many=True, make=_only, field=field or f"{tag}s")
 
 
-def _only(said: Any) -> Any:
-    return said
+def _only(value: Any) -> Any:
+    return value
 
 
 def unwritten(_: Any) -> None:

@@ -61,7 +61,7 @@ class _Key:
     point: Vector3
     turn: Quaternion
     tangent: Vector3
-    turning: Quaternion
+    rotation: Quaternion
 
 
 class _Leg:
@@ -112,7 +112,7 @@ def _between(one: _Key, other: _Key, share: float) -> Vector3:
 
 def _squad(one: _Key, other: _Key, share: float) -> Quaternion:
     outer = _slerp(one.turn, other.turn, share)
-    inner = _slerp(one.turning, other.turning, share)
+    inner = _slerp(one.rotation, other.rotation, share)
     return _slerp(outer, inner, 2.0 * share * (1.0 - share))
 
 

@@ -58,19 +58,19 @@ def save_world(world: World, models: Sequence[WrittenModel]) -> str:
     return "".join((before, *(model.text for model in models), after))
 
 
-def save(thing: Sdf | World | Model) -> str:
+def save(document: Sdf | World | Model) -> str:
     """Worlds and models as SDF text; defaults are left out, numbers are as short as they can be without loss.
 
     The elements inside plugins, and words of SDF without effect here (``<gui>``), are written as they were read.
 
     Args:
-        thing: a world, a model or a whole file; without resolved includes.
+        document: a world, a model or a whole file; without resolved includes.
     """
-    if isinstance(thing, World):
-        thing = Sdf(VERSION, worlds=(thing,))
-    elif isinstance(thing, Model):
-        thing = Sdf(VERSION, models=(thing,))
-    root = _element(thing)
+    if isinstance(document, World):
+        document = Sdf(VERSION, worlds=(document,))
+    elif isinstance(document, Model):
+        document = Sdf(VERSION, models=(document,))
+    root = _element(document)
     _declare(root)
     return write(Document(root))
 

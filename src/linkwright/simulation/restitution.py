@@ -45,8 +45,8 @@ class Stepper:
         self._coefficients: Array = np.empty(0)
         self._thresholds: Array = np.empty(0)
         if model.nuser_geom >= RESTITUTION_DATA:
-            said: Array = np.array(model.geom_user)
-            self._coefficients, self._thresholds = said[:, 0], said[:, 1]
+            values: Array = np.array(model.geom_user)
+            self._coefficients, self._thresholds = values[:, 0], values[:, 1]
         self._bounces = np.count_nonzero(self._coefficients) > 1
         self._recovery = Recovery(model, data)
 
@@ -72,8 +72,8 @@ class Stepper:
         contacts, speeds = self._data.contact, self._data.efc_vel
         geoms, rows = contacts.geom, contacts.efc_address
         share = self._coefficients[geoms].prod(axis=1)
-        said = self._thresholds[geoms].min(axis=1)
-        least = np.where(said < USUAL_SURFACE.bounce_threshold, np.maximum(said, _LEAST), _LEAST)
+        thresholds = self._thresholds[geoms].min(axis=1)
+        least = np.where(thresholds < USUAL_SURFACE.bounce_threshold, np.maximum(thresholds, _LEAST), _LEAST)
         hits = [
             (index, -share[index] * speeds[rows[index]])
             for index in np.flatnonzero((share > 0) & (rows >= 0) & (geoms >= 0).all(axis=1))

@@ -67,7 +67,7 @@ class Simulation:
         self.world = as_saved(world)
         count_links(self.world.models)
         self.finder = finder
-        self._said_step = step
+        self._given_step = step
         self._meshes = MeshLibrary(finder)
         self.scene = Scene(self.world, self._meshes, step)
         self.revision = 0
@@ -92,7 +92,7 @@ class Simulation:
         self._changed = False  # whether the scene is another one than MuJoCo's model
         self._is_reshaped = False  # whether it has other bodies or joints
         self._current = False
-        self._take(*made)
+        self._set_model(*made)
 
     @property
     def seconds(self) -> float:
@@ -135,14 +135,14 @@ class Simulation:
         """
         before, self.world, self.finder = self.world, as_saved(world), finder
         self._meshes.look_in(finder)
-        self.scene.set_physics(self.world, self._said_step or self.scene.step_of(self.world))
+        self.scene.set_physics(self.world, self._given_step or self.scene.step_of(self.world))
         self.step = round(self.scene.step * NANOSECONDS)
         if _outlook(before) != _outlook(self.world):
             self.set_altered()
 
     def beside(self, world: World, finder: ResourceFinder) -> Simulation:
         """A simulation of another world, with the same settings as this one."""
-        return Simulation(world, finder, step=self._said_step)
+        return Simulation(world, finder, step=self._given_step)
 
     def place(self, poses: Mapping[str, Transform]) -> None:
         """Set the initial poses of models, and move them there; their joints stay as they are.
@@ -240,7 +240,7 @@ class Simulation:
     def renew(self) -> None:
         """Compile MuJoCo's model again if the scene has changed."""
         if self._changed:
-            self._take(*compiled(self.scene, (self.model, self.data)))
+            self._set_model(*compiled(self.scene, (self.model, self.data)))
             self._bodies, self._joints = {}, {}
             self._changed = self._is_reshaped = self._current = False
             self.revision += 1
@@ -260,7 +260,7 @@ class Simulation:
             mujoco.mj_comVel(model, data)
             self._current = True
 
-    def _take(self, model: Any, data: Any) -> None:
+    def _set_model(self, model: Any, data: Any) -> None:
         """Set another model of MuJoCo and its state."""
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
@@ -308,8 +308,10 @@ class Simulation:
         try:
             self._stepper.make_steps(count)
         except mujoco.FatalError as error:
-            said = str(error).splitlines()[0]
-            raise LinkwrightError(Diagnostic("SIM121", phrase("MuJoCo gave up: {said}", said=foreign(said)))) from None
+            reason = str(error).splitlines()[0]
+            raise LinkwrightError(
+                Diagnostic("SIM121", phrase("MuJoCo gave up: {said}", said=foreign(reason)))
+            ) from None
         self._current = False
         dot = mujoco.mju_dot  # in half of the time of a comparison; numpy's would warn where it is too much
         if not (dot(positions, positions) < _SURELY and dot(velocities, velocities) < _SURELY) and not self._is_sound():
@@ -338,8 +340,8 @@ class Simulation:
         body = int(np.argmax(forced)) if forced.any() else int(model.dof_bodyid[degree])
         mujoco.mj_resetData(model, data)
         data.qpos[:], data.qvel[:] = before
-        told = {"time": f"{self.seconds:.3f}", "link": model.body(body).name}
-        message = phrase("the simulation became unstable at {time} s, at the link '{link}'", **told)
+        values = {"time": f"{self.seconds:.3f}", "link": model.body(body).name}
+        message = phrase("the simulation became unstable at {time} s, at the link '{link}'", **values)
         hint = phrase("check its mass, its inertia and its overlaps, or make the time step shorter")
         return UnstableError(Diagnostic("SIM120", message, hint=hint))
 

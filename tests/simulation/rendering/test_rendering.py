@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from linkwright.geometry.single import IDENTITY
-from linkwright.sdf.cameras import Camera, Clip, Distortion, Intrinsics, Picture
+from linkwright.sdf.cameras import Camera, Clip, Distortion, ImageFormat, Intrinsics
 from linkwright.simulation.rendering import opengl
 from linkwright.simulation.rendering.choice import WAYS, make_renderer
 from linkwright.simulation.rendering.optics import Optics, distorted, optics_of, undistorted
@@ -18,7 +18,7 @@ from linkwright.simulation.simulation import NANOSECONDS, Simulation
 from tests.simulation.sensors.rooms import block
 from tests.simulation.worlds import model, simulated
 
-CAMERA = Camera(horizontal_fov=pi / 2, image=Picture(160, 120), clip=Clip(0.05, 50.0))
+CAMERA = Camera(horizontal_fov=pi / 2, image=ImageFormat(160, 120), clip=Clip(0.05, 50.0))
 LENS = Distortion(-0.25, 0.12, -0.01, 0.001, -0.002)
 FLOOR = """
 <model name="floor"><static>true</static><link name="link"><visual name="visual">
@@ -226,7 +226,7 @@ def test_things_are_where_a_pinhole_has_them(make, point):
 def test_a_lens_puts_things_where_its_formula_does(make):
     size, x, y, z = 0.2, 2.0, 1.2, 0.8
     simulation = simulated(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
-    optics = optics_of(Camera(horizontal_fov=pi / 2, image=Picture(160, 120), distortion=LENS))
+    optics = optics_of(Camera(horizontal_fov=pi / 2, image=ImageFormat(160, 120), distortion=LENS))
     geoms = make(simulation).render(optics, IDENTITY, Wanted.GEOMS).geoms
     rows, columns = np.nonzero(geoms >= 0)
     (middle,) = optics.project(np.array([[-y, -z, x]]))
@@ -347,7 +347,7 @@ def test_a_distorted_point_comes_back():
 
 
 def test_focal_lengths_may_be_given_instead_of_an_angle():
-    optics = optics_of(Camera(image=Picture(640, 480), intrinsics=Intrinsics(500.0, 520.0, 310.0, 250.0)))
+    optics = optics_of(Camera(image=ImageFormat(640, 480), intrinsics=Intrinsics(500.0, 520.0, 310.0, 250.0)))
     assert (optics.fx, optics.fy, optics.cx, optics.cy) == (500.0, 520.0, 310.0, 250.0)
     assert not optics.is_pinhole
     assert optics_of(CAMERA) == Optics(160, 120, pytest.approx(80.0), pytest.approx(80.0), 80.0, 60.0, 0.05, 50.0)

@@ -80,7 +80,7 @@ def test_noise_of_an_imu_has_its_deviation_and_bias():
     turns = np.array([unit.measure().angular_velocity for _ in range(2000)])
     assert np.std(turns[:, 0]) == pytest.approx(0.2, rel=0.1)
     assert not turns[:, 1:].any()
-    assert list(unit.turning_noise.variances) == pytest.approx([0.04, 0, 0])
+    assert list(unit.angular_velocity_noise.variances) == pytest.approx([0.04, 0, 0])
     assert abs(unit.measure().linear_acceleration[2] - 9.81) == pytest.approx(5.0)
 
 

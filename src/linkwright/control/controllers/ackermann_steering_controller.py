@@ -31,8 +31,14 @@ class AckermannSteeringController(SteeringController[Parameters]):
 
     def drive(self) -> CarDrive:
         """The sizes from the parameters, by their names or the older ones."""
-        said = self.parameters
-        traction = said.traction_track_width or said.of_traction(said.front_wheel_track, said.rear_wheel_track)
-        steering = said.steering_track_width or said.of_traction(said.rear_wheel_track, said.front_wheel_track)
-        radius = said.traction_wheels_radius or said.of_traction(said.front_wheels_radius, said.rear_wheels_radius)
-        return CarDrive(said.wheelbase, traction, steering or traction, radius)
+        parameters = self.parameters
+        traction = parameters.traction_track_width or parameters.of_traction(
+            parameters.front_wheel_track, parameters.rear_wheel_track
+        )
+        steering = parameters.steering_track_width or parameters.of_traction(
+            parameters.rear_wheel_track, parameters.front_wheel_track
+        )
+        radius = parameters.traction_wheels_radius or parameters.of_traction(
+            parameters.front_wheels_radius, parameters.rear_wheels_radius
+        )
+        return CarDrive(parameters.wheelbase, traction, steering or traction, radius)

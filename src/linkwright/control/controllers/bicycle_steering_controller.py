@@ -27,6 +27,8 @@ class BicycleSteeringController(SteeringController[Parameters]):
 
     def drive(self) -> CarDrive:
         """The sizes from the parameters, by their names or the older ones."""
-        said = self.parameters
-        radius = said.traction_wheel_radius or said.of_traction(said.front_wheel_radius, said.rear_wheel_radius)
-        return CarDrive(said.wheelbase, 0.0, 0.0, radius)
+        parameters = self.parameters
+        radius = parameters.traction_wheel_radius or parameters.of_traction(
+            parameters.front_wheel_radius, parameters.rear_wheel_radius
+        )
+        return CarDrive(parameters.wheelbase, 0.0, 0.0, radius)

@@ -113,8 +113,8 @@ class Controller(ABC, Generic[P]):
         self.time_ns = 0
         self.state: LifecycleState = UNCONFIGURED
         self._parameters: ParameterTable[P] = ParameterTable(place.node.graph_node, self.PARAMETERS)
-        for told in self._parameters.unknown():
-            self.node.logger.warning(told)
+        for warning in self._parameters.unknown():
+            self.node.logger.warning(warning)
 
     @classmethod
     def variant(cls, given: Collection[str]) -> type[Controller[Any]]:  # noqa: ARG003 - for those that share a name

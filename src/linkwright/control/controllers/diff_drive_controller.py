@@ -49,16 +49,16 @@ class DiffDriveController(LimitedDrive[Parameters]):
 
     def command_interfaces(self) -> InterfaceNames:
         """The velocities of the left wheels, then of the right ones."""
-        said = self.parameters
-        return [f"{wheel}/{VELOCITY}" for wheel in (*said.left_wheel_names, *said.right_wheel_names)]
+        parameters = self.parameters
+        return [f"{wheel}/{VELOCITY}" for wheel in (*parameters.left_wheel_names, *parameters.right_wheel_names)]
 
     def state_interfaces(self) -> InterfaceNames:
         """Positions or velocities of the wheels; none in open loop."""
-        said = self.parameters
-        if said.open_loop:
+        parameters = self.parameters
+        if parameters.open_loop:
             return ()
-        kind = POSITION if said.position_feedback else VELOCITY
-        return [f"{wheel}/{kind}" for wheel in (*said.left_wheel_names, *said.right_wheel_names)]
+        kind = POSITION if parameters.position_feedback else VELOCITY
+        return [f"{wheel}/{kind}" for wheel in (*parameters.left_wheel_names, *parameters.right_wheel_names)]
 
     def reference_interfaces(self) -> Sequence[str]:
         """The velocity forward in m/s, and around z in rad/s."""
@@ -75,18 +75,18 @@ class DiffDriveController(LimitedDrive[Parameters]):
             ControllerError: wheels or their sizes are missing, or a limit is wrong.
         """
         self._check_wheels()
-        said = self.parameters
+        parameters = self.parameters
         self._drive = DifferentialDrive(
-            said.wheel_separation_multiplier * said.wheel_separation,
-            said.left_wheel_radius_multiplier * said.wheel_radius,
-            said.right_wheel_radius_multiplier * said.wheel_radius,
+            parameters.wheel_separation_multiplier * parameters.wheel_separation,
+            parameters.left_wheel_radius_multiplier * parameters.wheel_radius,
+            parameters.right_wheel_radius_multiplier * parameters.wheel_radius,
         )
         super().on_configure()
         self._odometry.serve(self.node)
 
     def _check_wheels(self) -> None:
-        said = self.parameters
-        left, right = len(said.left_wheel_names), len(said.right_wheel_names)
+        parameters = self.parameters
+        left, right = len(parameters.left_wheel_names), len(parameters.right_wheel_names)
         if left != right:
             raise ControllerError(
                 phrase(
@@ -98,15 +98,15 @@ class DiffDriveController(LimitedDrive[Parameters]):
         if not left:
             raise ControllerError(phrase("Wheel names parameters are empty!"))
         for name in ("wheel_separation", "wheel_radius"):
-            wrong = above(0.0)(name, getattr(said, name))
+            wrong = above(0.0)(name, getattr(parameters, name))
             if wrong is not None:
                 raise ControllerError(wrong)
 
     def update_references(self, time_ns: int, period_s: float) -> None:
         """Copy the command into the references; zero where it is missing or too old."""
         velocity = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
-        forward, turning = self.references
-        forward.value, turning.value = velocity[0], velocity[2]
+        forward, angular = self.references
+        forward.value, angular.value = velocity[0], velocity[2]
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the wheels, and publish the odometry.
@@ -118,16 +118,16 @@ class DiffDriveController(LimitedDrive[Parameters]):
         if not all(map(isfinite, wanted)):
             wanted = [0.0, 0.0]
         pairs = zip(self._limiters, wanted, strict=True)
-        forward, turning = (limiter.follow(each, period_s) for limiter, each in pairs)
-        left, right = self._drive.wheel_speeds(forward, turning)
+        forward, angular = (limiter.follow(each, period_s) for limiter, each in pairs)
+        left, right = self._drive.wheel_speeds(forward, angular)
         count = len(self.commands) // 2
         for number, command in enumerate(self.commands):
             command.value = left if number < count else right
-        if self._said.open_loop:
-            self._odometry.odometer.assume((forward, 0.0, turning), period_s)
+        if self._settings.open_loop:
+            self._odometry.odometer.assume((forward, 0.0, angular), period_s)
         else:
-            self._measure(period_s, moves=forward != 0.0 or turning != 0.0)
-        self._publish(time_ns, forward, 0.0, turning)
+            self._measure(period_s, moves=forward != 0.0 or angular != 0.0)
+        self._publish(time_ns, forward, 0.0, angular)
 
     def _measure(self, period_s: float, *, moves: bool) -> None:
         """Update the odometry by the mean of each side's wheels; unknown states are tolerated until it moves."""
@@ -147,5 +147,5 @@ class DiffDriveController(LimitedDrive[Parameters]):
             )
         speeds = self._speeds([left, right], period_s)
         if speeds is not None:
-            forward, turning = self._drive.motion(*speeds)
-            self._odometry.odometer.measure((forward, 0.0, turning), period_s)
+            forward, angular = self._drive.motion(*speeds)
+            self._odometry.odometer.measure((forward, 0.0, angular), period_s)

@@ -55,8 +55,8 @@ class DriveOdometry:
         frame: the frame that the robot moves in.
         child: the robot's frame.
         of_pose, of_velocity: variances.
-        tells_transforms: whether transforms are published; their topic exists in any case.
-        tells_pose: whether odometry has the pose; else it has velocities only.
+        publishes_transforms: whether transforms are published; their topic exists in any case.
+        publishes_pose: whether odometry has the pose; else it has velocities only.
         window: that of the odometer.
         rate: the rate of publishing in Hz; 0 publishes at each update.
 
@@ -74,8 +74,8 @@ class DriveOdometry:
         child: str,
         of_pose: Variances,
         of_velocity: Variances,
-        tells_transforms: bool,
-        tells_pose: bool = True,
+        publishes_transforms: bool,
+        publishes_pose: bool = True,
         window: int = 1,
         rate: float = 0.0,
     ) -> None:
@@ -83,12 +83,12 @@ class DriveOdometry:
         output = node.publisher("nav_msgs/msg/Odometry", odometry)
         tf_output = transforms_topic(node, transforms)
         self._topics = OdometryTopics(frame, child, output, None, of_pose, of_velocity)
-        self._transforms = OdometryTopics(frame, child, None, tf_output if tells_transforms else None)
-        self._nowhere = None if tells_pose else Odometer().place.transform
+        self._transforms = OdometryTopics(frame, child, None, tf_output if publishes_transforms else None)
+        self._nowhere = None if publishes_pose else Odometer().place.transform
         self._period = round(_NANOSECONDS / rate) if rate > 0.0 else 0
-        self._told: int | None = None
+        self._published_ns: int | None = None
 
-    def tell(self, time_ns: int) -> None:
+    def publish(self, time_ns: int) -> None:
         """Publish if that is due at a time in nanoseconds and a subscriber exists."""
         if not self._is_due(time_ns):
             return
@@ -101,13 +101,13 @@ class DriveOdometry:
         self._transforms.publish(stamp, pose, 0.0, 0.0, 0.0)
 
     def _is_due(self, time_ns: int) -> bool:
-        told, period = self._told, self._period
-        if told is None or not 0 <= time_ns - told < 2 * period:
-            self._told = time_ns
+        last, period = self._published_ns, self._period
+        if last is None or not 0 <= time_ns - last < 2 * period:
+            self._published_ns = time_ns
             return True
-        if time_ns - told < period:
+        if time_ns - last < period:
             return False
-        self._told = told + period
+        self._published_ns = last + period
         return True
 
     def serve(self, node: ControllerNode, name: str = "~/set_odometry") -> None:

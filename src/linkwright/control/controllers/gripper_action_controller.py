@@ -141,7 +141,7 @@ class Gripper(Controller[P]):
         if not self._active:
             goal.abort(self._result())
             return
-        self._take(goal.request)
+        self._accept(goal.request)
         self._goal = goal
         self._moved_ns = self.time_ns
         self._next_feedback_ns = 0
@@ -170,7 +170,7 @@ class Gripper(Controller[P]):
             return None
         return "Received action goal with a position that is not a number"
 
-    def _take(self, request: Any) -> None:
+    def _accept(self, request: Any) -> None:
         """Take over the values of a goal."""
         self._wanted = request.command.position
         self._max_effort = request.command.max_effort
@@ -229,9 +229,9 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
 
     def command_interfaces(self) -> InterfaceNames:
         """The position of the joint, and the interfaces of the greatest effort and velocity that are named."""
-        said = self.parameters
-        more = [each for each in (said.max_effort_interface, said.max_velocity_interface) if each]
-        return [f"{said.joint}/{POSITION}", *more]
+        parameters = self.parameters
+        more = [each for each in (parameters.max_effort_interface, parameters.max_velocity_interface) if each]
+        return [f"{parameters.joint}/{POSITION}", *more]
 
     def _stay(self) -> None:
         super()._stay()
@@ -243,12 +243,14 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
             return f"Received action goal with wrong number of position values, expects 1, got {len(positions)}"
         return None if isfinite(positions[0]) else "Received action goal with a position that is not a number"
 
-    def _take(self, request: Any) -> None:
-        said, command = self.parameters, request.command
+    def _accept(self, request: Any) -> None:
+        parameters, command = self.parameters, request.command
         self._wanted = command.position[0]
-        self._max_effort = command.effort[0] if said.max_effort_interface and len(command.effort) else said.max_effort
-        fast = said.max_velocity_interface and len(command.velocity)
-        self._max_velocity = command.velocity[0] if fast else said.max_velocity
+        self._max_effort = (
+            command.effort[0] if parameters.max_effort_interface and len(command.effort) else parameters.max_effort
+        )
+        fast = parameters.max_velocity_interface and len(command.velocity)
+        self._max_velocity = command.velocity[0] if fast else parameters.max_velocity
 
     def _command(self, error: float, velocity: float, period_s: float) -> float:
         effort = super()._command(error, velocity, period_s)

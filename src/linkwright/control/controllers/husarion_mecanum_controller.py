@@ -56,9 +56,9 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
     PARAMETERS = Parameters
 
     def _wheels(self, kind: str) -> list[str]:
-        said = self.parameters
-        names = said.front_left_wheel_name, said.front_right_wheel_name, said.rear_left_wheel_name
-        return [f"{name}/{kind}" for name in (*names, said.rear_right_wheel_name)]
+        parameters = self.parameters
+        names = parameters.front_left_wheel_name, parameters.front_right_wheel_name, parameters.rear_left_wheel_name
+        return [f"{name}/{kind}" for name in (*names, parameters.rear_right_wheel_name)]
 
     def command_interfaces(self) -> InterfaceNames:
         """The velocities of the wheels: front left, front right, rear left, rear right."""
@@ -72,8 +72,8 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
 
     def limits(self) -> Mapping[str, SpeedLimits]:
         """Those forward, to the left, and around z."""
-        said = self.parameters
-        return {"linear.x": said.linear.x, "linear.y": said.linear.y, "angular.z": said.angular.z}
+        parameters = self.parameters
+        return {"linear.x": parameters.linear.x, "linear.y": parameters.linear.y, "angular.z": parameters.angular.z}
 
     def on_configure(self) -> None:
         """Check the parameters, make the topics.
@@ -82,21 +82,21 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
             ControllerError: wheels or their sizes are missing, or a limit is wrong.
         """
         self._check()
-        said = self.parameters
+        parameters = self.parameters
         self._drive = MecanumDrive(
-            said.wheel_separation_x_multiplier * said.wheel_separation_x / 2.0
-            + said.wheel_separation_y_multiplier * said.wheel_separation_y / 2.0,
-            said.wheel_radius_multiplier * said.wheel_radius,
+            parameters.wheel_separation_x_multiplier * parameters.wheel_separation_x / 2.0
+            + parameters.wheel_separation_y_multiplier * parameters.wheel_separation_y / 2.0,
+            parameters.wheel_radius_multiplier * parameters.wheel_radius,
         )
         super().on_configure()
 
     def _check(self) -> None:
-        said = self.parameters
+        parameters = self.parameters
         corners = ("front_left", "front_right", "rear_left", "rear_right")
         names = [f"{corner}_wheel_name" for corner in corners]
         sizes = ("wheel_separation_x", "wheel_separation_y", "wheel_radius")
-        wrong = [not_empty(name, getattr(said, name)) for name in names]
-        wrong += [above(0.0)(name, getattr(said, name)) for name in sizes]
+        wrong = [not_empty(name, getattr(parameters, name)) for name in names]
+        wrong += [above(0.0)(name, getattr(parameters, name)) for name in sizes]
         for phrase in wrong:
             if phrase is not None:
                 raise ControllerError(phrase)
@@ -105,15 +105,15 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         """Command the wheels, and publish the odometry."""
         wanted = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         pairs = zip(self._limiters, wanted, strict=True)
-        forward, sideways, turning = (limiter.follow(each, period_s) for limiter, each in pairs)
-        speeds = self._drive.wheel_speeds(forward, sideways, turning)
+        forward, sideways, angular = (limiter.follow(each, period_s) for limiter, each in pairs)
+        speeds = self._drive.wheel_speeds(forward, sideways, angular)
         for command, value in zip(self.commands, speeds, strict=True):
             command.value = value
-        if self._said.open_loop:
-            self._odometry.odometer.assume((forward, sideways, turning), period_s)
+        if self._settings.open_loop:
+            self._odometry.odometer.assume((forward, sideways, angular), period_s)
         else:
             self._measure(period_s)
-        self._publish(time_ns, forward, sideways, turning)
+        self._publish(time_ns, forward, sideways, angular)
 
     def _measure(self, period_s: float) -> None:
         values = [state.value for state in self.states]

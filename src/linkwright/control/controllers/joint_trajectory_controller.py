@@ -46,8 +46,12 @@ class JointTrajectoryController(Controller[Parameters]):
 
     def command_interfaces(self) -> InterfaceNames:
         """The command interfaces of the first joint, then of the next."""
-        said = self.parameters
-        return [f"{joint}/{kind}" for joint in said.command_joints or said.joints for kind in said.command_interfaces]
+        parameters = self.parameters
+        return [
+            f"{joint}/{kind}"
+            for joint in parameters.command_joints or parameters.joints
+            for kind in parameters.command_interfaces
+        ]
 
     def state_interfaces(self) -> InterfaceNames:
         """The state interfaces of the first joint, then of the next."""
@@ -57,13 +61,13 @@ class JointTrajectoryController(Controller[Parameters]):
 
     def on_configure(self) -> None:
         """Make topics, service and action."""
-        said = self.parameters
-        self._check(said)
+        parameters = self.parameters
+        self._check(parameters)
         self._active = False
         self._goal: Goal | None = None
-        self._wrapped = [self._turns(joint) for joint in said.joints]
-        self._has_pid = said.has_pid
-        self._tune(said)
+        self._wrapped = [self._turns(joint) for joint in parameters.joints]
+        self._has_pid = parameters.has_pid
+        self._tune(parameters)
         self._period_ns = round(_SECOND / self.update_rate)
         state_type = "control_msgs/msg/JointTrajectoryControllerState"
         self._point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
@@ -84,27 +88,27 @@ class JointTrajectoryController(Controller[Parameters]):
 
     def on_activate(self) -> None:
         """Hold the joints where they are."""
-        said = self.parameters
-        count = len(said.command_interfaces)
+        parameters = self.parameters
+        count = len(parameters.command_interfaces)
         self._command: dict[str, list[CommandInterface]] = {
-            kind: self.commands[number::count] for number, kind in enumerate(said.command_interfaces)
+            kind: self.commands[number::count] for number, kind in enumerate(parameters.command_interfaces)
         }
-        count = len(said.state_interfaces)
+        count = len(parameters.state_interfaces)
         self._state: dict[str, list[StateInterface]] = {
-            kind: self.states[number::count] for number, kind in enumerate(said.state_interfaces)
+            kind: self.states[number::count] for number, kind in enumerate(parameters.state_interfaces)
         }
         self._measured = tuple(self._state.get(kind, []) for kind in (POSITION, VELOCITY, ACCELERATION))
         self._has_velocity_error = VELOCITY in self._state and (VELOCITY in self._command or EFFORT in self._command)
         self._has_acceleration_error = ACCELERATION in self._state and ACCELERATION in self._command
-        self._timeout_s = self._allowed_timeout(said)
-        self._tune(said)
+        self._timeout_s = self._allowed_timeout(parameters)
+        self._tune(parameters)
         self._current = self._read()
-        if said.set_last_command_interface_value_as_state_on_activation:
+        if parameters.set_last_command_interface_value_as_state_on_activation:
             self._current = self._as_commanded(self._current)
         if not all(map(isfinite, self._current.positions)):
             raise ControllerError(phrase("the positions of the joints are not known yet"))
         self._last_command = self._current.copy()
-        self._computed_error: MotionState | None = MotionState([0.0] * len(said.joints))
+        self._computed_error: MotionState | None = MotionState([0.0] * len(parameters.joints))
         self._goal = None
         self._next_state_ns = self._next_feedback_ns = 0
         self._following: Sample | None = None
@@ -123,35 +127,36 @@ class JointTrajectoryController(Controller[Parameters]):
         """Remove the action server."""
         self._action.close()
 
-    def _check(self, said: Parameters) -> None:
-        if said.command_joints and len(said.command_joints) != len(said.joints):
+    def _check(self, parameters: Parameters) -> None:
+        if parameters.command_joints and len(parameters.command_joints) != len(parameters.joints):
             raise ControllerError("'command_joints' parameter has to have the same size as 'joints' parameter.")
-        states = set(said.state_interfaces)
+        states = set(parameters.state_interfaces)
         for kind in (VELOCITY, EFFORT):
-            if said.command_interfaces == (kind,) and not {POSITION, VELOCITY} <= states:
+            if parameters.command_interfaces == (kind,) and not {POSITION, VELOCITY} <= states:
                 raise ControllerError(
                     f"'{kind}' command interface can only be used alone if 'velocity' and 'position' state "
                     "interfaces are present"
                 )
 
-    def _tune(self, said: Parameters) -> None:
-        self._tuned_by = said
-        self._pids = [Pid(said.gains[joint].pid) for joint in said.joints]
-        self._scales = [said.gains[joint].ff_velocity_scale for joint in said.joints]
+    def _tune(self, parameters: Parameters) -> None:
+        self._tuned_by = parameters
+        self._pids = [Pid(parameters.gains[joint].pid) for joint in parameters.joints]
+        self._scales = [parameters.gains[joint].ff_velocity_scale for joint in parameters.joints]
 
     def _turns(self, joint: str) -> bool:
         gains = self.parameters.gains[joint]
         known = self.robot.joints.get(joint) if self.robot is not None else None
         return gains.angle_wraparound or gains.normalize_error or (known is not None and known.type == "continuous")
 
-    def _allowed_timeout(self, said: Parameters) -> float:
-        goal_time = said.constraints.goal_time
-        if 0.0 < said.cmd_timeout <= goal_time:
+    def _allowed_timeout(self, parameters: Parameters) -> float:
+        goal_time = parameters.constraints.goal_time
+        if 0.0 < parameters.cmd_timeout <= goal_time:
             self.node.logger.warning(
-                f"Command timeout must be higher than goal_time tolerance ({said.cmd_timeout:f} vs. {goal_time:f})"
+                "Command timeout must be higher than goal_time tolerance "
+                f"({parameters.cmd_timeout:f} vs. {goal_time:f})"
             )
             return 0.0
-        return said.cmd_timeout
+        return parameters.cmd_timeout
 
     # --- trajectories -------------------------------------------------------------------------------------------------
 
@@ -180,10 +185,10 @@ class JointTrajectoryController(Controller[Parameters]):
             goal.abort(self._result(error_code=self._result.INVALID_GOAL, error_string="Controller is not running."))
             return
         self._give_up("Current goal cancelled due to new incoming action.")
-        said = self.parameters
+        parameters = self.parameters
         self._goal = goal
-        self._tolerances = tolerances_of(goal.request, said.joints, said.tolerances, self.node.logger.error)
-        self._follow(trajectory_of(goal.request.trajectory, said, self._held()))
+        self._tolerances = tolerances_of(goal.request, parameters.joints, parameters.tolerances, self.node.logger.error)
+        self._follow(trajectory_of(goal.request.trajectory, parameters, self._held()))
 
     def _cancel(self, goal: Goal) -> None:
         self.node.logger.info("Got request to cancel goal")
@@ -293,7 +298,7 @@ class JointTrajectoryController(Controller[Parameters]):
         if not strayed and not overdue:
             self._write(following.state, period_s)
         if self._goal is not None:
-            self._tell(self._goal, time_ns, desired)
+            self._publish_feedback(self._goal, time_ns, desired)
         if strayed:
             self._report(tolerances.path)
             self._fail(
@@ -333,12 +338,12 @@ class JointTrajectoryController(Controller[Parameters]):
                     f"State tolerances failed for joint '{joint}': {name} Error: {value:f}, {name} Tolerance: {limit:f}"
                 )
 
-    def _fail(self, code: int, told: str, without_goal: str) -> None:
+    def _fail(self, code: int, message: str, without_goal: str) -> None:
         if self._goal is None:
             self.node.logger.error(without_goal)
         else:
-            self.node.logger.warning(told)
-            self._goal.abort(self._result(error_code=code, error_string=told))
+            self.node.logger.warning(message)
+            self._goal.abort(self._result(error_code=code, error_string=message))
             self._goal = None
         self._hold()
 
@@ -365,10 +370,10 @@ class JointTrajectoryController(Controller[Parameters]):
 
     def _retune(self) -> None:
         """Take over changed gains; the integral stays."""
-        said = self.parameters
-        if said is not self._tuned_by:
+        parameters = self.parameters
+        if parameters is not self._tuned_by:
             integrals = [pid.integral for pid in self._pids]
-            self._tune(said)
+            self._tune(parameters)
             for pid, integral in zip(self._pids, integrals, strict=True):
                 pid.integral = integral
 
@@ -377,7 +382,7 @@ class JointTrajectoryController(Controller[Parameters]):
     def _message(self, state: MotionState) -> Any:
         return self._point(positions=state.positions, velocities=state.velocities, accelerations=state.accelerations)
 
-    def _tell(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
+    def _publish_feedback(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
         if time_ns < self._next_feedback_ns:
             return
         self._next_feedback_ns = time_ns + round(_SECOND / self.parameters.action_monitor_rate)

@@ -69,25 +69,25 @@ class LimitedDrive(Controller[P], Generic[P]):
         Raises:
             ControllerError: a limit or a list of variances is wrong.
         """
-        said, node = self.parameters, self.node
-        self._said = said
+        parameters, node = self.parameters, self.node
+        self._settings = parameters
         self._limiters = [limits.limiter(axis) for axis, limits in self.limits().items()]
-        unstamped = "" if said.use_stamped_vel else "~/cmd_vel_unstamped"
-        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=said.cmd_vel_timeout, unstamped=unstamped)
-        prefix = frame_prefix(node, said.tf_frame_prefix, enabled=said.tf_frame_prefix_enable)
+        unstamped = "" if parameters.use_stamped_vel else "~/cmd_vel_unstamped"
+        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=parameters.cmd_vel_timeout, unstamped=unstamped)
+        prefix = frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
         self._odometry = DriveOdometry(
             node,
             "~/odom",
             "/tf",
-            frame=prefix + said.odom_frame_id,
-            child=prefix + said.base_frame_id,
-            of_pose=variances("pose_covariance_diagonal", said.pose_covariance_diagonal),
-            of_velocity=variances("twist_covariance_diagonal", said.twist_covariance_diagonal),
-            tells_transforms=said.enable_odom_tf,
-            window=said.velocity_rolling_window_size,
-            rate=said.publish_rate,
+            frame=prefix + parameters.odom_frame_id,
+            child=prefix + parameters.base_frame_id,
+            of_pose=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            of_velocity=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            publishes_transforms=parameters.enable_odom_tf,
+            window=parameters.velocity_rolling_window_size,
+            rate=parameters.publish_rate,
         )
-        limited = said.publish_limited_velocity
+        limited = parameters.publish_limited_velocity
         self._limited = node.publisher("geometry_msgs/msg/TwistStamped", "~/cmd_vel_out") if limited else None
 
     def on_activate(self) -> None:
@@ -108,17 +108,17 @@ class LimitedDrive(Controller[P], Generic[P]):
 
     def _speeds(self, values: list[float], period_s: float) -> list[float] | None:
         """Return the speeds of wheels in rad/s from their states, or None if no time has passed."""
-        if not self._said.position_feedback:
+        if not self._settings.position_feedback:
             return values
         before, self._angles = self._angles or values, values
         if period_s <= 0.0:
             return None
         return [(now - then) / period_s for now, then in zip(values, before, strict=True)]
 
-    def _publish(self, time_ns: int, forward: float, sideways: float, turning: float) -> None:
+    def _publish(self, time_ns: int, forward: float, sideways: float, angular: float) -> None:
         """Publish the odometry, and the velocity within the limits, in m/s and rad/s, where that is asked for."""
-        self._odometry.tell(time_ns)
+        self._odometry.publish(time_ns)
         if self._limited is not None and self._limited.is_wanted:
-            twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
+            twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))
             header = Header(Time(*divmod(time_ns, _NANOSECONDS)), "")
             self._limited.publish(get_message("geometry_msgs/msg/TwistStamped")(header, twist))

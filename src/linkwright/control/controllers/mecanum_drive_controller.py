@@ -108,8 +108,8 @@ class MecanumDriveController(Controller[Parameters]):
         Raises:
             ControllerError: wheels or their sizes are missing.
         """
-        said, node = self.parameters, self.node
-        self._said, sizes = said, said.kinematics
+        parameters, node = self.parameters, self.node
+        self._settings, sizes = parameters, parameters.kinematics
         wrong = [
             not_empty(f"{corner}_wheel_command_joint_name", name)
             for corner, name in zip(_CORNERS, self._joints("command"), strict=True)
@@ -122,19 +122,19 @@ class MecanumDriveController(Controller[Parameters]):
             if phrase is not None:
                 raise ControllerError(phrase)
         self._drive = MecanumDrive(sizes.sum_of_robot_center_projection_on_X_Y_axis, sizes.wheels_radius)
-        timeout = said.reference_timeout
+        timeout = parameters.reference_timeout
         self._input = VelocityInput(node, "~/reference", timeout_s=timeout, qos=REFERENCE_QOS)
-        prefix = frame_prefix(node, said.tf_frame_prefix, enabled=said.tf_frame_prefix_enable)
-        self._frame = prefix + said.odom_frame_id
+        prefix = frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
+        self._frame = prefix + parameters.odom_frame_id
         self._odometry = DriveOdometry(
             node,
             "~/odometry",
             "~/tf_odometry",
             frame=self._frame,
-            child=prefix + said.base_frame_id,
-            of_pose=variances("pose_covariance_diagonal", said.pose_covariance_diagonal),
-            of_velocity=variances("twist_covariance_diagonal", said.twist_covariance_diagonal),
-            tells_transforms=said.enable_odom_tf,
+            child=prefix + parameters.base_frame_id,
+            of_pose=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            of_velocity=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            publishes_transforms=parameters.enable_odom_tf,
         )
         self._odometry.serve(node)
         self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
@@ -166,39 +166,39 @@ class MecanumDriveController(Controller[Parameters]):
             self._odometry.odometer.measure(self._of_base(*motion), period_s)
         wanted = [reference.value for reference in self.references]
         self._turn(wanted if all(map(isfinite, wanted)) else [0.0, 0.0, 0.0])
-        self._odometry.tell(time_ns)
+        self._odometry.publish(time_ns)
         if self._state.is_wanted:
-            self._tell_state(time_ns, measured, wanted)
+            self._publish_state(time_ns, measured, wanted)
         for reference in self.references:
             reference.value = nan
 
     def _turn(self, wanted: list[float]) -> None:
-        forward, sideways, turning = wanted
-        offset = self._said.kinematics.base_frame_offset
+        forward, sideways, angular = wanted
+        offset = self._settings.kinematics.base_frame_offset
         along, across = _turned(forward, sideways, offset.theta)
-        speeds = self._drive.wheel_speeds(along + offset.y * turning, across - offset.x * turning, turning)
+        speeds = self._drive.wheel_speeds(along + offset.y * angular, across - offset.x * angular, angular)
         front_left, front_right, rear_left, rear_right = speeds
         for command, value in zip(self.commands, (front_left, front_right, rear_right, rear_left), strict=True):
             command.value = value
 
-    def _of_base(self, forward: float, sideways: float, turning: float) -> tuple[float, float, float]:
+    def _of_base(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float]:
         """The velocity of the robot's frame, from that of the middle of its wheels."""
-        offset = self._said.kinematics.base_frame_offset
-        along, across = _turned(forward - offset.y * turning, sideways + offset.x * turning, -offset.theta)
-        return along, across, turning
+        offset = self._settings.kinematics.base_frame_offset
+        along, across = _turned(forward - offset.y * angular, sideways + offset.x * angular, -offset.theta)
+        return along, across, angular
 
-    def _tell_state(self, time_ns: int, measured: list[float], wanted: list[float]) -> None:
+    def _publish_state(self, time_ns: int, measured: list[float], wanted: list[float]) -> None:
         front_left, front_right, rear_right, rear_left = measured
-        told = get_message("control_msgs/msg/MecanumDriveControllerState")(
+        state = get_message("control_msgs/msg/MecanumDriveControllerState")(
             header=Header(Time(*divmod(time_ns, _NANOSECONDS)), self._frame),
             front_left_wheel_velocity=front_left,
             front_right_wheel_velocity=front_right,
             back_right_wheel_velocity=rear_right,
             back_left_wheel_velocity=rear_left,
         )
-        told.reference_velocity.linear = Vector3(wanted[0], wanted[1], 0.0)
-        told.reference_velocity.angular = Vector3(0.0, 0.0, wanted[2])
-        self._state.publish(told)
+        state.reference_velocity.linear = Vector3(wanted[0], wanted[1], 0.0)
+        state.reference_velocity.angular = Vector3(0.0, 0.0, wanted[2])
+        self._state.publish(state)
 
 
 def _turned(x: float, y: float, angle: float) -> tuple[float, float]:

@@ -140,8 +140,8 @@ class ParameterTable(Generic[P]):
         for name in self._node.undeclared_overrides():
             if not name.startswith(_OF_EVERY_NODE):
                 hint = did_you_mean(name, self._declared)
-                told = phrase("'{name}' is not a parameter of this controller", name=name)
-                yield told if hint is None else joined((told, hint), "; ")
+                message = phrase("'{name}' is not a parameter of this controller", name=name)
+                yield message if hint is None else joined((message, hint), "; ")
 
     def _read(self) -> P:
         values: P = self._table_values(self._table, "")

@@ -80,23 +80,23 @@ class PidController(Controller[Parameters]):
         return self._measured_names()
 
     def _measured_names(self) -> list[str]:
-        said = self.parameters
-        return [f"{each}/{kind}" for kind in said.reference_and_state_interfaces for each in said.measured]
+        parameters = self.parameters
+        return [f"{each}/{kind}" for kind in parameters.reference_and_state_interfaces for each in parameters.measured]
 
     def on_configure(self) -> None:
         """Make the topics and the service."""
-        said = self.parameters
-        if len(said.measured) != len(said.dof_names):
+        parameters = self.parameters
+        if len(parameters.measured) != len(parameters.dof_names):
             raise ControllerError(
-                f"Size of 'dof_names' ({len(said.dof_names)}) and 'reference_and_state_dof_names' "
-                f"({len(said.measured)}) parameters has to be the same!"
+                f"Size of 'dof_names' ({len(parameters.dof_names)}) and 'reference_and_state_dof_names' "
+                f"({len(parameters.measured)}) parameters has to be the same!"
             )
-        self._pids = [Pid(said.gains[dof_name].pid) for dof_name in said.dof_names]
-        self._feeds_forward = said.enable_feedforward
+        self._pids = [Pid(parameters.gains[dof_name].pid) for dof_name in parameters.dof_names]
+        self._feeds_forward = parameters.enable_feedforward
         self._output = self.node.publisher("control_msgs/msg/MultiDOFStateStamped", "~/controller_state")
         self._state_message = get_message("control_msgs/msg/SingleDOFState")
         self.node.subscribe("control_msgs/msg/MultiDOFCommand", "~/reference", self._commanded, _LATEST)
-        if said.use_external_measured_states:
+        if parameters.use_external_measured_states:
             self.node.subscribe(
                 "control_msgs/msg/MultiDOFCommand", "~/measured_state", self._measured_by_topic, _LATEST
             )

@@ -38,9 +38,9 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
 
     @property
     def _factor_name(self) -> str:
-        said = self.parameters
-        assert isinstance(said, ScaledParameters)
-        return said.speed_scaling_interface_name
+        parameters = self.parameters
+        assert isinstance(parameters, ScaledParameters)
+        return parameters.speed_scaling_interface_name
 
     def state_interfaces(self) -> InterfaceNames:
         """Those of the joints, then the factor."""
@@ -66,8 +66,8 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
         self._behind_ns = 0
         super()._follow(trajectory)
 
-    def _tell(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
-        super()._tell(goal, time_ns + self._behind_ns, desired)
+    def _publish_feedback(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
+        super()._publish_feedback(goal, time_ns + self._behind_ns, desired)
 
     def _publish(self, time_ns: int, desired: MotionState) -> None:
         super()._publish(time_ns + self._behind_ns, desired)

@@ -204,15 +204,15 @@ class ImuBroadcaster(SensorBroadcaster[ImuParameters]):
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
         """An IMU message with the covariances of the parameters."""
-        said = self.parameters
+        parameters = self.parameters
         return kind(
             header=header,
             orientation=Quaternion(*values[:4]),
-            orientation_covariance=said.static_covariance_orientation,
+            orientation_covariance=parameters.static_covariance_orientation,
             angular_velocity=_vector(values[4:7]),
-            angular_velocity_covariance=said.static_covariance_angular_velocity,
+            angular_velocity_covariance=parameters.static_covariance_angular_velocity,
             linear_acceleration=_vector(values[7:]),
-            linear_acceleration_covariance=said.static_covariance_linear_acceleration,
+            linear_acceleration_covariance=parameters.static_covariance_linear_acceleration,
         )
 
 
@@ -224,19 +224,19 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
 
     def on_configure(self) -> None:
         """Work out which interfaces exist; axes without one are 0."""
-        said = self.parameters
-        named = _six(said.interface_names)
-        if not said.sensor_name and not any(named):
+        parameters = self.parameters
+        named = _six(parameters.interface_names)
+        if not parameters.sensor_name and not any(named):
             raise ControllerError(
                 "'sensor_name' or at least one 'interface_names.[force|torque].[x|y|z]' parameter has to be specified."
             )
-        if said.sensor_name and any(named):
+        if parameters.sensor_name and any(named):
             raise ControllerError(
                 "both 'sensor_name' and 'interface_names.[force|torque].[x|y|z]' parameters can not be specified "
                 "together."
             )
         kinds = [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
-        self._names = [f"{said.sensor_name}/{kind}" for kind in kinds] if said.sensor_name else named
+        self._names = [f"{parameters.sensor_name}/{kind}" for kind in kinds] if parameters.sensor_name else named
         super().on_configure()
 
     def state_interfaces(self) -> InterfaceNames:
@@ -246,10 +246,12 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
         """A wrench."""
         there = iter(values)
-        said = self.parameters
+        parameters = self.parameters
         six = [
             ((next(there) if name else 0.0) + offset) * factor
-            for name, offset, factor in zip(self._names, _six(said.offset), _six(said.multiplier), strict=True)
+            for name, offset, factor in zip(
+                self._names, _six(parameters.offset), _six(parameters.multiplier), strict=True
+            )
         ]
         wrench = get_message("geometry_msgs/msg/Wrench")
         return kind(header=header, wrench=wrench(force=_vector(six[:3]), torque=_vector(six[3:])))
@@ -267,13 +269,13 @@ class RangeBroadcaster(SensorBroadcaster[RangeParameters]):
 
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
         """A range with the limits of the parameters."""
-        said = self.parameters
+        parameters = self.parameters
         return kind(
             header=header,
-            radiation_type=said.radiation_type,
-            field_of_view=said.field_of_view,
-            min_range=said.min_range,
-            max_range=said.max_range,
+            radiation_type=parameters.radiation_type,
+            field_of_view=parameters.field_of_view,
+            min_range=parameters.min_range,
+            max_range=parameters.max_range,
             range=values[0],
         )
 
@@ -286,24 +288,24 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
 
     def on_configure(self) -> None:
         """Work out which interfaces exist."""
-        said = self.parameters
-        place, turn = said.interface_names.position, said.interface_names.orientation
+        parameters = self.parameters
+        place, turn = parameters.interface_names.position, parameters.interface_names.orientation
         named = [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
-        if not said.pose_name and not all(named):
+        if not parameters.pose_name and not all(named):
             raise ControllerError(
                 "'pose_name' or 'interface_names.[position.[x|y|z]|orientation.[x|y|z|w]]' parameter has to be "
                 "specified."
             )
-        if said.pose_name and any(named):
+        if parameters.pose_name and any(named):
             raise ControllerError(
                 "'pose_name' and 'interface_names.[position.[x|y|z]|orientation.[x|y|z|w]]' parameters can not be "
                 "specified together."
             )
         kinds = [*(f"position.{axis}" for axis in "xyz"), *(f"orientation.{axis}" for axis in "xyzw")]
-        self._names = [f"{said.pose_name}/{kind}" for kind in kinds] if said.pose_name else named
+        self._names = [f"{parameters.pose_name}/{kind}" for kind in kinds] if parameters.pose_name else named
         self._next_transform_ns = 0
-        self._child = said.tf.child_frame_id or said.pose_name
-        self._transforms = self.node.publisher("tf2_msgs/msg/TFMessage", "/tf", 100) if said.tf.enable else None
+        self._child = parameters.tf.child_frame_id or parameters.pose_name
+        self._transforms = self.node.publisher("tf2_msgs/msg/TFMessage", "/tf", 100) if parameters.tf.enable else None
         super().on_configure()
 
     def state_interfaces(self) -> InterfaceNames:

@@ -56,10 +56,10 @@ class SpeedLimits:
         return SpeedLimiter(velocity, acceleration, jerk, reverse_acceleration=reverse, brakes_freely=True)
 
     @staticmethod
-    def _holds(axis: str, kind: str, said: bool | None, greatest: float) -> bool:
-        if said is None:
+    def _holds(axis: str, kind: str, enabled: bool | None, greatest: float) -> bool:
+        if enabled is None:
             return greatest > 0.0
-        if said and isnan(greatest):
+        if enabled and isnan(greatest):
             raise ControllerError(
                 phrase(
                     "Error configuring {axis} speed limiter: Cannot apply {kind} limits if max_{kind} is not specified",
@@ -67,7 +67,7 @@ class SpeedLimits:
                     kind=kind,
                 )
             )
-        return said
+        return enabled
 
 
 NO_LIMITS = SpeedLimits()

@@ -114,15 +114,17 @@ class SteeringController(Controller[P], Generic[P]):
 
     def command_interfaces(self) -> InterfaceNames:
         """Velocities of the driven joints, then positions of the steered ones."""
-        said = self.parameters
-        return [f"{each}/{VELOCITY}" for each in said.traction] + [f"{each}/{POSITION}" for each in said.steering]
+        parameters = self.parameters
+        return [f"{each}/{VELOCITY}" for each in parameters.traction] + [
+            f"{each}/{POSITION}" for each in parameters.steering
+        ]
 
     def state_interfaces(self) -> InterfaceNames:
         """The measured interfaces; positions of the driven joints if the parameters request them."""
-        said = self.parameters
-        kind = POSITION if said.position_feedback else VELOCITY
-        return [f"{traction_state}/{kind}" for traction_state in said.traction_states] + [
-            f"{steering_state}/{POSITION}" for steering_state in said.steering_states
+        parameters = self.parameters
+        kind = POSITION if parameters.position_feedback else VELOCITY
+        return [f"{traction_state}/{kind}" for traction_state in parameters.traction_states] + [
+            f"{steering_state}/{POSITION}" for steering_state in parameters.steering_states
         ]
 
     def reference_interfaces(self) -> Sequence[str]:
@@ -135,38 +137,38 @@ class SteeringController(Controller[P], Generic[P]):
         Raises:
             ControllerError: joints or sizes are missing.
         """
-        said, node = self.parameters, self.node
-        self._said = said
+        parameters, node = self.parameters, self.node
+        self._settings = parameters
         self._check_joints()
         self._drive = self.drive()
         for name, value in (("wheelbase", self._drive.wheelbase), ("traction_wheels_radius", self._drive.radius)):
             wrong = above(0.0)(name, value)
             if wrong is not None:
                 raise ControllerError(wrong)
-        unstamped = "" if said.use_stamped_vel else "~/reference_unstamped"
-        timeout = said.reference_timeout
+        unstamped = "" if parameters.use_stamped_vel else "~/reference_unstamped"
+        timeout = parameters.reference_timeout
         self._input = VelocityInput(node, "~/reference", timeout_s=timeout, unstamped=unstamped, qos=REFERENCE_QOS)
         self._odometry = DriveOdometry(
             node,
             "~/odometry",
             "~/tf_odometry",
-            frame=said.odom_frame_id,
-            child=said.base_frame_id,
-            of_pose=variances("pose_covariance_diagonal", said.pose_covariance_diagonal),
-            of_velocity=variances("twist_covariance_diagonal", said.twist_covariance_diagonal),
-            tells_transforms=said.enable_odom_tf,
-            window=said.velocity_rolling_window_size,
+            frame=parameters.odom_frame_id,
+            child=parameters.base_frame_id,
+            of_pose=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            of_velocity=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            publishes_transforms=parameters.enable_odom_tf,
+            window=parameters.velocity_rolling_window_size,
         )
         self._odometry.serve(node)
         self._state = node.publisher("control_msgs/msg/SteeringControllerStatus", "~/controller_state")
 
     def _check_joints(self) -> None:
-        said, (driving, steering) = self.parameters, self.JOINTS
+        parameters, (driving, steering) = self.parameters, self.JOINTS
         for what, needed, names in (
-            ("traction", driving, said.traction),
-            ("steering", steering, said.steering),
-            ("traction state", driving, said.traction_states),
-            ("steering state", steering, said.steering_states),
+            ("traction", driving, parameters.traction),
+            ("steering", steering, parameters.steering),
+            ("traction state", driving, parameters.traction_states),
+            ("steering state", steering, parameters.steering_states),
         ):
             if len(names) != needed:
                 raise ControllerError(
@@ -197,25 +199,25 @@ class SteeringController(Controller[P], Generic[P]):
     def update_references(self, time_ns: int, period_s: float) -> None:
         """Copy the command into the references, if there is one."""
         velocity = self._input.velocity(time_ns) or (nan, nan, nan)
-        forward, turning = self.references
-        forward.value, turning.value = velocity[0], velocity[2]
+        forward, angular = self.references
+        forward.value, angular.value = velocity[0], velocity[2]
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Command wheels and steering, and publish the odometry."""
-        forward, turning = (reference.value for reference in self.references)
-        told = isfinite(forward) and isfinite(turning)
-        if self._said.open_loop:
-            self._odometry.odometer.assume((forward, 0.0, turning) if told else (0.0, 0.0, 0.0), period_s)
+        forward, angular = (reference.value for reference in self.references)
+        finite = isfinite(forward) and isfinite(angular)
+        if self._settings.open_loop:
+            self._odometry.odometer.assume((forward, 0.0, angular) if finite else (0.0, 0.0, 0.0), period_s)
         else:
             self._measure(period_s)
-        if told:
-            self._move(forward, turning)
+        if finite:
+            self._move(forward, angular)
         else:
             for command in self.commands[: self.JOINTS[0]]:
                 command.value = 0.0
-        self._odometry.tell(time_ns)
+        self._odometry.publish(time_ns)
         if self._state.is_wanted:
-            self._tell_state(time_ns)
+            self._publish_state(time_ns)
         for reference in self.references:
             reference.value = nan
 
@@ -226,19 +228,19 @@ class SteeringController(Controller[P], Generic[P]):
         if not all(map(isfinite, values)) or period_s <= 0.0:
             return
         wheels, angles = values[:driving], values[driving:]
-        if self._said.position_feedback:
+        if self._settings.position_feedback:
             before, self._angles = self._angles or wheels, wheels
             wheels = [(now - then) / period_s for now, then in zip(wheels, before, strict=True)]
         self._steered = self._drive.middle_angle(angles[-1], angles[0]) if steering > 1 else angles[0]
-        forward, turning = self._drive.motion(wheels[-1], wheels[0], self._steered)
-        self._odometry.odometer.measure((forward, 0.0, turning), period_s)
+        forward, angular = self._drive.motion(wheels[-1], wheels[0], self._steered)
+        self._odometry.odometer.measure((forward, 0.0, angular), period_s)
 
-    def _move(self, forward: float, turning: float) -> None:
+    def _move(self, forward: float, angular: float) -> None:
         """Command the wheels, whose velocities follow the measured steering angle, not the commanded one."""
-        said, (driving, steering) = self._said, self.JOINTS
-        angle = self._drive.steering_angle(forward, turning)
-        steered = angle if said.open_loop else self._steered
-        if said.reduce_wheel_speed_until_steering_reached:
+        parameters, (driving, steering) = self._settings, self.JOINTS
+        angle = self._drive.steering_angle(forward, angular)
+        steered = angle if parameters.open_loop else self._steered
+        if parameters.reduce_wheel_speed_until_steering_reached:
             error = abs(steered - angle)
             forward *= cos(min(error, _FAR)) / cos(_NEAR) if error >= _NEAR else 1.0
         left, right = self._drive.wheel_speeds(forward, steered)
@@ -246,17 +248,17 @@ class SteeringController(Controller[P], Generic[P]):
         for command, value in zip(self.commands, ((right, left)[:driving] + angles[::-1]), strict=True):
             command.value = value
 
-    def _tell_state(self, time_ns: int) -> None:
+    def _publish_state(self, time_ns: int) -> None:
         driving = self.JOINTS[0]
         states, commands = [state.value for state in self.states], [command.value for command in self.commands]
         wheels: list[float] = states[:driving]
-        by_position = self._said.position_feedback
-        told = get_message("control_msgs/msg/SteeringControllerStatus")(
-            header=Header(Time(*divmod(time_ns, _NANOSECONDS)), self._said.odom_frame_id),
+        by_position = self._settings.position_feedback
+        status = get_message("control_msgs/msg/SteeringControllerStatus")(
+            header=Header(Time(*divmod(time_ns, _NANOSECONDS)), self._settings.odom_frame_id),
             traction_wheels_position=wheels if by_position else [],
             traction_wheels_velocity=[] if by_position else wheels,
             steer_positions=states[driving:],
             linear_velocity_command=commands[:driving],
             steering_angle_command=commands[driving:],
         )
-        self._state.publish(told)
+        self._state.publish(status)

@@ -86,8 +86,8 @@ class TricycleController(Controller[Parameters]):
 
     def command_interfaces(self) -> InterfaceNames:
         """The velocity of the wheel, and its angle."""
-        said = self.parameters
-        return [f"{said.traction_joint_name}/{VELOCITY}", f"{said.steering_joint_name}/{POSITION}"]
+        parameters = self.parameters
+        return [f"{parameters.traction_joint_name}/{VELOCITY}", f"{parameters.steering_joint_name}/{POSITION}"]
 
     def state_interfaces(self) -> InterfaceNames:
         """The velocity of the wheel, and its angle."""
@@ -99,36 +99,36 @@ class TricycleController(Controller[Parameters]):
         Raises:
             ControllerError: joints or sizes are missing, or limits are none.
         """
-        said, node = self.parameters, self.node
-        self._said = said
+        parameters, node = self.parameters, self.node
+        self._settings = parameters
         for name, check in (
             ("traction_joint_name", not_empty),
             ("steering_joint_name", not_empty),
             ("wheelbase", above(0.0)),
             ("wheel_radius", above(0.0)),
         ):
-            wrong = check(name, getattr(said, name))
+            wrong = check(name, getattr(parameters, name))
             if wrong is not None:
                 raise ControllerError(wrong)
-        self._drive = TricycleDrive(said.wheelbase, said.wheel_radius)
-        self._traction, self._steering = _traction_limiter(said.traction), _steering_limiter(said.steering)
-        timeout = said.cmd_vel_timeout / 1000.0
-        unstamped = "" if said.use_stamped_vel else "~/cmd_vel"
+        self._drive = TricycleDrive(parameters.wheelbase, parameters.wheel_radius)
+        self._traction, self._steering = _traction_limiter(parameters.traction), _steering_limiter(parameters.steering)
+        timeout = parameters.cmd_vel_timeout / 1000.0
+        unstamped = "" if parameters.use_stamped_vel else "~/cmd_vel"
         self._input = VelocityInput(node, "~/cmd_vel", timeout_s=timeout, unstamped=unstamped)
         self._odometry = DriveOdometry(
             node,
             "~/odom",
             "/tf",
-            frame=said.odom_frame_id,
-            child=said.base_frame_id,
-            of_pose=variances("pose_covariance_diagonal", said.pose_covariance_diagonal),
-            of_velocity=variances("twist_covariance_diagonal", said.twist_covariance_diagonal),
-            tells_transforms=said.enable_odom_tf,
-            tells_pose=not said.odom_only_twist,
-            window=said.velocity_rolling_window_size,
+            frame=parameters.odom_frame_id,
+            child=parameters.base_frame_id,
+            of_pose=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            of_velocity=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            publishes_transforms=parameters.enable_odom_tf,
+            publishes_pose=not parameters.odom_only_twist,
+            window=parameters.velocity_rolling_window_size,
         )
         node.service("std_srvs/srv/Empty", "~/reset_odometry", self._reset)
-        asked = said.publish_ackermann_command
+        asked = parameters.publish_ackermann_command
         self._output = node.publisher("ackermann_msgs/msg/AckermannDrive", "~/cmd_ackermann") if asked else None
 
     def on_activate(self) -> None:
@@ -154,21 +154,21 @@ class TricycleController(Controller[Parameters]):
         measured, angle_now = (state.value for state in self.states)
         if isnan(measured) or isnan(angle_now):
             raise ControllerError(phrase("Could not read feedback value"))
-        forward, _, turning = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
-        speed, angle = self._drive.wheel(forward, turning)
+        forward, _, angular = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
+        speed, angle = self._drive.wheel(forward, angular)
         speed = self._traction.follow(speed * _share(abs(angle - angle_now)), period_s)
         angle = self._steering.follow(angle, period_s)
         self.commands[0].value, self.commands[1].value = speed, angle
-        if self._said.open_loop:
-            forward, turning = self._drive.motion(speed, angle)
-            self._odometry.odometer.assume((forward, 0.0, turning), period_s)
+        if self._settings.open_loop:
+            forward, angular = self._drive.motion(speed, angle)
+            self._odometry.odometer.assume((forward, 0.0, angular), period_s)
         else:
-            forward, turning = self._drive.motion(measured, angle_now)
-            self._odometry.odometer.measure((forward, 0.0, turning), period_s)
-        self._odometry.tell(time_ns)
+            forward, angular = self._drive.motion(measured, angle_now)
+            self._odometry.odometer.measure((forward, 0.0, angular), period_s)
+        self._odometry.publish(time_ns)
         if self._output is not None and self._output.is_wanted:
-            told = get_message("ackermann_msgs/msg/AckermannDrive")(steering_angle=angle, speed=speed)
-            self._output.publish(told)
+            command = get_message("ackermann_msgs/msg/AckermannDrive")(steering_angle=angle, speed=speed)
+            self._output.publish(command)
 
     def _reset(self, request: Any, response: Any) -> Any:
         self._odometry.odometer.reset()
@@ -182,18 +182,18 @@ def _share(error: float) -> float:
     return _CREEPING if error > _FAR else cos(error)
 
 
-def _traction_limiter(said: TractionLimits) -> TractionLimiter:
+def _traction_limiter(limits: TractionLimits) -> TractionLimiter:
     part = "traction"
     return TractionLimiter(
-        _magnitudes(part, "velocity", said.min_velocity, said.max_velocity),
-        _magnitudes(part, "acceleration", said.min_acceleration, said.max_acceleration),
-        _magnitudes(part, "deceleration", said.min_deceleration, said.max_deceleration),
-        _magnitudes(part, "jerk", said.min_jerk, said.max_jerk),
+        _magnitudes(part, "velocity", limits.min_velocity, limits.max_velocity),
+        _magnitudes(part, "acceleration", limits.min_acceleration, limits.max_acceleration),
+        _magnitudes(part, "deceleration", limits.min_deceleration, limits.max_deceleration),
+        _magnitudes(part, "jerk", limits.min_jerk, limits.max_jerk),
     )
 
 
-def _steering_limiter(said: SteeringLimits) -> SteeringLimiter:
-    part, least, greatest = "steering", said.min_position, said.max_position
+def _steering_limiter(limits: SteeringLimits) -> SteeringLimiter:
+    part, least, greatest = "steering", limits.min_position, limits.max_position
     position = UNBOUNDED
     if not (isnan(least) and isnan(greatest)):
         position = (-greatest if isnan(least) else least, -least if isnan(greatest) else greatest)
@@ -201,8 +201,8 @@ def _steering_limiter(said: SteeringLimits) -> SteeringLimiter:
         raise _wrong_order(part, "position")
     return SteeringLimiter(
         position,
-        _magnitudes(part, "velocity", said.min_velocity, said.max_velocity),
-        _magnitudes(part, "acceleration", said.min_acceleration, said.max_acceleration),
+        _magnitudes(part, "velocity", limits.min_velocity, limits.max_velocity),
+        _magnitudes(part, "acceleration", limits.min_acceleration, limits.max_acceleration),
     )
 
 

@@ -29,6 +29,8 @@ class TricycleSteeringController(SteeringController[Parameters]):
 
     def drive(self) -> CarDrive:
         """The sizes from the parameters, by their names or the older ones."""
-        said = self.parameters
-        radius = said.traction_wheels_radius or said.of_traction(said.front_wheels_radius, said.rear_wheels_radius)
-        return CarDrive(said.wheelbase, said.traction_track_width or said.wheel_track, 0.0, radius)
+        parameters = self.parameters
+        radius = parameters.traction_wheels_radius or parameters.of_traction(
+            parameters.front_wheels_radius, parameters.rear_wheels_radius
+        )
+        return CarDrive(parameters.wheelbase, parameters.traction_track_width or parameters.wheel_track, 0.0, radius)

@@ -43,9 +43,9 @@ class VelocityInput:
         self.forget()
         commander = node.commander(self._lose)
         if topic != unstamped:
-            node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._take_stamped, qos, commander=commander)
+            node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._receive_stamped, qos, commander=commander)
         if unstamped:
-            node.subscribe("geometry_msgs/msg/Twist", unstamped, self._take, qos, commander=commander)
+            node.subscribe("geometry_msgs/msg/Twist", unstamped, self._receive_twist, qos, commander=commander)
 
     def open(self) -> None:
         """Take commands from now on."""
@@ -81,7 +81,7 @@ class VelocityInput:
         self._command = None
         return None
 
-    def _take_stamped(self, message: Any) -> None:
+    def _receive_stamped(self, message: Any) -> None:
         stamp = message.header.stamp
         nanoseconds = stamp.sec * _NANOSECONDS + stamp.nanosec
         if not nanoseconds and self._is_open:
@@ -92,9 +92,9 @@ class VelocityInput:
                 ),
                 once=True,
             )
-        self._take(message.twist, nanoseconds)
+        self._receive_twist(message.twist, nanoseconds)
 
-    def _take(self, twist: Any, stamp: int = 0) -> None:
+    def _receive_twist(self, twist: Any, stamp: int = 0) -> None:
         if not self._is_open:
             self._logger.warning(phrase("Can't accept new commands. subscriber is inactive"))
             return

@@ -128,23 +128,23 @@ class _Reader:
         name, kind = element.attributes.get("name", ""), element.attributes.get("type", "")
         if not name or kind not in _TYPES:
             message = phrase("<ros2_control> lacks a name, or its type '{kind}' is none", kind=kind)
-            self._tell("CTL111", message, element, phrase("its type is system, actuator or sensor"))
+            self._report("CTL111", message, element, phrase("its type is system, actuator or sensor"))
             return None
         hardware = element.first("hardware")
         plugin = hardware.first("plugin") if hardware is not None else None
         if plugin is None or not plugin.text().strip():
             message = phrase("<ros2_control> '{name}' names no plugin that drives it", name=name)
-            self._tell("CTL112", message, element, phrase("write <hardware><plugin>mock_components/GenericSystem"))
+            self._report("CTL112", message, element, phrase("write <hardware><plugin>mock_components/GenericSystem"))
             return None
         joints = [self._component(each, "joint") for each in element.elements("joint")]
         names = [joint.name for joint in joints]
         for each, written in zip(joints, element.elements("joint"), strict=True):
             if each.name not in self._robot.joints:
                 message = phrase("<ros2_control> has joint '{name}', which the robot does not have", name=each.name)
-                self._tell("CTL113", message, written, did_you_mean(each.name, self._robot.joints))
+                self._report("CTL113", message, written, did_you_mean(each.name, self._robot.joints))
             elif each.mimic is not None and each.mimic.joint not in names:
                 message = phrase("Mimicked joint '{name}' not found", name=each.mimic.joint)
-                self._tell("CTL114", message, written, did_you_mean(each.mimic.joint, names))
+                self._report("CTL114", message, written, did_you_mean(each.mimic.joint, names))
         return HardwareDescription(
             name,
             kind,
@@ -199,10 +199,10 @@ class _Reader:
         except ValueError:
             if text.strip() in (*_TRUE, "false", "False"):
                 return float(text.strip() in _TRUE)
-            self._tell("CTL115", phrase("'{text}' is not a number", text=text), element, None)
+            self._report("CTL115", phrase("'{text}' is not a number", text=text), element, None)
             return nan
 
-    def _tell(self, code: str, message: Phrase, element: Element, hint: Phrase | None) -> None:
+    def _report(self, code: str, message: Phrase, element: Element, hint: Phrase | None) -> None:
         self.findings.append(
             Diagnostic(code, message, element.span(), Severity.WARNING, hint=hint, source=element.source)
         )

@@ -196,14 +196,14 @@ class CommandLimits:
     def __init__(self, limiters: Sequence[JointLimiter], logger: Logger) -> None:
         self._limiters = limiters
         self._logger = logger
-        self._told: set[tuple[str, str]] = set()
+        self._reported: set[tuple[str, str]] = set()
 
     def enforce(self, period_s: float, claimed: Collection[str]) -> None:
         """Limit commands in place; see `JointLimiter.enforce`."""
         for limiter in self._limiters:
             for kind, wanted, given in limiter.enforce(period_s, claimed):
-                if (limiter.name, kind) not in self._told:
-                    self._told.add((limiter.name, kind))
+                if (limiter.name, kind) not in self._reported:
+                    self._reported.add((limiter.name, kind))
                     self._logger.warning(
                         phrase(
                             "joint '{joint}': the commanded {kind} {wanted:g} is outside its limits; {given:g} "

@@ -244,7 +244,7 @@ class Resources:
         return failed
 
     def _fail(self, hardware: Hardware, work: str, error: Exception) -> Hardware:
-        self._logger.error(f"Error while {work} hardware '{hardware.description.name}': {_told(error)}")
+        self._logger.error(f"Error while {work} hardware '{hardware.description.name}': {_reason(error)}")
         failure = _failure_of(hardware.on_error)
         if failure:
             self._logger.error(f"'on_error' of hardware '{hardware.description.name}' failed: {failure}")
@@ -261,11 +261,11 @@ def _failure_of(callback: Callable[..., object], *arguments: object) -> str:
     try:
         callback(*arguments)
     except Exception as error:  # noqa: BLE001 - a fault of hardware must not end the others
-        return _told(error)
+        return _reason(error)
     return ""
 
 
-def _told(error: Exception) -> str:
+def _reason(error: Exception) -> str:
     if isinstance(error, LinkwrightError):
         return str(error.diagnostics[0].message)
     return f"{type(error).__name__}: {error}"

@@ -31,7 +31,7 @@ _NANOSECONDS = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class SavedState:
     """The state of a manager, for another one that takes its place.
 
     Attributes:
@@ -98,8 +98,8 @@ class ControllerManager:
         try:
             made = controller_class(str(kind))
         except LinkwrightError as error:
-            logger.error(f"Loader for controller '{name}' (type '{kind}') not found.")  # noqa: TRY400 - `_tell` says why
-            self._tell(error)
+            logger.error(f"Loader for controller '{name}' (type '{kind}') not found.")  # noqa: TRY400 - `_log_error` says why
+            self._log_error(error)
             logger.info("Available classes:")
             for each in controller_types():
                 logger.info(f"  {each}")
@@ -123,7 +123,7 @@ class ControllerManager:
             place = ControllerPlace(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
             return made.variant(node.undeclared_overrides())(place)
         except LinkwrightError as error:
-            self._tell(error)
+            self._log_error(error)
         except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
             self._logger.error(_traced("Exception thrown during init stage with message", error))  # noqa: TRY400 - `_traced` has its place
         if node is not None:
@@ -161,23 +161,25 @@ class ControllerManager:
         self._logger.info("Controller manager: reloaded controller libraries for 'controller_interface'")
         return True
 
-    def kept(self) -> Kept:
+    def saved_state(self) -> SavedState:
         """The state that `resume` takes."""
         parameters = {name: each.value for name, each in self.node.get_parameters_by_prefix("").items()}
         states = tuple((controller.name, controller.controller.state.label) for controller in self.controllers.values())
-        return Kept(parameters, states)
+        return SavedState(parameters, states)
 
-    def resume(self, kept: Kept) -> None:
+    def resume(self, saved: SavedState) -> None:
         """Load, configure and activate the controllers of another manager, as far as possible."""
         new = [
-            Parameter(name, value=value) for name, value in kept.parameters.items() if not self.node.has_parameter(name)
+            Parameter(name, value=value)
+            for name, value in saved.parameters.items()
+            if not self.node.has_parameter(name)
         ]
         if new:
             self.node.set_parameters(new)
-        for name, state in kept.controllers:
+        for name, state in saved.controllers:
             if self.load(name) and state != UNCONFIGURED.label:
                 self.configure(name)
-        active = [name for name, state in kept.controllers if state == ACTIVE.label and name in self.controllers]
+        active = [name for name, state in saved.controllers if state == ACTIVE.label and name in self.controllers]
         if active:
             self.switch(active, (), BEST_EFFORT)
 
@@ -306,10 +308,10 @@ class ControllerManager:
         if start or stop:
             objection = self.resources.prepare_switch(start, stop)
             if objection:
-                told = "Could not switch controllers since prepare command mode switch was rejected."
+                message = "Could not switch controllers since prepare command mode switch was rejected."
                 self._logger.error(objection)
-                self._logger.error(told)
-                return False, told
+                self._logger.error(message)
+                return False, message
         failed = self._perform(switch, start, stop)
         self.on_change()
         if failed:
@@ -329,7 +331,7 @@ class ControllerManager:
         for name in switch.to_chained:
             self._set_chained(self.controllers[name], chained=True)
         followers = [controller for controller in reversed(self.controllers) if controller in switch.activate]
-        return [told for name in followers if (told := self._activate(self.controllers[name]))]
+        return [failure for name in followers if (failure := self._activate(self.controllers[name]))]
 
     def _set_chained(self, loaded: Loaded, *, chained: bool) -> None:
         if self._call(loaded, "on_set_chained_mode", lambda: loaded.controller.on_set_chained_mode(chained)):
@@ -341,7 +343,7 @@ class ControllerManager:
         wanted = loaded.wanted_commands(
             [command_name for command_name in resources.command_names if resources.is_available(command_name)]
         )
-        told = next(
+        failure = next(
             (
                 f"Resource conflict for controller '{name}'. Command interface '{each}' is already claimed."
                 for each in wanted
@@ -349,24 +351,24 @@ class ControllerManager:
             ),
             "",
         )
-        if not told:
+        if not failure:
             try:
                 controller.commands = resources.commands(wanted)
                 controller.states = resources.states(controller.state_interfaces())
             except KeyError as error:
-                told = f"Can't activate controller '{name}': {error.args[0]}"
-        if told:
-            self._logger.error(told)
+                failure = f"Can't activate controller '{name}': {error.args[0]}"
+        if failure:
+            self._logger.error(failure)
             controller.commands, controller.states = [], []
-            return told
+            return failure
         resources.claims.update(dict.fromkeys(wanted, name))
         loaded.next_ns, loaded.before = 0, [nan] * len(controller.commands)
         if not self._call(loaded, "on_activate", controller.on_activate):
             label = controller.state.label
-            told = f"After activation, controller '{name}' is in state '{label}' (2), expected 'active' (3)."
-            self._logger.error(told)
+            failure = f"After activation, controller '{name}' is in state '{label}' (2), expected 'active' (3)."
+            self._logger.error(failure)
             self._release(loaded)
-            return told
+            return failure
         controller.state = ACTIVE
         resources.set_available(name, available=True)
         self._active = [controller for controller in self.controllers.values() if controller.is_active]
@@ -451,14 +453,14 @@ class ControllerManager:
                 continue
             wrong = loaded.take_back_wrong_commands()
             if wrong:
-                self._tell_of_wrong_command(loaded, wrong)
+                self._log_wrong_command(loaded, wrong)
         if self.limits is not None:
             self.limits.enforce(period_s, self.resources.claims)
         failed = self.resources.write(time_ns, period_s)
         if failed:
             self._stop_those_of(failed)
 
-    def _tell_of_wrong_command(self, loaded: Loaded, name: str) -> None:
+    def _log_wrong_command(self, loaded: Loaded, name: str) -> None:
         loaded.controller.node.logger.error(
             f"The command '{name}' is not a number; the hardware gets the last position, or 0 for velocity and effort",
             throttle_duration_sec=1.0,
@@ -466,10 +468,10 @@ class ControllerManager:
 
     def _fail(self, loaded: Loaded, error: Exception) -> None:
         """Deactivate a controller whose update failed, and those that command it; its joints are stopped."""
-        told = _traced("Caught exception while updating", error)
+        message = _traced("Caught exception while updating", error)
         if isinstance(error, ControllerError):
-            told = error.diagnostics[0].message
-        loaded.controller.node.logger.error(told)
+            message = error.diagnostics[0].message
+        loaded.controller.node.logger.error(message)
         stopped = [loaded, *self._commanding(loaded)]
         names = " ".join(controller.name for controller in stopped)
         self._logger.error(f"Deactivating controllers : [ {names} ] as their update resulted in an error!")
@@ -520,7 +522,7 @@ class ControllerManager:
                     self._set_chained(self.controllers[name], chained=False)
         self.on_change()
 
-    def _tell(self, error: LinkwrightError) -> None:
+    def _log_error(self, error: LinkwrightError) -> None:
         for diagnostic in error.diagnostics:
             hint = f" ({diagnostic.hint})" if diagnostic.hint else ""
             self._logger.error(f"{diagnostic.message}{hint}")

@@ -41,11 +41,11 @@ class ManagerServices:
         answers: dict[str, Callable[[Any, Any], Any]] = {
             "ListControllers": self._list_controllers,
             "ListControllerTypes": _list_types,
-            "LoadController": lambda request, response: _said(response, manager.load(request.name)),
-            "ConfigureController": lambda request, response: _said(response, manager.configure(request.name)),
-            "CleanupController": lambda request, response: _said(response, manager.cleanup(request.name)),
-            "UnloadController": lambda request, response: _said(response, manager.unload(request.name)),
-            "ReloadControllerLibraries": lambda request, response: _said(
+            "LoadController": lambda request, response: _answered(response, manager.load(request.name)),
+            "ConfigureController": lambda request, response: _answered(response, manager.configure(request.name)),
+            "CleanupController": lambda request, response: _answered(response, manager.cleanup(request.name)),
+            "UnloadController": lambda request, response: _answered(response, manager.unload(request.name)),
+            "ReloadControllerLibraries": lambda request, response: _answered(
                 response, manager.reload(force=request.force_kill)
             ),
             "SwitchController": self._switch,
@@ -175,7 +175,7 @@ def _service_name(name: str) -> str:
     return "".join(f"_{each.lower()}" if each.isupper() else each for each in name).lstrip("_")
 
 
-def _said(response: Any, done: bool) -> Any:
+def _answered(response: Any, done: bool) -> Any:
     response.ok = done
     return response
 

@@ -36,10 +36,10 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
     reading = library.read(text)
     if reading.robot is None:
         logger.error("The published robot description file (urdf) seems not to be genuine.")
-        _tell(logger, [diagnostic for diagnostic in reading.diagnostics if diagnostic.severity is Severity.ERROR])
+        _log(logger, [diagnostic for diagnostic in reading.diagnostics if diagnostic.severity is Severity.ERROR])
         return False
     descriptions, findings = hardware_of(reading.robot)
-    _tell(logger, findings)
+    _log(logger, findings)
     manager.robot_description = text
     resources = manager.resources
     resources.load(descriptions, make)
@@ -74,11 +74,11 @@ def _limits_of(robot: Robot, resources: Resources, logger: Logger) -> CommandLim
     return CommandLimits(limiters, logger)
 
 
-def _tell(logger: Logger, findings: list[Diagnostic]) -> None:
+def _log(logger: Logger, findings: list[Diagnostic]) -> None:
     for finding in findings:
         hint = f" ({finding.hint})" if finding.hint else ""
-        told = f"{finding.message}{hint}"
+        message = f"{finding.message}{hint}"
         if finding.severity is Severity.ERROR:
-            logger.error(told)
+            logger.error(message)
         else:
-            logger.warning(told)
+            logger.warning(message)

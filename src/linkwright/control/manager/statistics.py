@@ -42,21 +42,21 @@ class StatisticsTopics:
         timings = dict(self._timings(wanted=wanted))
         if not wanted:
             return
-        told = {f"{name}/{kind}": value for name, timing in timings.items() for kind, value in timing.items()}
+        measured = {f"{name}/{kind}": value for name, timing in timings.items() for kind, value in timing.items()}
         stamp = self._manager.node.get_clock().now().to_msg()
-        if list(told) != self._known:
-            self._known, self._version = list(told), self._version + 1
+        if list(measured) != self._known:
+            self._known, self._version = list(measured), self._version + 1
             names = get_message(f"{_PACKAGE}/StatisticsNames")(names=self._known, names_version=self._version)
             names.header.stamp = stamp
             self._names.publish(names)
         values: Any = get_message(f"{_PACKAGE}/StatisticsValues")(
-            values=list(told.values()), names_version=self._version
+            values=list(measured.values()), names_version=self._version
         )
         values.header.stamp = stamp
         self._values.publish(values)
         if self._full.is_wanted:
             one = get_message(f"{_PACKAGE}/Statistic")
-            full = get_message(f"{_PACKAGE}/Statistics")(statistics=[one(*item) for item in told.items()])
+            full = get_message(f"{_PACKAGE}/Statistics")(statistics=[one(*item) for item in measured.items()])
             full.header.stamp = stamp
             self._full.publish(full)
 

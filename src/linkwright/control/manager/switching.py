@@ -96,11 +96,11 @@ class SwitchPlanner:
             if name in self._controllers:
                 found.append(name)
                 continue
-            told = f"Could not '{action}' controller with name '{name}' because no controller with this name exists"
-            self._logger.warning(told)
+            message = f"Could not '{action}' controller with name '{name}' because no controller with this name exists"
+            self._logger.warning(message)
             if self._strict:
                 self._logger.error("Aborting, no controller is switched! ('STRICT' switch)")
-                raise SwitchRefusedError(told)
+                raise SwitchRefusedError(message)
         return found
 
     def _may(self, name: str, objection: str, action: str = "activate") -> bool:
@@ -203,13 +203,13 @@ class SwitchPlanner:
         for name in tuple(switch.activate):
             loaded = self._controllers[name]
             if loaded.is_active and name not in switch.deactivate:
-                told = f"Could not activate controller '{name}' since it is already active"
+                message = f"Could not activate controller '{name}' since it is already active"
             elif not loaded.is_inactive and name not in switch.deactivate:
-                told = f"Could not activate controller '{name}' since it is not in inactive state"
+                message = f"Could not activate controller '{name}' since it is not in inactive state"
             else:
                 continue
             if self._strict:
-                self._logger.error(told)
-                raise SwitchRefusedError(told)
-            self._logger.warning(told)
+                self._logger.error(message)
+                raise SwitchRefusedError(message)
+            self._logger.warning(message)
             switch.activate.remove(name)

@@ -45,8 +45,8 @@ class Odometer:
         last = self._last
         last.append(velocity)
         count = len(last)
-        forward, sideways, turning = map(sum, zip(*last, strict=True))
-        self.velocity = forward / count, sideways / count, turning / count
+        forward, sideways, angular = map(sum, zip(*last, strict=True))
+        self.velocity = forward / count, sideways / count, angular / count
 
     def assume(self, velocity: Velocity, seconds: float) -> None:
         """Integrate a commanded velocity, which is reported without smoothing."""
@@ -54,5 +54,5 @@ class Odometer:
         self.velocity = velocity
 
     def _go(self, velocity: Velocity, seconds: float) -> None:
-        forward, sideways, turning = velocity
-        self.place.follow_arc(forward * seconds, sideways * seconds, turning * seconds)
+        forward, sideways, angular = velocity
+        self.place.follow_arc(forward * seconds, sideways * seconds, angular * seconds)

@@ -109,12 +109,12 @@ class SimulatedSystem(Hardware):
         for sensor in self.description.sensors:
             placed = there.get(sensor.name)
             if placed is None:
-                told = phrase(
+                message = phrase(
                     "sensor '{name}' of <ros2_control>: the model has no IMU and no force and torque sensor of this "
                     "name; its states stay as they are",
                     name=sensor.name,
                 )
-                self.logger.warning(told)
+                self.logger.warning(message)
                 continue
             states = [state for state in self.states if state.component == sensor.name]
             found.append(simulated_sensor(plugin.simulation, placed, states, plugin.random_of(placed.name)))

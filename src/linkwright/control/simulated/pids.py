@@ -73,13 +73,13 @@ def _gains(joint: str, given: Mapping[str, Any], logger: Logger) -> PidGains:
         try:
             return float(given.get(name, default))
         except (TypeError, ValueError):
-            told = phrase(
+            warning = phrase(
                 "PID controller of joint '{joint}': {name} is not a number: '{value}'",
                 joint=joint,
                 name=name,
                 value=str(given[name]),
             )
-            logger.warning(told)
+            logger.warning(warning)
             return default
 
     greatest = number("max_integral_error", inf)

@@ -14,7 +14,7 @@ from typing import Any
 from linkwright.control.hardware.component import Hardware
 from linkwright.control.hardware.description import HardwareDescription
 from linkwright.control.hardware.resources import Resources
-from linkwright.control.manager.manager import ControllerManager, Kept
+from linkwright.control.manager.manager import ControllerManager, SavedState
 from linkwright.control.manager.nodes import ProcessArguments
 from linkwright.control.manager.services import ManagerServices
 from linkwright.control.manager.starting import load_hardware
@@ -106,7 +106,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
     def stop(self) -> None:
         """Close controllers and manager; with a changed model they are made again."""
         if hasattr(self, "_manager"):
-            self.left[self._manager_node.name] = self._manager.kept()
+            self.left[self._manager_node.name] = self._manager.saved_state()
             self._manager.close()
             self._manager_node.close()
 
@@ -125,7 +125,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         self.every(1.0, services.publish_diagnostics)
         self._last = self.simulation.time
         self.every(manager.update_rate, self._update)
-        manager.resume(self.left.pop(self._manager_node.name, Kept()))
+        manager.resume(self.left.pop(self._manager_node.name, SavedState()))
 
     def _system(self, description: HardwareDescription, logger: Logger) -> Hardware:
         holds = self.parameters.hold_joints

@@ -63,10 +63,10 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         Raises:
             LinkwrightError: SIM134 a joint does not exist; SIM160 a wheel has no size, or axles are in one place.
         """
-        said, node, simulation = self.parameters, self.node, self.simulation
-        front = [self.joint(name) for name in (said.front_left_joint, said.front_right_joint)]
-        rear = [self.joint(name) for name in (said.rear_left_joint, said.rear_right_joint)]
-        steering = [self.joint(name) for name in (said.left_steering_joint, said.right_steering_joint)]
+        parameters, node, simulation = self.parameters, self.node, self.simulation
+        front = [self.joint(name) for name in (parameters.front_left_joint, parameters.front_right_joint)]
+        rear = [self.joint(name) for name in (parameters.rear_left_joint, parameters.rear_right_joint)]
+        steering = [self.joint(name) for name in (parameters.left_steering_joint, parameters.right_steering_joint)]
         for joint in (*front, *rear):
             simulation.let_roll(joint)
         self._radius = self._radius_of(rear[1])
@@ -75,15 +75,17 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         torque = simulation.mass_of(self.place.path) * _GRAVITY * self._radius / 2.0
         self._motors = [simulation.add_velocity_motor(joint, _GAIN, torque) for joint in rear]
         self._servos = [simulation.add_servo(joint) for joint in steering]
-        odometry = node.publisher("nav_msgs/msg/Odometry", "odom", 1) if said.publish_odom else None
-        transforms = transforms_topic(node) if said.publish_odom_tf else None
-        variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
-        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
-        self._way = node.publisher("std_msgs/msg/Float32", "distance", 1) if said.publish_distance else None
+        odometry = node.publisher("nav_msgs/msg/Odometry", "odom", 1) if parameters.publish_odom else None
+        transforms = transforms_topic(node) if parameters.publish_odom_tf else None
+        variances = planar_variances(parameters.covariance_x, parameters.covariance_y, parameters.covariance_yaw)
+        self._topics = OdometryTopics(
+            parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
+        )
+        self._way = node.publisher("std_msgs/msg/Float32", "distance", 1) if parameters.publish_distance else None
         commander = node.commander(self._rest)
         node.subscribe("geometry_msgs/msg/Twist", "cmd_vel", self._commanded, 1, commander=commander, rest=self._rest)
         self._begin()
-        self.every(said.update_rate, self._update)
+        self.every(parameters.update_rate, self._update)
 
     def _begin(self) -> None:
         self._speed = self._angle = self._distance = 0.0
@@ -124,10 +126,10 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
             raise self.refused(phrase("plugin '{plugin}': its wheels are in one place", plugin=self.place.name))
 
     def _commanded(self, twist: Any) -> None:
-        said = self.parameters
-        self._speed = min(max(float(twist.linear.x), -said.max_speed), said.max_speed)
+        parameters = self.parameters
+        self._speed = min(max(float(twist.linear.x), -parameters.max_speed), parameters.max_speed)
         angle = float(twist.angular.z) * copysign(1.0, self._speed)
-        self._angle = min(max(angle, -said.max_steer), said.max_steer)
+        self._angle = min(max(angle, -parameters.max_steer), parameters.max_steer)
 
     def _rest(self) -> bool:
         """Stop, with the wheels steered as they are; whether the car was to move."""

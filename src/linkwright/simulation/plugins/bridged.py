@@ -43,7 +43,7 @@ class BridgedTopics:
         """Whether a bridge offers a topic under another type."""
         return topic in self._bridged([topic])
 
-    def tell(self, topic: str, move: Callable[[], None]) -> None:
+    def notify(self, topic: str, move: Callable[[], None]) -> None:
         """Register a function to be called when a bridge offers a topic under another type."""
         self._moves.setdefault(topic, []).append(move)
 

@@ -46,15 +46,15 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         Raises:
             LinkwrightError: SIM133 the model has no such link.
         """
-        said, begin = self.parameters, f"/model/{self.place.path}/detachable_joint"
-        self._is_attached, self._is_wanted = False, said.initial_attach
-        self._parent, self._child = self.link(said.parent_link), ""
-        self._is_told = said.suppress_child_warning
-        state = said.output_topic or f"/model/{said.child_model}/detachable_joint/state"
+        parameters, begin = self.parameters, f"/model/{self.place.path}/detachable_joint"
+        self._is_attached, self._is_wanted = False, parameters.initial_attach
+        self._parent, self._child = self.link(parameters.parent_link), ""
+        self._is_warned = parameters.suppress_child_warning
+        state = parameters.output_topic or f"/model/{parameters.child_model}/detachable_joint/state"
         self._output = self.node.publisher("std_msgs/msg/String", state)
-        detach = said.detach_topic or said.topic or f"{begin}/detach"
+        detach = parameters.detach_topic or parameters.topic or f"{begin}/detach"
         self.node.subscribe("std_msgs/msg/Empty", detach, self._let_go)
-        self.node.subscribe("std_msgs/msg/Empty", said.attach_topic or f"{begin}/attach", self._hold)
+        self.node.subscribe("std_msgs/msg/Empty", parameters.attach_topic or f"{begin}/attach", self._hold)
         if self._is_wanted and self._found_child():
             self._attach()
         self.every(_LOOKS, self._look)
@@ -66,7 +66,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         if self._is_wanted and self._found_child():
             self._attach()
 
-    def go_on(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
+    def resume(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
         """Hold the child that the previous instance held."""
         assert isinstance(before, GzDetachableJoint)
         if before._is_attached or before._is_wanted:
@@ -94,17 +94,17 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             return
         if self._found_child():
             self._attach()
-        elif not self._is_told:
-            self._is_told = True
+        elif not self._is_warned:
+            self._is_warned = True
             name = f"{self.parameters.child_model}{SEPARATOR}{self.parameters.child_link}"
             message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
             self.node.logger.warning(message)
 
     def _found_child(self) -> bool:
         """Find the child link, in a model of the world or in a nested model; return whether it exists."""
-        said, bodies = self.parameters, self.simulation.scene.bodies
-        model = self.place.path if said.child_model == _OWN else said.child_model
-        link = f"{model}{SEPARATOR}{said.child_link}"
+        parameters, bodies = self.parameters, self.simulation.scene.bodies
+        model = self.place.path if parameters.child_model == _OWN else parameters.child_model
+        link = f"{model}{SEPARATOR}{parameters.child_link}"
         ways = (link, f"{self.place.path}{SEPARATOR}{link}")
         self._child = next((way for way in ways if way in bodies and way != self._parent), "")
         return bool(self._child)
@@ -114,13 +114,13 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         parent, child = (simulation.link_pose(each) for each in (self._parent, self._child))
         simulation.scene.weld(self._parent, self._child, compose(invert(parent), child))
         self._renew()
-        self._tell(attached=True)
+        self._publish_state(attached=True)
 
     def _detach(self) -> None:
         self._is_wanted = False
         if self._is_attached:
             self._unweld()
-            self._tell(attached=False)
+            self._publish_state(attached=False)
 
     def _unweld(self) -> None:
         if self._is_attached:
@@ -131,6 +131,6 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         self.simulation.set_altered()
         self.simulation.refresh()
 
-    def _tell(self, *, attached: bool) -> None:
+    def _publish_state(self, *, attached: bool) -> None:
         self._is_attached, self._is_wanted = attached, False
         self._output.publish(get_message("std_msgs/msg/String")(data="attached" if attached else "detached"))

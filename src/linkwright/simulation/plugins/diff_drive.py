@@ -133,9 +133,9 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         return before != self._wanted
 
     def _turn_wheels(self) -> None:
-        forward, turning = self._now
+        forward, angular = self._now
         for pair in self._pairs:
-            pair.left.target, pair.right.target = pair.drive.wheel_speeds(forward, turning)
+            pair.left.target, pair.right.target = pair.drive.wheel_speeds(forward, angular)
 
     def _angles(self) -> tuple[float, float]:
         """The angles of the first pair of wheels in rad; their velocities are kept for `_speeds`."""
@@ -169,24 +169,36 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
 
     def start(self) -> None:
         """Give the wheels motors, and subscribe to the commands."""
-        said, node = self.parameters, self.node
-        count = max(len(said.left_joint), len(said.right_joint))
-        separations, diameters = _as_many(said.wheel_separation, count), _as_many(said.wheel_diameter, count)
+        parameters, node = self.parameters, self.node
+        count = max(len(parameters.left_joint), len(parameters.right_joint))
+        separations, diameters = (
+            _as_many(parameters.wheel_separation, count),
+            _as_many(parameters.wheel_diameter, count),
+        )
         sizes = [(a, b / 2.0) for a, b in zip(separations, diameters, strict=True)]
-        self._fit_wheels(said.left_joint, said.right_joint, sizes, said.max_wheel_torque)
+        self._fit_wheels(parameters.left_joint, parameters.right_joint, sizes, parameters.max_wheel_torque)
         self._wheel_speeds = [(0.0, 0.0)] * len(self._pairs)
-        odometry = node.publisher("nav_msgs/msg/Odometry", said.odometry_topic, 1) if said.publish_odom else None
-        transforms = transforms_topic(node) if said.publish_odom_tf else None
-        variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
-        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
-        self._sees_world = said.odometry_source.strip().lower() in (str(_WORLD), "world")
+        odometry = (
+            node.publisher("nav_msgs/msg/Odometry", parameters.odometry_topic, 1) if parameters.publish_odom else None
+        )
+        transforms = transforms_topic(node) if parameters.publish_odom_tf else None
+        variances = planar_variances(parameters.covariance_x, parameters.covariance_y, parameters.covariance_yaw)
+        self._topics = OdometryTopics(
+            parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
+        )
+        self._sees_world = parameters.odometry_source.strip().lower() in (str(_WORLD), "world")
         commander = node.commander(self._rest)
         node.subscribe(
-            "geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1, commander=commander, rest=self._rest
+            "geometry_msgs/msg/Twist",
+            parameters.command_topic,
+            self._commanded,
+            1,
+            commander=commander,
+            rest=self._rest,
         )
-        self.every(said.update_rate, self._update)
-        if said.publish_wheel_tf:
-            self.every(said.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))
+        self.every(parameters.update_rate, self._update)
+        if parameters.publish_wheel_tf:
+            self.every(parameters.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))
 
     def _publish_wheels(self, output: Output) -> None:
         """Publish the poses of the wheels in the links that carry them."""
@@ -211,19 +223,21 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             pose = self.simulation.model_pose(self.place.path)
             self._topics.publish(stamp, pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link)))
         else:
-            forward, turning = self._speeds()
-            told = abs(forward) if self.gazebo_mistakes else forward
-            self._topics.publish(stamp, self._place.transform, told, 0.0, turning)
+            forward, angular = self._speeds()
+            published = abs(forward) if self.gazebo_mistakes else forward
+            self._topics.publish(stamp, self._place.transform, published, 0.0, angular)
 
     def _drive(self) -> None:
         """Accelerate the wheels towards the command, by no more than the limit in m/s2 at their rims."""
-        forward, turning = self._wanted
+        forward, angular = self._wanted
         for number, pair in enumerate(self._pairs):
-            wanted, now = pair.drive.wheel_speeds(forward, turning), self._wheel_speeds[number]
+            wanted, now = pair.drive.wheel_speeds(forward, angular), self._wheel_speeds[number]
             if now == wanted:
                 continue
-            said = self.parameters
-            greatest = inf if said.max_wheel_acceleration <= 0 else said.max_wheel_acceleration * self._interval
+            parameters = self.parameters
+            greatest = (
+                inf if parameters.max_wheel_acceleration <= 0 else parameters.max_wheel_acceleration * self._interval
+            )
             change = greatest / pair.drive.left_radius
             self._turn(number, _nearer(now[0], wanted[0], change), _nearer(now[1], wanted[1], change))
 
@@ -233,9 +247,9 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         self._wheel_speeds[number] = left, right
         pair.left.target, pair.right.target = left, right
 
-    def go_on(self, before: SimulatedPlugin[ClassicParameters]) -> None:
+    def resume(self, before: SimulatedPlugin[ClassicParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
-        super().go_on(before)
+        super().resume(before)
         for number, (left, right) in enumerate(self._wheel_speeds):
             self._turn(number, left, right)
 
@@ -252,39 +266,39 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
 
     def start(self) -> None:
         """Give the wheels motors, and subscribe to the commands."""
-        said = self.parameters
-        count = max(len(said.left_joint), len(said.right_joint))
-        sizes = [(said.wheel_separation, said.wheel_radius)] * count
-        self._fit_wheels(said.left_joint, said.right_joint, sizes, GZ_TORQUE)
-        self._commands = DriveCommands(said)
-        self._topics = connected(self, said, self._commands)
+        parameters = self.parameters
+        count = max(len(parameters.left_joint), len(parameters.right_joint))
+        sizes = [(parameters.wheel_separation, parameters.wheel_radius)] * count
+        self._fit_wheels(parameters.left_joint, parameters.right_joint, sizes, GZ_TORQUE)
+        self._commands = DriveCommands(parameters)
+        self._topics = connected(self, parameters, self._commands)
         self.node.subscribe("std_msgs/msg/Bool", f"/model/{self.place.path}/enable", self._commands.enable)
         self.every(GZ_RATE, self._drive)
-        self.every(said.odom_publish_frequency, self._publish)
+        self.every(parameters.odom_publish_frequency, self._publish)
 
     def reset(self) -> None:
         """Stop, with the odometry at its origin."""
         self._commands.restart()
         super().reset()
 
-    def go_on(self, before: SimulatedPlugin[GzParameters]) -> None:
+    def resume(self, before: SimulatedPlugin[GzParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
-        super().go_on(before)
+        super().resume(before)
         assert isinstance(before, GzDiffDrive)
-        self._commands.go_on(before._commands)
+        self._commands.resume(before._commands)
 
     def _drive(self) -> None:
         self._measure()
-        forward, _, turning = self._commands.follow()
-        self._now = (forward, turning)
+        forward, _, angular = self._commands.follow()
+        self._now = (forward, angular)
         self._turn_wheels()
 
     def _publish(self) -> None:
         self._measure()
         if not self._topics.is_wanted:
             return
-        forward, turning = self._speeds()
-        self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, turning)
+        forward, angular = self._speeds()
+        self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, angular)
 
 
 def _nearer(now: float, to: float, greatest: float) -> float:

@@ -39,9 +39,9 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         Raises:
             LinkwrightError: SIM133 there is no such link; SIM160 the frame is neither that of the world nor the link's.
         """
-        said = self.parameters
-        self._link = self.link(said.link_name)
-        if said.force_frame not in ("world", "link"):
+        parameters = self.parameters
+        self._link = self.link(parameters.link_name)
+        if parameters.force_frame not in ("world", "link"):
             raise self.refused(
                 phrase("plugin '{plugin}': <force_frame> is either 'world' or 'link'", plugin=self.place.name)
             )
@@ -49,7 +49,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self._wrench = _STILL
         commander = self.node.commander(self._rest)
         self.node.subscribe(
-            "geometry_msgs/msg/Wrench", said.topic_name, self._told, commander=commander, rest=self._rest
+            "geometry_msgs/msg/Wrench", parameters.topic_name, self._receive, commander=commander, rest=self._rest
         )
         self.every(0.0, self._push)
 
@@ -58,7 +58,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self._wrench = _STILL
         self._push()
 
-    def _told(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         self._wrench = (numbers(message.force), numbers(message.torque))
         self._push()
 

@@ -70,13 +70,13 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
 
     def start(self) -> None:
         """Find the links."""
-        said = self.parameters
-        self._link = self.link(said.body_name)
-        self._reference = "" if said.frame_name in _WORLD else self.link(said.frame_name)
-        self._turn = quaternion_from_rpy(said.rpy_offset)
+        parameters = self.parameters
+        self._link = self.link(parameters.body_name)
+        self._reference = "" if parameters.frame_name in _WORLD else self.link(parameters.frame_name)
+        self._turn = quaternion_from_rpy(parameters.rpy_offset)
         self._random = self.random
-        self._output = self.node.publisher("nav_msgs/msg/Odometry", said.topic_name, 1)
-        self.every(said.update_rate, self._publish)
+        self._output = self.node.publisher("nav_msgs/msg/Odometry", parameters.topic_name, 1)
+        self.every(parameters.update_rate, self._publish)
 
     def reset(self) -> None:
         """Restart the noise."""
@@ -85,18 +85,21 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
     def _publish(self) -> None:
         if not self._output.is_wanted:
             return
-        said, simulation = self.parameters, self.simulation
+        parameters, simulation = self.parameters, self.simulation
         pose, (linear, angular) = simulation.link_pose(self._link), simulation.link_velocity(self._link)
         if self._reference:
-            frame, (moving, turning) = simulation.link_pose(self._reference), simulation.link_velocity(self._reference)
+            frame, (base_linear, base_angular) = (
+                simulation.link_pose(self._reference),
+                simulation.link_velocity(self._reference),
+            )
             pose = compose(invert(frame), pose)
             turned = _turned_on if self.gazebo_mistakes else _turned_back
-            linear, angular = turned(frame, linear - moving), turned(frame, angular - turning)
-        x, y, z = (a + b for a, b in zip(pose[:3], said.xyz_offset, strict=True))
+            linear, angular = turned(frame, linear - base_linear), turned(frame, angular - base_angular)
+        x, y, z = (a + b for a, b in zip(pose[:3], parameters.xyz_offset, strict=True))
         moved = (x, y, z, *quaternion_multiply(self._turn, pose[3:]))
-        linear, angular = _with_noise(self._random, said.gaussian_noise, linear, angular)
-        header = Header(self.stamp(), said.frame_name)
-        message = _odometry(header, said.body_name, moved, linear, angular, said.gaussian_noise**2)
+        linear, angular = _with_noise(self._random, parameters.gaussian_noise, linear, angular)
+        header = Header(self.stamp(), parameters.frame_name)
+        message = _odometry(header, parameters.body_name, moved, linear, angular, parameters.gaussian_noise**2)
         self._output.publish(message)
 
 
@@ -107,17 +110,17 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
 
     def start(self) -> None:
         """Make the topics."""
-        said, model, node = self.parameters, self.place.path, self.node
-        self._child = said.robot_base_frame or f"{model}/base_footprint"
-        self._frame = said.odom_frame or f"{model}/odom"
-        self._offset: Transform = (*said.xyz_offset, *quaternion_from_rpy(said.rpy_offset))
+        parameters, model, node = self.parameters, self.place.path, self.node
+        self._child = parameters.robot_base_frame or f"{model}/base_footprint"
+        self._frame = parameters.odom_frame or f"{model}/odom"
+        self._offset: Transform = (*parameters.xyz_offset, *quaternion_from_rpy(parameters.rpy_offset))
         self._random = self.random
-        topic = said.odom_topic or f"/model/{model}/odometry"
-        uncertain = said.odom_covariance_topic or f"/model/{model}/odometry_with_covariance"
+        topic = parameters.odom_topic or f"/model/{model}/odometry"
+        uncertain = parameters.odom_covariance_topic or f"/model/{model}/odometry_with_covariance"
         self._odometry = node.publisher("nav_msgs/msg/Odometry", topic, usual="/odom")
         self._uncertain = node.publisher("nav_msgs/msg/Odometry", uncertain)
-        self._transforms = transforms_topic(node, said.tf_topic or f"/model/{model}/pose", "/tf")
-        self.every(said.odom_publish_frequency, self._publish)
+        self._transforms = transforms_topic(node, parameters.tf_topic or f"/model/{model}/pose", "/tf")
+        self.every(parameters.odom_publish_frequency, self._publish)
 
     def reset(self) -> None:
         """Restart the noise."""
@@ -126,19 +129,19 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
     def _publish(self) -> None:
         if not any(output.is_wanted for output in (self._odometry, self._uncertain, self._transforms)):
             return
-        said, simulation = self.parameters, self.simulation
+        parameters, simulation = self.parameters, self.simulation
         pose = compose(simulation.model_pose(self.place.path), self._offset)
         linear, angular = simulation.link_velocity(self.first_link)
-        if said.dimensions == 3:
+        if parameters.dimensions == 3:
             linear, angular = _turned_back(pose, linear), _turned_back(pose, angular)
         else:
-            forward, sideways, turning = planar_velocity(pose, linear, angular)
-            linear, angular = np.array((forward, sideways, 0.0)), np.array((0.0, 0.0, turning))
+            forward, sideways, yaw_rate = planar_velocity(pose, linear, angular)
+            linear, angular = np.array((forward, sideways, 0.0)), np.array((0.0, 0.0, yaw_rate))
             pose = (pose[0], pose[1], 0.0, *pose[3:])
-        linear, angular = _with_noise(self._random, said.gaussian_noise, linear, angular)
+        linear, angular = _with_noise(self._random, parameters.gaussian_noise, linear, angular)
         header = Header(self.stamp(), self._frame)
         self._odometry.publish(_odometry(header, self._child, pose, linear, angular, 0.0))
-        self._uncertain.publish(_odometry(header, self._child, pose, linear, angular, said.gaussian_noise**2))
+        self._uncertain.publish(_odometry(header, self._child, pose, linear, angular, parameters.gaussian_noise**2))
         self._transforms.publish(transform_message(header, self._child, pose))
 
 

@@ -64,16 +64,17 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         Raises:
             LinkwrightError: SIM134 a joint does not exist; SIM160 a measure is not positive, or no wheel is named.
         """
-        said, simulation = self.parameters, self.simulation
-        sizes = (said.wheel_separation, said.wheel_base, said.wheel_radius)
-        if not (min(sizes) > 0.0 and said.left_joint and said.right_joint) and not said.steering_only:
+        parameters, simulation = self.parameters, self.simulation
+        sizes = (parameters.wheel_separation, parameters.wheel_base, parameters.wheel_radius)
+        if not (min(sizes) > 0.0 and parameters.left_joint and parameters.right_joint) and not parameters.steering_only:
             raise self.refused(
                 phrase("plugin '{plugin}' needs wheel joints and positive dimensions", plugin=self.place.name)
             )
-        sides = (said.left_joint, said.right_joint)
-        wheels = [] if said.steering_only else [[self.joint(name) for name in side] for side in sides]
+        sides = (parameters.left_joint, parameters.right_joint)
+        wheels = [] if parameters.steering_only else [[self.joint(name) for name in side] for side in sides]
         steering = [
-            [self.joint(name) for name in side] for side in (said.left_steering_joint, said.right_steering_joint)
+            [self.joint(name) for name in side]
+            for side in (parameters.left_steering_joint, parameters.right_steering_joint)
         ]
         steered = {simulation.scene.joints[joint].child for side in steering for joint in side}
         for name, placed in simulation.scene.joints.items():
@@ -85,30 +86,30 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._motors = [
             [simulation.add_velocity_motor(joint, MOTOR_GAIN, GZ_TORQUE) for joint in joints] for joints in wheels
         ]
-        greatest = max(said.steer_cmd_max, -said.steer_cmd_min)
+        greatest = max(parameters.steer_cmd_max, -parameters.steer_cmd_min)
         self._servos = [[simulation.add_servo(joint, greatest) for joint in joints] for joints in steering]
-        self._commands, self._limiter = DriveCommands(said), said.limiter("angular")
+        self._commands, self._limiter = DriveCommands(parameters), parameters.limiter("angular")
         self._angle = 0.0
         self._begin()
-        if said.steering_only:
+        if parameters.steering_only:
             self._listen_to_angles()
             self.every(GZ_RATE, self._steer_only)
             return
         self._topics = connected(self, self._with_topic(), self._commands)
         self.every(GZ_RATE, self._drive)
-        self.every(said.odom_publish_frequency, self._publish)
+        self.every(parameters.odom_publish_frequency, self._publish)
 
     def _with_topic(self) -> SteeringParameters:
-        said = self.parameters
-        inside = f"/model/{self.place.path}/{said.sub_topic}" if said.sub_topic else ""
-        return replace(said, topic=said.topic or inside)
+        parameters = self.parameters
+        inside = f"/model/{self.place.path}/{parameters.sub_topic}" if parameters.sub_topic else ""
+        return replace(parameters, topic=parameters.topic or inside)
 
     def _listen_to_angles(self) -> None:
-        said = self.parameters
-        topic = said.topic or f"/model/{self.place.path}/{said.sub_topic or 'steer_angle'}"
-        self.node.subscribe("std_msgs/msg/Float64", topic, self._told_angle, rest=lambda: None)
+        parameters = self.parameters
+        topic = parameters.topic or f"/model/{self.place.path}/{parameters.sub_topic or 'steer_angle'}"
+        self.node.subscribe("std_msgs/msg/Float64", topic, self._receive_angle, rest=lambda: None)
 
-    def _told_angle(self, message: Any) -> None:
+    def _receive_angle(self, message: Any) -> None:
         self._angle = float(message.data)
 
     def _begin(self) -> None:
@@ -125,11 +126,11 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
             servo.restart()
         self._turn_wheels(0.0, 0.0)
 
-    def go_on(self, before: SimulatedPlugin[SteeringParameters]) -> None:
+    def resume(self, before: SimulatedPlugin[SteeringParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
-        super().go_on(before)
+        super().resume(before)
         assert isinstance(before, GzAckermann)
-        self._commands.go_on(before._commands)
+        self._commands.resume(before._commands)
         self._limiter = before._limiter
 
     # --- the wheels ---------------------------------------------------------------------------------------------------
@@ -137,22 +138,22 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     def _drive(self) -> None:
         """Drive and steer by the command: the inner wheels slower, and steered further."""
         self._measure()
-        said = self.parameters
-        forward, _, turning = self._commands.follow()
-        curvature = self._curvature(forward, turning)
-        half = said.wheel_separation / 2.0 * curvature
+        parameters = self.parameters
+        forward, _, angular = self._commands.follow()
+        curvature = self._curvature(forward, angular)
+        half = parameters.wheel_separation / 2.0 * curvature
         self._turn_wheels(forward * (1.0 - half), forward * (1.0 + half))
-        self._steer(*steered_apart(said.wheel_base * curvature, said.kingpin_width * curvature))
+        self._steer(*steered_apart(parameters.wheel_base * curvature, parameters.kingpin_width * curvature))
 
-    def _curvature(self, forward: float, turning: float) -> float:
+    def _curvature(self, forward: float, angular: float) -> float:
         """The commanded curvature in 1/m, to the left positive; no tighter than the limit."""
-        said = self.parameters
-        greatest = sin(said.steering_limit) / said.wheel_base
-        if abs(turning) < _SLOW:
+        parameters = self.parameters
+        greatest = sin(parameters.steering_limit) / parameters.wheel_base
+        if abs(angular) < _SLOW:
             return 0.0
         if forward == 0.0:
-            return copysign(greatest, turning)
-        return min(max(turning / forward, -greatest), greatest)
+            return copysign(greatest, angular)
+        return min(max(angular / forward, -greatest), greatest)
 
     def _turn_wheels(self, left: float, right: float) -> None:
         for motors, speed in zip(self._motors, (left, right), strict=False):
@@ -160,20 +161,20 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
                 motor.target = speed / self.parameters.wheel_radius
 
     def _steer_only(self) -> None:
-        said = self.parameters
+        parameters = self.parameters
         angle = self._limiter.follow(self._angle, 1.0 / GZ_RATE)
-        angle = min(max(angle, -said.steering_limit), said.steering_limit)
-        along, across = 2.0 * said.wheel_base * cos(angle), said.wheel_separation * sin(angle)
-        slope = 2.0 * said.wheel_base * sin(angle)
+        angle = min(max(angle, -parameters.steering_limit), parameters.steering_limit)
+        along, across = 2.0 * parameters.wheel_base * cos(angle), parameters.wheel_separation * sin(angle)
+        slope = 2.0 * parameters.wheel_base * sin(angle)
         self._steer(atan(slope / (along - across)), atan(slope / (along + across)))
 
     def _steer(self, left: float, right: float) -> None:
         """Steer towards the angles in rad, at a speed that is the gain times the error."""
-        said = self.parameters
+        parameters = self.parameters
         for servos, angle in zip(self._servos, (left, right), strict=True):
             for servo in servos:
-                speed = said.steer_p_gain * (angle - servo.position)
-                speed = min(max(speed, said.steer_cmd_min), said.steer_cmd_max)
+                speed = parameters.steer_p_gain * (angle - servo.position)
+                speed = min(max(speed, parameters.steer_cmd_min), parameters.steer_cmd_max)
                 servo.move(servo.position + speed / GZ_RATE, 1.0 / GZ_RATE)
 
     # --- odometry -----------------------------------------------------------------------------------------------------

@@ -54,7 +54,7 @@ class DriveCommands:
         for limiter in self._limiters:
             limiter.restart()
 
-    def go_on(self, before: DriveCommands) -> None:
+    def resume(self, before: DriveCommands) -> None:
         """Take over the velocity of another one with the same limits."""
         self.is_enabled, self._wanted, self._limiters = before.is_enabled, before._wanted, before._limiters
 
@@ -77,18 +77,20 @@ class DriveCommands:
     def follow(self) -> tuple[float, float, float]:
         """The velocity to drive with now, within the limits; to be called `GZ_RATE` times a second."""
         pairs = zip(self._limiters, self._wanted, strict=True)
-        forward, sideways, turning = (limiter.follow(wanted, 1.0 / GZ_RATE) for limiter, wanted in pairs)
-        return forward, sideways, turning
+        forward, sideways, angular = (limiter.follow(wanted, 1.0 / GZ_RATE) for limiter, wanted in pairs)
+        return forward, sideways, angular
 
 
-def connected(plugin: SimulatedPlugin[Any], said: GzDriveParameters, commands: DriveCommands) -> OdometryTopics:
+def connected(plugin: SimulatedPlugin[Any], parameters: GzDriveParameters, commands: DriveCommands) -> OdometryTopics:
     """Make the odometry topics of a drive, and subscribe to its commands."""
     model, node = plugin.place.path, plugin.node
-    frame = said.frame_id or f"{model}/odom"
-    child = said.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"
-    odometry = node.publisher("nav_msgs/msg/Odometry", said.odom_topic or f"/model/{model}/odometry", usual="/odom")
-    transforms = transforms_topic(node, said.tf_topic or f"/model/{model}/tf", "/tf")
-    topic = said.topic or f"/model/{model}/cmd_vel"
+    frame = parameters.frame_id or f"{model}/odom"
+    child = parameters.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"
+    odometry = node.publisher(
+        "nav_msgs/msg/Odometry", parameters.odom_topic or f"/model/{model}/odometry", usual="/odom"
+    )
+    transforms = transforms_topic(node, parameters.tf_topic or f"/model/{model}/tf", "/tf")
+    topic = parameters.topic or f"/model/{model}/cmd_vel"
     commander = node.commander(commands.rest)
     node.subscribe(
         "geometry_msgs/msg/Twist", topic, commands.take, usual="/cmd_vel", commander=commander, rest=commands.rest

@@ -99,8 +99,11 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
 
     def _listen(self, leaf: str) -> None:
         """Subscribe to the commands: to the topic of the parameters, or to one named after the first joint."""
-        said = self.parameters
-        topic = said.topic or f"/model/{self.place.path}/{said.sub_topic or f'joint/{said.joint_name[0]}/{leaf}'}"
+        parameters = self.parameters
+        topic = (
+            parameters.topic
+            or f"/model/{self.place.path}/{parameters.sub_topic or f'joint/{parameters.joint_name[0]}/{leaf}'}"
+        )
         commander = self.node.commander(self._rest)
         self.node.subscribe("std_msgs/msg/Float64", topic, self._commanded, commander=commander, rest=self._rest)
         self._begin()
@@ -132,15 +135,15 @@ class GzJointPosition(_JointController[PositionParameters]):
 
     def start(self) -> None:
         """Find the joints, and hold them."""
-        said, simulation = self.parameters, self.simulation
-        if said.joint_index:
+        parameters, simulation = self.parameters, self.simulation
+        if parameters.joint_index:
             raise self.refused(
                 phrase("plugin '{plugin}': only the first axis of a joint is simulated", plugin=self.place.name)
             )
         self._find_joints()
         self._servos = []
-        if said.use_velocity_commands:
-            greatest = inf if said.cmd_max == _UNBOUNDED else said.cmd_max
+        if parameters.use_velocity_commands:
+            greatest = inf if parameters.cmd_max == _UNBOUNDED else parameters.cmd_max
             self._servos = [simulation.add_servo(joint, greatest) for joint in self._joints]
         self._listen("0/cmd_pos")
         self.every(0.0, self._move)
@@ -177,7 +180,7 @@ class GzJointVelocity(_JointController[VelocityParameters]):
         super()._begin()
         self._turn(self.parameters.initial_velocity)
 
-    def go_on(self, before: SimulatedPlugin[VelocityParameters]) -> None:
+    def resume(self, before: SimulatedPlugin[VelocityParameters]) -> None:
         """Take over the velocity of the previous instance."""
         assert isinstance(before, GzJointVelocity)
         self._turn(before._wanted)

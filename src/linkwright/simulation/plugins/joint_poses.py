@@ -36,7 +36,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         """Subscribe to the trajectories."""
         self.reset()
         self.node.subscribe(
-            "trajectory_msgs/msg/JointTrajectory", self.parameters.topic_name, self._told, 1, rest=lambda: None
+            "trajectory_msgs/msg/JointTrajectory", self.parameters.topic_name, self._receive, 1, rest=lambda: None
         )
         self.every(self.parameters.update_rate, self._move)
 
@@ -46,7 +46,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         self._joints: list[str] = []
         self._due = 0
 
-    def _told(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         try:
             if message.header.frame_id not in (WORLD, "map", "/map"):
                 Entities(self.simulation).link(message.header.frame_id)

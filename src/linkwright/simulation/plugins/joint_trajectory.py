@@ -123,9 +123,9 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
 
     def start(self) -> None:
         """Find the joints, and subscribe to the trajectories."""
-        said, simulation = self.parameters, self.simulation
+        parameters, simulation = self.parameters, self.simulation
         begin = f"{self.place.path}::"
-        self._names = said.joint_name or tuple(
+        self._names = parameters.joint_name or tuple(
             name.removeprefix(begin)
             for name, placed in simulation.scene.joints.items()
             if name.startswith(begin) and placed.joint.type in _ONE_AXIS
@@ -133,7 +133,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
         self._inside = [self.joint(name) for name in self._names]
         for joint in self._inside:
             simulation.keep_awake(simulation.scene.joints[joint].child)
-        topic = said.topic or f"/model/{self.place.path}/joint_trajectory"
+        topic = parameters.topic or f"/model/{self.place.path}/joint_trajectory"
         self._progress = self.node.publisher("std_msgs/msg/Float32", f"{topic}_progress")
         self.node.subscribe("trajectory_msgs/msg/JointTrajectory", topic, self._commanded, rest=lambda: None)
         self.reset()
@@ -164,8 +164,8 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
     def _follow(self, trajectory: _Trajectory) -> None:
         """Approach the point that is due, and publish the progress, from 0 to 1."""
         trajectory.aim(self._joints.get)
-        told = (trajectory.index + 1) / len(trajectory.message.points)
-        self._progress.publish(get_message("std_msgs/msg/Float32")(data=told))
+        progress = (trajectory.index + 1) / len(trajectory.message.points)
+        self._progress.publish(get_message("std_msgs/msg/Float32")(data=progress))
         if trajectory.is_at_last:
             self._trajectory = None
 

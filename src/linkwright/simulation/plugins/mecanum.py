@@ -50,13 +50,18 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         Raises:
             LinkwrightError: SIM134 a joint does not exist; SIM160 a measure is not positive, or the model is fixed.
         """
-        said, simulation = self.parameters, self.simulation
-        if not (min(said.wheel_separation, said.wheelbase) > 0.0 and said.wheel_radius > 0.0):
+        parameters, simulation = self.parameters, self.simulation
+        if not (min(parameters.wheel_separation, parameters.wheelbase) > 0.0 and parameters.wheel_radius > 0.0):
             raise self.refused(
                 phrase("plugin '{plugin}': distance and size of wheels must be positive", plugin=self.place.name)
             )
         self.be_free()
-        corners = (said.front_left_joint, said.front_right_joint, said.back_left_joint, said.back_right_joint)
+        corners = (
+            parameters.front_left_joint,
+            parameters.front_right_joint,
+            parameters.back_left_joint,
+            parameters.back_right_joint,
+        )
         wheels = [[self.joint(name) for name in names] for names in corners]
         for joint in (joint for joints in wheels for joint in joints):
             simulation.let_slide(joint)
@@ -64,13 +69,15 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
             [simulation.add_velocity_motor(joint, MOTOR_GAIN, inf) for joint in joints] for joints in wheels
         ]
         self._wheels = [joints[0] for joints in wheels]
-        self._drive_train = MecanumDrive((said.wheel_separation + said.wheelbase) / 2.0, said.wheel_radius)
-        self._commands = DriveCommands(said)
-        self._topics = connected(self, said, self._commands)
+        self._drive_train = MecanumDrive(
+            (parameters.wheel_separation + parameters.wheelbase) / 2.0, parameters.wheel_radius
+        )
+        self._commands = DriveCommands(parameters)
+        self._topics = connected(self, parameters, self._commands)
         self._begin()
         self.every(GZ_RATE, self._drive)
         self.every(0.0, self._move)
-        self.every(said.odom_publish_frequency, self._publish)
+        self.every(parameters.odom_publish_frequency, self._publish)
 
     def _begin(self) -> None:
         self._place = PlanarPose()
@@ -82,11 +89,11 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self._begin()
         self._turn_wheels((0.0, 0.0, 0.0))
 
-    def go_on(self, before: SimulatedPlugin[MecanumParameters]) -> None:
+    def resume(self, before: SimulatedPlugin[MecanumParameters]) -> None:
         """Take over velocity and odometry from the previous instance."""
-        super().go_on(before)
+        super().resume(before)
         assert isinstance(before, GzMecanum)
-        self._commands.go_on(before._commands)
+        self._commands.resume(before._commands)
 
     def _drive(self) -> None:
         self._turn_wheels(self._commands.follow())

@@ -73,48 +73,50 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         Raises:
             LinkwrightError: SIM133, SIM134 there is no such link or joint; SIM160 the motor is of another type.
         """
-        said = self.parameters
-        if said.motor_type != "velocity":
+        parameters = self.parameters
+        if parameters.motor_type != "velocity":
             raise self.refused(
                 phrase("plugin '{plugin}': <motorType> is 'velocity' here and nothing else", plugin=self.place.name)
             )
-        self._link = self.link(said.link_name)
-        joint = self.joint(said.joint_name)
+        self._link = self.link(parameters.link_name)
+        joint = self.joint(parameters.joint_name)
         self._parent = self.simulation.scene.joints[joint].parent
-        self._sign = -1.0 if said.turning_direction.strip().lower() == "cw" else 1.0
+        self._sign = -1.0 if parameters.turning_direction.strip().lower() == "cw" else 1.0
         self._spin = self.simulation.add_velocity_motor(joint, _SPIN_GAIN, inf)
         self.simulation.keep_awake(self._link)
         self.reset()
         namespace = _text(self.place.element, "robotNamespace").strip("/") or self.place.path
-        self.node.subscribe("actuator_msgs/msg/Actuators", f"/{namespace}/{said.command_topic}", self._told)
+        self.node.subscribe("actuator_msgs/msg/Actuators", f"/{namespace}/{parameters.command_topic}", self._receive)
         self.every(0.0, self._pull)
 
     def reset(self) -> None:
         """Stop the rotor."""
         self.wanted = self.speed = 0.0
 
-    def _told(self, actuators: Any) -> None:
+    def _receive(self, actuators: Any) -> None:
         number = self.parameters.actuator_number
         speeds = actuators.velocity
         if number < len(speeds) and isfinite(speeds[number]):
             self.wanted = float(speeds[number])
 
     def _pull(self) -> None:
-        said, simulation = self.parameters, self.simulation
-        wanted = min(max(self.wanted, 0.0), said.max_rot_velocity)
-        constant = said.time_constant_up if wanted > self.speed else said.time_constant_down
+        parameters, simulation = self.parameters, self.simulation
+        wanted = min(max(self.wanted, 0.0), parameters.max_rot_velocity)
+        constant = parameters.time_constant_up if wanted > self.speed else parameters.time_constant_down
         share = exp(-simulation.step / NANOSECONDS / constant) if constant > 0.0 else 0.0
         self.speed = share * self.speed + (1.0 - share) * wanted
-        thrust = said.motor_constant * self.speed**2
+        thrust = parameters.motor_constant * self.speed**2
         axis = rotation_matrix(simulation.link_pose(self._link)[3:])[:, 2]
         velocity, _ = simulation.link_velocity(self._link)
         across = self.speed * (velocity - velocity @ axis * axis)
-        force = thrust * axis - said.rotor_drag_coefficient * across
-        torque = -self._sign * thrust * said.moment_constant * axis - said.rolling_moment_coefficient * across
-        me = self.place.name + said.joint_name
+        force = thrust * axis - parameters.rotor_drag_coefficient * across
+        torque = (
+            -self._sign * thrust * parameters.moment_constant * axis - parameters.rolling_moment_coefficient * across
+        )
+        me = self.place.name + parameters.joint_name
         simulation.push(self._link, force.tolist(), by=me)
         simulation.push(self._parent, (0.0, 0.0, 0.0), torque.tolist(), by=me)
-        self._spin.target = self._sign * self.speed / said.slowdown
+        self._spin.target = self._sign * self.speed / parameters.slowdown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,8 +153,8 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         Raises:
             LinkwrightError: SIM133, SIM134 there is no such link or joint; SIM160 its rotors cannot hold the model.
         """
-        said, element = self.parameters, self.place.element
-        self._body = self.link(said.com_link_name)
+        parameters, element = self.parameters, self.place.element
+        self._body = self.link(parameters.com_link_name)
         self._find_rotors(element)
         self._rotors: dict[str, GzMulticopterMotor] = {}
         self.reset()
@@ -160,8 +162,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         start = f"/{namespace}/" if namespace else "/"
         commander = self.node.commander(self._rest)
         twist = "geometry_msgs/msg/Twist"
-        self.node.subscribe(twist, start + said.command_topic, self._told, commander=commander, rest=self._rest)
-        self.node.subscribe("std_msgs/msg/Bool", start + said.enable_topic, self._enable)
+        self.node.subscribe(
+            twist, start + parameters.command_topic, self._receive, commander=commander, rest=self._rest
+        )
+        self.node.subscribe("std_msgs/msg/Bool", start + parameters.enable_topic, self._enable)
         self.every(0.0, self._fly)
 
     def reset(self) -> None:
@@ -191,9 +195,9 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         if len(rotors) < 4 or np.linalg.matrix_rank(allocation) < 4:
             raise self.refused(phrase("plugin '{plugin}': its rotors cannot hold the model", plugin=self.place.name))
         self._mass, inertia = self._inertial()
-        turning = np.eye(4)
-        turning[:3, :3] = inertia
-        self._speeds_of = np.linalg.pinv(allocation) @ turning
+        inertias = np.eye(4)
+        inertias[:3, :3] = inertia
+        self._speeds_of = np.linalg.pinv(allocation) @ inertias
         inverse = np.linalg.inv(inertia)
         self._attitude_gain = np.array(self.parameters.attitude_gain) @ inverse
         self._rate_gain = np.array(self.parameters.angular_rate_gain) @ inverse
@@ -202,8 +206,8 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         try:
             return float(_text(rotor, tag))
         except ValueError as error:
-            told = phrase("plugin '{plugin}': a <rotor> has no number in <{tag}>", plugin=self.place.name, tag=tag)
-            raise self.refused(told) from error
+            message = phrase("plugin '{plugin}': a <rotor> has no number in <{tag}>", plugin=self.place.name, tag=tag)
+            raise self.refused(message) from error
 
     def _inertial(self) -> tuple[float, Array]:
         """Mass of the model in kg, and its inertia about its centre of mass in the axes of its body, in kg m2."""
@@ -222,11 +226,11 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         turn = data.xmat[body].reshape(3, 3)
         return float(masses.sum()), turn.T @ total @ turn
 
-    def _told(self, twist: Any) -> None:
+    def _receive(self, twist: Any) -> None:
         most = np.array(self.parameters.max_linear)
-        turning = self.parameters.max_angular[2]
+        angular = self.parameters.max_angular[2]
         linear = np.clip(np.array(numbers(twist.linear)), -most, most)
-        self._wanted = (linear, min(max(float(twist.angular.z), -turning), turning))
+        self._wanted = (linear, min(max(float(twist.angular.z), -angular), angular))
 
     def _rest(self) -> bool:
         """Command hovering."""
@@ -259,18 +263,18 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             self._rotors = {self.joint(motor.parameters.joint_name): motor for motor in motors}
         return self._rotors
 
-    def _speeds(self, linear: Array, turning: float) -> Array:
+    def _speeds(self, linear: Array, yaw_rate: float) -> Array:
         """The speed of each rotor in rad/s, for this moment."""
-        said, simulation = self.parameters, self.simulation
+        parameters, simulation = self.parameters, self.simulation
         turn = rotation_matrix(simulation.link_pose(self._body)[3:])
         velocity, rates = simulation.link_velocity(self._body)
-        error = (velocity - turn @ linear) * np.array(said.velocity_gain) / self._mass
-        most = np.array(said.max_acceleration)
+        error = (velocity - turn @ linear) * np.array(parameters.velocity_gain) / self._mass
+        most = np.array(parameters.max_acceleration)
         acceleration = np.clip(error, -most, most) + simulation.model.opt.gravity
         wanted = _attitude(turn, acceleration)
         skew = 0.5 * (wanted.T @ turn - turn.T @ wanted)
         tilt = np.array((skew[2, 1], skew[0, 2], skew[1, 0]))
-        rate_error = turn.T @ rates - turn.T @ wanted @ np.array((0.0, 0.0, turning))
+        rate_error = turn.T @ rates - turn.T @ wanted @ np.array((0.0, 0.0, yaw_rate))
         angular = -tilt * self._attitude_gain - rate_error * self._rate_gain
         thrust = -self._mass * float(acceleration @ turn[:, 2])
         squares: Array = self._speeds_of @ np.array((*angular, thrust))

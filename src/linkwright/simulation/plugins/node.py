@@ -152,7 +152,7 @@ class PluginNode:
         self._qos = {(node.handle.resolve_topic_name(topic), side): each for (topic, side), each in qos.items()}
         self._usual = usual
         self._bridged = bridged
-        self._untold: list[Callable[[], None]] = []
+        self._forgetting: list[Callable[[], None]] = []
         self._endpoints: list[Endpoint] = []
         self._names: list[str] = []
 
@@ -262,7 +262,7 @@ class PluginNode:
 
     def close(self) -> None:
         """Remove everything that was made from the graph."""
-        for forget in self._untold:
+        for forget in self._forgetting:
             forget()
         if self._owned:
             self._node.destroy_node()
@@ -285,8 +285,8 @@ class PluginNode:
             subscription.destroy()
             listen(gz_side(topic))
 
-        bridged.tell(topic, move)
-        self._untold.append(partial(bridged.forget, topic, move))
+        bridged.notify(topic, move)
+        self._forgetting.append(partial(bridged.forget, topic, move))
 
     def _both(self, topic: str, usual: str) -> list[str]:
         topic = _FIRST_DIGIT.sub("_", _NO_TOPIC.sub("_", topic))
@@ -312,8 +312,8 @@ class PluginNode:
             callback(message)
             return
         rest()
-        told = phrase("'{topic}': a command with NaN or an infinite number stops the motion", topic=topic)
-        self.logger.warning(told, throttle_duration_sec=_WARN_SECONDS)
+        warning = phrase("'{topic}': a command with NaN or an infinite number stops the motion", topic=topic)
+        self.logger.warning(warning, throttle_duration_sec=_WARN_SECONDS)
 
     def _received(self, callback: Callable[[Any], object], message: Any) -> None:
         self.post(partial(callback, message))

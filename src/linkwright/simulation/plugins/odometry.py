@@ -104,17 +104,17 @@ class OdometryTopics:
                 return True
         return False
 
-    def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> None:
+    def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, angular: float) -> None:
         """Publish the pose, and the velocities in the robot's own axes in m/s and rad/s."""
         for output, send in self._outputs:
             if output.is_wanted:
-                send(stamp, pose, forward, sideways, turning)
+                send(stamp, pose, forward, sideways, angular)
 
-    def _odometry_message(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> Any:
+    def _odometry_message(self, stamp: Time, pose: Transform, forward: float, sideways: float, angular: float) -> Any:
         make = _classes()
         x, y, z, qx, qy, qz, qw = pose
         place = make.pose(make.point(x, y, z), Quaternion(qx, qy, qz, qw))
-        speed = make.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
+        speed = make.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, angular))
         of_pose, of_velocity = self._covariances
         places, speeds = make.pose_covariance(place, of_pose), make.twist_covariance(speed, of_velocity)
         return make.odometry(Header(stamp, self.frame), self.child, places, speeds)

@@ -55,12 +55,12 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
             )
         self.simulation.keep_awake(self.first_link)
 
-    def hold(self, forward: float, sideways: float, turning: float) -> None:
+    def hold(self, forward: float, sideways: float, yaw_rate: float) -> None:
         """Set velocities in m/s and rad/s for the next step; those out of the plane stay."""
         yaw = yaw_of(self.simulation.model_pose(self.place.path))
         linear, angular = self.simulation.link_velocity(self.first_link)
         along = (forward * cos(yaw) - sideways * sin(yaw), forward * sin(yaw) + sideways * cos(yaw), float(linear[2]))
-        self.simulation.set_model_velocity(self.place.path, along, (float(angular[0]), float(angular[1]), turning))
+        self.simulation.set_model_velocity(self.place.path, along, (float(angular[0]), float(angular[1]), yaw_rate))
 
 
 class PlanarMove(PlanarDrive[PlanarMoveParameters]):
@@ -76,20 +76,29 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         Raises:
             LinkwrightError: SIM160 the model is fixed to the world.
         """
-        said, node = self.parameters, self.node
+        parameters, node = self.parameters, self.node
         self.be_free()
         self._wanted = (0.0, 0.0, 0.0)
-        odometry = node.publisher("nav_msgs/msg/Odometry", said.odometry_topic, 1) if said.publish_odom else None
-        transforms = transforms_topic(node) if said.publish_odom_tf else None
-        variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
-        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
+        odometry = (
+            node.publisher("nav_msgs/msg/Odometry", parameters.odometry_topic, 1) if parameters.publish_odom else None
+        )
+        transforms = transforms_topic(node) if parameters.publish_odom_tf else None
+        variances = planar_variances(parameters.covariance_x, parameters.covariance_y, parameters.covariance_yaw)
+        self._topics = OdometryTopics(
+            parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
+        )
         commander = node.commander(self._rest)
         node.subscribe(
-            "geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1, commander=commander, rest=self._rest
+            "geometry_msgs/msg/Twist",
+            parameters.command_topic,
+            self._commanded,
+            1,
+            commander=commander,
+            rest=self._rest,
         )
         self.every(0.0, self._move)
         if odometry is not None or transforms is not None:
-            self.every(said.publish_rate, self._publish)
+            self.every(parameters.publish_rate, self._publish)
 
     def _commanded(self, twist: Any) -> None:
         self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))

@@ -21,7 +21,7 @@ bits. Make costly messages only if ``output.is_wanted``.
 
 Everything is called in the simulation's thread: `start` after the model is added, functions passed to `every` at their
 simulated times, callbacks of topics and services between two chunks of time, `reset` after time restarts, `stop` before
-the model is removed. A model whose file was saved is replaced where it is; `go_on` takes over the state that continues.
+the model is removed. A model whose file was saved is replaced where it is; `resume` takes over the lasting state.
 An exception, wherever it is raised, is logged and ends that plugin or sensor; everything else continues (`calls`).
 """
 
@@ -159,7 +159,7 @@ class SimulatedPlugin(Generic[P]):
     def reset(self) -> None:
         """Restore the state of the start; simulated time restarts."""
 
-    def go_on(self, before: SimulatedPlugin[P]) -> None:
+    def resume(self, before: SimulatedPlugin[P]) -> None:
         """Take over the state of a predecessor with the same parameters (its model was replaced); called after `start`.
 
         Args:

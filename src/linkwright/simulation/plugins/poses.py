@@ -45,30 +45,32 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
 
     def start(self) -> None:
         """Find the parts, and make the topics."""
-        said, model, path = self.parameters, self.place.model, self.place.path
+        parameters, model, path = self.parameters, self.place.model, self.place.path
         if model is None:
             return
         kinds = self._kinds()
         parts = [part for part in parts_of(self.simulation, model, path) if part.kind in kinds]
         topic = f"/model/{path.replace(SEPARATOR, '/model/')}/pose"
-        if said.static_publisher:
+        if parameters.static_publisher:
             moving = self._moved_by_joints(model)
             resting = [part for part in parts if part.kind is not PartKind.LINK or part.name not in moving]
             parts = [part for part in parts if part not in resting]
-            self._publish_at(said.static_update_frequency or said.update_frequency, f"{topic}_static", resting)
-        self._publish_at(said.update_frequency, topic, parts)
+            self._publish_at(
+                parameters.static_update_frequency or parameters.update_frequency, f"{topic}_static", resting
+            )
+        self._publish_at(parameters.update_frequency, topic, parts)
 
     def _kinds(self) -> set[PartKind]:
         """The kinds of parts that are published."""
-        said = self.parameters
-        nested = said.publish_nested_model_pose
+        parameters = self.parameters
+        nested = parameters.publish_nested_model_pose
         wanted = {
-            PartKind.MODEL: nested if said.publish_model_pose is None else said.publish_model_pose,
+            PartKind.MODEL: nested if parameters.publish_model_pose is None else parameters.publish_model_pose,
             PartKind.NESTED_MODEL: nested,
-            PartKind.LINK: said.publish_link_pose,
-            PartKind.VISUAL: said.publish_visual_pose,
-            PartKind.COLLISION: said.publish_collision_pose,
-            PartKind.SENSOR: said.publish_sensor_pose,
+            PartKind.LINK: parameters.publish_link_pose,
+            PartKind.VISUAL: parameters.publish_visual_pose,
+            PartKind.COLLISION: parameters.publish_collision_pose,
+            PartKind.SENSOR: parameters.publish_sensor_pose,
         }
         return {kind for kind, is_wanted in wanted.items() if is_wanted}
 

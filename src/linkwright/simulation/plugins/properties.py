@@ -110,14 +110,14 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
         def put() -> str:
             self.simulation.refresh()
             placed = self.simulation.scene.joints[self._entities.joint(request.joint_name)]
-            said = request.ode_joint_config
+            config = request.ode_joint_config
             joint, now = self.simulation.scene.spec.joint(placed.name), self.simulation.model.joint(placed.name)
             lower, upper = now.range.tolist() if self.simulation.model.jnt_limited[now.id] else (-_FAR, _FAR)
-            if len(said.lo_stop) or len(said.hi_stop):
-                joint.range = [next(iter(said.lo_stop), lower), next(iter(said.hi_stop), upper)]
+            if len(config.lo_stop) or len(config.hi_stop):
+                joint.range = [next(iter(config.lo_stop), lower), next(iter(config.hi_stop), upper)]
                 joint.limited = True
-            if len(said.damping):
-                set_first(joint, "damping", said.damping[0])
+            if len(config.damping):
+                set_first(joint, "damping", config.damping[0])
             self.simulation.set_altered()
             return "SetJointProperties: properties set"
 

@@ -43,12 +43,12 @@ class ClassicState(SimulatedPlugin[StateParameters]):
     def _publish(self) -> None:
         models = self.simulation.scene.models
         if self._models.is_wanted:
-            self._models.publish(self._told("gazebo_msgs/msg/ModelStates", list(models)))
+            self._models.publish(self._message("gazebo_msgs/msg/ModelStates", list(models)))
         if self._links.is_wanted:
             links = [held.link.name for model in models.values() for held in model.structure.links]
-            self._links.publish(self._told("gazebo_msgs/msg/LinkStates", links))
+            self._links.publish(self._message("gazebo_msgs/msg/LinkStates", links))
 
-    def _told(self, kind: str, names: list[str]) -> Any:
+    def _message(self, kind: str, names: list[str]) -> Any:
         states = [self._entities.state(name) for name in names]
         return get_message(kind)(names, [state.pose for state in states], [state.twist for state in states])
 

@@ -41,18 +41,18 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         topic = self.parameters.topic or f"/model/{self.place.path}/cmd_vel"
         commander = self.node.commander(self._rest)
         self.node.subscribe(
-            "geometry_msgs/msg/Twist", topic, self._told, usual="/cmd_vel", commander=commander, rest=self._rest
+            "geometry_msgs/msg/Twist", topic, self._receive, usual="/cmd_vel", commander=commander, rest=self._rest
         )
         self.every(0.0, self._move)
 
     def reset(self) -> None:
         """Restore the initial velocity of the parameters."""
-        said = self.parameters
+        parameters = self.parameters
         self._wanted: tuple[Vector3, Vector3] | None = None
-        if said.initial_linear is not None or said.initial_angular is not None:
-            self._wanted = (said.initial_linear or (0.0, 0.0, 0.0), said.initial_angular or (0.0, 0.0, 0.0))
+        if parameters.initial_linear is not None or parameters.initial_angular is not None:
+            self._wanted = (parameters.initial_linear or (0.0, 0.0, 0.0), parameters.initial_angular or (0.0, 0.0, 0.0))
 
-    def _told(self, twist: Any) -> None:
+    def _receive(self, twist: Any) -> None:
         self._wanted = (numbers(twist.linear), numbers(twist.angular))
 
     def _rest(self) -> bool:

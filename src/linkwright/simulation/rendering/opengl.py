@@ -23,7 +23,7 @@ from linkwright.geometry.vectors import Vector3
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of
 from linkwright.simulation.rendering.optics import Optics
-from linkwright.simulation.rendering.renderer import Picture, Pixels, Wanted, axes_of
+from linkwright.simulation.rendering.renderer import Pixels, RenderedImage, Wanted, axes_of
 from linkwright.simulation.rendering.triangles import is_endless
 from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
@@ -96,7 +96,7 @@ class OpenGlRenderer:
             self._gl.free()
             raise
 
-    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
+    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> RenderedImage:
         """Render the current view of a camera."""
         self._gl.make_current()
         hole = optics.pinhole
@@ -107,8 +107,8 @@ class OpenGlRenderer:
         colour, depth = self._draw(hole, wanted)
         geoms = self._draw_geoms(hole) if Wanted.GEOMS in wanted else None
         if optics.is_pinhole:
-            return Picture(colour, depth, geoms)
-        return Picture(
+            return RenderedImage(colour, depth, geoms)
+        return RenderedImage(
             None if colour is None else _warped(colour, optics),
             None if depth is None else _picked(depth, optics),
             None if geoms is None else _picked(geoms, optics),
@@ -235,18 +235,26 @@ class OpenGlRenderer:
         scene.nlight = min(len(lights), _LIGHTS)
         ambient = np.array(self._simulation.world.scene.ambient[:3])
         for light, placed in zip(scene.lights, lights[:_LIGHTS], strict=False):
-            said = placed.light
-            directional = said.type == "directional"  # a point light is a spot that shines all round
+            description = placed.light
+            directional = description.type == "directional"  # a point light is a spot that shines all round
             light.type = (kinds.mjLIGHT_DIRECTIONAL if directional else kinds.mjLIGHT_SPOT).value
             light.pos[:], light.dir[:] = placed.position, placed.direction
-            light.attenuation[:] = said.attenuation.constant, said.attenuation.linear, said.attenuation.quadratic
+            light.attenuation[:] = (
+                description.attenuation.constant,
+                description.attenuation.linear,
+                description.attenuation.quadratic,
+            )
             if directional:
                 light.attenuation[:] = 1.0, 0.0, 0.0
-            cone = said.spot.outer_angle / 2 if said.type == "spot" and said.spot is not None else np.pi
+            cone = (
+                description.spot.outer_angle / 2
+                if description.type == "spot" and description.spot is not None
+                else np.pi
+            )
             light.cutoff = float(np.degrees(cone)) if cone < np.pi / 2 else 180.0
             light.exponent = 0.0
             light.diffuse[:] = placed.colour
-            light.specular[:] = said.specular[:3]
+            light.specular[:] = description.specular[:3]
             light.ambient[:] = ambient
             ambient = np.zeros(3)
             light.headlight = light.castshadow = 0

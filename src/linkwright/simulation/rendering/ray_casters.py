@@ -163,7 +163,7 @@ class EmbreeCaster:
             self._read(simulation.model)
             self._revision = simulation.revision
         else:
-            self._take_changes()
+            self._release_changed()
         count = len(rays)
         hits = Hits(
             np.full(count, np.inf, np.float32),
@@ -174,7 +174,7 @@ class EmbreeCaster:
         origins = rays * np.float32(start)
         origins += origin.astype(np.float32)
         if self._movable.settle(origin):
-            self._keep()
+            self._build_static()
         if self._standing is not None:
             self._standing.cast_into(hits, origins, rays, start)
         seen = self._movable.in_view(view)
@@ -193,14 +193,14 @@ class EmbreeCaster:
             elif (mesh := triangles_of(model, geom)) is not None:
                 where = self._fixed if model.body_weldid[model.geom_bodyid[geom]] == 0 else self._loose
                 where[geom] = mesh
-        self._begin_anew()
-        self._keep()
+        self._reset_movable()
+        self._build_static()
 
-    def _begin_anew(self) -> None:
+    def _reset_movable(self) -> None:
         self._movable = MovableGeoms(self._simulation, self._loose)
         self._places, self._sizes = self._fixed_places(), self._simulation.model.geom_size.copy()
 
-    def _take_changes(self) -> None:
+    def _release_changed(self) -> None:
         """Move geoms out of the static tree that were moved or reshaped all the same.
 
         A dataset thereby has another scene for each image.
@@ -218,15 +218,15 @@ class EmbreeCaster:
         for geom in shaped.tolist():
             if geom in self._loose and (mesh := triangles_of(model, geom)) is not None:
                 self._loose[geom] = mesh
-        self._begin_anew()
+        self._reset_movable()
         if rested or len(self._fixed) != before:
-            self._keep()
+            self._build_static()
 
     def _fixed_places(self) -> Any:
         data, geoms = self._simulation.data, list(self._fixed)
         return np.concatenate([data.geom_xpos[geoms], data.geom_xmat[geoms]], axis=1)
 
-    def _keep(self) -> None:
+    def _build_static(self) -> None:
         """Build the tree of the static geoms."""
         meshes = self._fixed | {geom: self._loose[geom] for geom in self._movable.resting}
         self._standing = _Triangles(meshes, self._simulation.data) if meshes else None

@@ -14,10 +14,10 @@ from linkwright.simulation.rendering.lights import PlacedLight, lights_of
 from linkwright.simulation.rendering.movable import View
 from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.ray_casters import Caster, Hits
-from linkwright.simulation.rendering.renderer import Picture, Wanted, axes_of
+from linkwright.simulation.rendering.renderer import RenderedImage, Wanted, axes_of
 from linkwright.simulation.simulation import Simulation
 
-_UNSAID = (0.5, 0.5, 0.5, 1.0)
+_UNSET = (0.5, 0.5, 0.5, 1.0)
 """The colour in MuJoCo of a geom that has the colour of its material."""
 
 
@@ -37,7 +37,7 @@ class RayRenderer:
         self._paints: tuple[Any, ...] = ()
         self._revision = -1
 
-    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
+    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> RenderedImage:
         """Render the current view of a camera."""
         axes = axes_of(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
@@ -46,7 +46,7 @@ class RayRenderer:
         np.copyto(hits.distances, np.inf, where=unseen)
         np.copyto(hits.geoms, -1, where=unseen)
         shape = optics.height, optics.width
-        return Picture(
+        return RenderedImage(
             self._shaded(hits, origin, rays, axes[:, 2]).reshape(*shape, 3) if Wanted.COLOUR in wanted else None,
             hits.distances.reshape(shape) if Wanted.DEPTH in wanted else None,
             hits.geoms.reshape(shape) if Wanted.GEOMS in wanted else None,
@@ -73,9 +73,9 @@ class RayRenderer:
         light *= self._colours.take(hits.geoms, axis=0, mode="wrap")
         np.minimum(light, 1.0, out=light)
         light *= 255
-        picture = light.astype(np.uint8)
-        np.copyto(picture, _background(scene.background), where=(hits.geoms < 0)[:, None])
-        return picture
+        rendered = light.astype(np.uint8)
+        np.copyto(rendered, _background(scene.background), where=(hits.geoms < 0)[:, None])
+        return rendered
 
 
 def _background(colour: Sequence[float]) -> Any:
@@ -106,7 +106,7 @@ def geom_colours(model: Any) -> Any:
     colours = np.array(model.geom_rgba[:, :3], dtype=np.float64)
     for geom in np.nonzero(model.geom_matid >= 0)[0]:
         material = model.geom_matid[geom]
-        if (model.geom_rgba[geom] == _UNSAID).all():
+        if (model.geom_rgba[geom] == _UNSET).all():
             colours[geom] = model.mat_rgba[material, :3]
         for texture in np.atleast_1d(model.mat_texid[material]):
             if texture >= 0:

@@ -28,7 +28,7 @@ class Wanted(Flag):
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class RenderedImage:
     """An image; None for parts that were not requested.
 
     Attributes:
@@ -48,7 +48,7 @@ class Renderer(Protocol):
     way: Phrase
     """How it does so, for people."""
 
-    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
+    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> RenderedImage:
         """Render the current view of a camera.
 
         Args:

@@ -10,7 +10,7 @@ from linkwright.diagnostics import Phrase
 from linkwright.geometry.single import Transform
 from linkwright.simulation.rendering.choice import make_renderer
 from linkwright.simulation.rendering.optics import Optics
-from linkwright.simulation.rendering.renderer import Picture, Renderer, Wanted
+from linkwright.simulation.rendering.renderer import RenderedImage, Renderer, Wanted
 from linkwright.simulation.simulation import Simulation
 
 _shared: WeakKeyDictionary[Simulation, SharedRenderer] = WeakKeyDictionary()
@@ -24,14 +24,16 @@ class SharedRenderer:
         self._renderer: Renderer | None = None
         self._thread = 0
         self._users = 0
-        self._told = False
+        self._reported = False
 
-    def render(self, optics: Optics, pose: Transform, wanted: Wanted, tell: Callable[[Phrase], object]) -> Picture:
+    def render(
+        self, optics: Optics, pose: Transform, wanted: Wanted, tell: Callable[[Phrase], object]
+    ) -> RenderedImage:
         """Render the camera's current view; before the first image, call `tell` with the kind of renderer."""
         if self._renderer is None or self._thread != threading.get_ident():
             self._renderer, self._thread = make_renderer(self._simulation), threading.get_ident()
-        if not self._told:
-            self._told = True
+        if not self._reported:
+            self._reported = True
             tell(self._renderer.way)
         return self._renderer.render(optics, pose, wanted)
 

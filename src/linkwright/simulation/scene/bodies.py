@@ -59,12 +59,12 @@ class BodyWriter:
 
     Attributes:
         diagnostics: findings on parts that cannot be simulated.
-        unsaid: names of the colliding geoms without a given friction.
+        unspecified: names of the colliding geoms without a given friction.
         grips: how much they grip where a motor turns them, by the names of the geoms.
     """
 
     def __init__(self, meshes: MeshLibrary) -> None:
-        self.unsaid: set[str] = set()
+        self.unspecified: set[str] = set()
         self.grips: dict[str, float] = {}
         self.diagnostics: list[Diagnostic] = []
         self._meshes = meshes
@@ -132,13 +132,13 @@ class BodyWriter:
         if kind == "ball":
             body.add_joint(name=placed.name, type=kinds.mjJNT_BALL, pos=list(in_child[:3]))
             return
-        sliding = kind == "prismatic"
+        prismatic = kind == "prismatic"
         count = 2 if kind in ("universal", "revolute2") else 1
         for axis, direction in placed.axes[:count]:
             name = placed.name if axis is placed.joint.axis else placed.name + SECOND_AXIS
             joint = body.add_joint(
                 name=name,
-                type=kinds.mjJNT_SLIDE if sliding else kinds.mjJNT_HINGE,
+                type=kinds.mjJNT_SLIDE if prismatic else kinds.mjJNT_HINGE,
                 pos=list(in_child[:3]),
                 axis=list(rotate(in_child[3:], direction)),
             )
@@ -185,7 +185,7 @@ class BodyWriter:
                 apply_surface(geom, surface)
                 self.grips[geom.name] = grip_of(surface)
                 if surface.friction is None:
-                    self.unsaid.add(geom.name)
+                    self.unspecified.add(geom.name)
 
     def _geoms(
         self, body: Any, part: Visual | Collision, pose: Transform, counts: Counter[str], *, fixed: bool
@@ -236,13 +236,13 @@ def _colour(visual: Visual, usual: Color) -> list[float]:
     return [min(max(each, 0.0), 1.0) for each in (red, green, blue, alpha * (1.0 - visual.transparency))]
 
 
-def set_first(thing: Any, name: str, value: float) -> None:
+def set_first(element: Any, name: str, value: float) -> None:
     """Set a coefficient; since version 4 MuJoCo has polynomials for some, and this sets the first term."""
-    held = getattr(thing, name)
+    held = getattr(element, name)
     if np.ndim(held):
         held[0] = value
     else:
-        setattr(thing, name, value)
+        setattr(element, name, value)
 
 
 def hinge_anchors(placed: PlacedJoint, distance: float) -> list[Vector3]:

@@ -68,9 +68,9 @@ def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, 
             model = scene.spec.compile()
             return model, mujoco.MjData(model)
     except (ValueError, mujoco.FatalError) as error:
-        said = str(error).removeprefix("Error: ").splitlines()[0]
+        reason = str(error).removeprefix("Error: ").splitlines()[0]
         raise LinkwrightError(
-            Diagnostic("SIM104", phrase("MuJoCo cannot simulate this world: {said}", said=foreign(said)))
+            Diagnostic("SIM104", phrase("MuJoCo cannot simulate this world: {said}", said=foreign(reason)))
         ) from None
 
 
@@ -103,8 +103,8 @@ def whole_step(step: float, world: World) -> int:
     if not (isfinite(step) and round(step * _NANOSECONDS) > 0):
         message = phrase("a time step of {step} s cannot be simulated", step=step)
         hint = phrase("0.001 is usual: <max_step_size>0.001")
-        said = physics_of(world)
-        element = said.element if said.max_step_size == step else None
+        physics = physics_of(world)
+        element = physics.element if physics.max_step_size == step else None
         if element is None:
             raise LinkwrightError(Diagnostic("SIM106", message, hint=hint))
         place = element.first("max_step_size") or element

@@ -88,12 +88,12 @@ def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
     return found
 
 
-def _renamed(thing: T, taken: set[str]) -> T:
+def _renamed(item: T, taken: set[str]) -> T:
     """An actor or road under a name that is free."""
-    while thing.name in taken:
-        thing = replace(thing, name=f"{thing.name}~")
-    taken.add(thing.name)
-    return thing
+    while item.name in taken:
+        item = replace(item, name=f"{item.name}~")
+    taken.add(item.name)
+    return item
 
 
 def draw(figure: Figure, spec: Any, writer: BodyWriter) -> None:

@@ -56,7 +56,7 @@ class MeshLibrary:
         self._files: dict[tuple[str, Path], Path | None] = {}
         self._assets: dict[Hashable, list[str]] = {}
         self._textures: dict[bytes, str] = {}  # images as PNG, and the names of their textures
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._mapped: set[str] = set()  # meshes of the specification with coordinates of images
 
     def look_in(self, finder: ResourceFinder) -> None:
@@ -226,7 +226,7 @@ class MeshLibrary:
         found = self._finder.file(uri, Path(source.name).parent if source is not None else Path()) if uri else None
         if isinstance(found, Missing):
             message = phrase("an image is left out: {reason}", reason=found.reason)
-            self._tell(Diagnostic("SIM112", message, severity=Severity.WARNING, hint=found.hint), element)
+            self._report(Diagnostic("SIM112", message, severity=Severity.WARNING, hint=found.hint), element)
             return None
         return found
 
@@ -305,13 +305,13 @@ class MeshLibrary:
 
     def _warn(self, found: Diagnostic, element: Element | None) -> None:
         message = phrase("a shape is left out: {reason}", reason=found.message)
-        self._tell(Diagnostic(found.code, message, severity=Severity.WARNING, hint=found.hint), element)
+        self._report(Diagnostic(found.code, message, severity=Severity.WARNING, hint=found.hint), element)
 
-    def _tell(self, found: Diagnostic, element: Element | None) -> None:
+    def _report(self, found: Diagnostic, element: Element | None) -> None:
         """Report a problem of an element, the same one once."""
-        if found.message in self._told:
+        if found.message in self._reported:
             return
-        self._told.add(found.message)
+        self._reported.add(found.message)
         span = element.span() if element is not None else None
         source = element.source if element is not None else None
         self.diagnostics.append(found.but(span=span, source=source))
@@ -320,8 +320,8 @@ class MeshLibrary:
 def _bounded(path: Path, count: int) -> None:
     """Check the number of a mesh's triangles (SIM115)."""
     if count > _MOST_TRIANGLES:
-        told = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}
-        message = phrase("the mesh '{path}' has {count} triangles, and at most {most} are simulated", **told)
+        values = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}
+        message = phrase("the mesh '{path}' has {count} triangles, and at most {most} are simulated", **values)
         hint = phrase("simplify it, or take a simple shape for the collision")
         raise LinkwrightError(Diagnostic("SIM115", message, hint=hint))
 

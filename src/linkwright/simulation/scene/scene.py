@@ -130,7 +130,7 @@ class Scene:
                 message = phrase("model '{name}' is left out: {why}", name=model.name, why=refused[model.name])
                 self._warn("SIM117", message, model.element)
             elif model.name not in self.models:  # `check` reports a second one
-                self._add_or_tell(model, frames)
+                self._add_or_report(model, frames)
         self.figures = figures_of(world, meshes)
         for figure in self.figures:
             draw(figure, self.spec, self._writer)
@@ -154,12 +154,12 @@ class Scene:
         self._warn("SIM106", message, physics.element)
         return _USUAL_STEP
 
-    def _add_or_tell(self, model: Model, frames: Frames) -> None:
+    def _add_or_report(self, model: Model, frames: Frames) -> None:
         try:
             self.add(model, model.name, frames.pose(model.name))
         except FrameError as error:
-            told = {"name": model.name, "frame": error.name}
-            message = phrase("model '{name}' is left out: '{frame}' in it has no place", **told)
+            values = {"name": model.name, "frame": error.name}
+            message = phrase("model '{name}' is left out: '{frame}' in it has no place", **values)
             self._warn("SIM116", message, model.element)
 
     def _warn(self, code: str, message: Phrase, element: Element | None) -> None:
@@ -307,8 +307,8 @@ class Scene:
 
     def speed_limit(self, joint: str) -> float:
         """The greatest speed of a joint of one axis in rad/s (m/s) by its limits; infinite where they have none."""
-        said = self.joints[joint].axes[0][0].limit.velocity if joint in self.joints else inf
-        return said if said > 0.0 else inf
+        limit = self.joints[joint].axes[0][0].limit.velocity if joint in self.joints else inf
+        return limit if limit > 0.0 else inf
 
     def let_roll(self, joint: str, rotor: float = 0.0) -> None:
         """Let a wheel roll without slipping.
@@ -410,7 +410,7 @@ class Scene:
                     joint.armature = self._driven[name][joint.name] * self.step
                     make_rolling(self.spec, body, joint, self.step, self._writer.grips, greatest)
                 else:
-                    make_sliding(body, self._writer.unsaid)
+                    make_sliding(body, self._writer.unspecified)
         self._unsettled.clear()
 
     def _add_link(self, held: HeldLink, poses: dict[str, Transform]) -> Any:
@@ -507,5 +507,5 @@ def _weld_name(parent: str, child: str) -> str:
     return f"{parent}#{child}#"
 
 
-def _collides(said: bool | None, model: Model) -> bool:
-    return model.self_collide if said is None else said
+def _collides(setting: bool | None, model: Model) -> bool:
+    return model.self_collide if setting is None else setting

@@ -19,11 +19,11 @@ _THICKNESS = 0.005
 _CORNERS = 32
 
 
-def set_pose(thing: Any, pose: Transform) -> None:
+def set_pose(element: Any, pose: Transform) -> None:
     """Set the pose of a body, geom, site or camera of a specification in the frame of its body."""
     x, y, z, qx, qy, qz, qw = pose
-    thing.pos = [x, y, z]
-    thing.quat = [qw, qx, qy, qz]
+    element.pos = [x, y, z]
+    element.quat = [qw, qx, qy, qz]
 
 
 def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any | None:

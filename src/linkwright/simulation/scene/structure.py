@@ -108,8 +108,8 @@ def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> Pl
     """
     ends = [frames.link(end) for end in (joint.parent, joint.child)]
     parent, child = (end if end == WORLD else _within(path, end) for end in ends)
-    said = [axis for axis in (joint.axis, joint.axis2) if axis is not None]
-    axes = tuple((axis, _direction(frames.axis(joint, axis))) for axis in said)
+    given = [axis for axis in (joint.axis, joint.axis2) if axis is not None]
+    axes = tuple((axis, _direction(frames.axis(joint, axis))) for axis in given)
     name = _within(path, joint.name)
     return PlacedJoint(name, joint, parent, child, compose(pose, frames.pose(joint.name)), axes)
 
@@ -118,9 +118,9 @@ def _within(path: str, name: str) -> str:
     return f"{path}{SEPARATOR}{name}" if path else name
 
 
-def _direction(said: Vector3) -> Vector3:
+def _direction(axis: Vector3) -> Vector3:
     """Return the direction of an axis: z by default, as in libsdformat; `check` reports that."""
-    return said if sum(each * each for each in said) > _LEAST**2 else (0.0, 0.0, 1.0)
+    return axis if sum(each * each for each in axis) > _LEAST**2 else (0.0, 0.0, 1.0)
 
 
 def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Structure:

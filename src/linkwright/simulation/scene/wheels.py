@@ -54,16 +54,16 @@ def make_rolling(spec: Any, body: Any, joint: Any, step: float, grips: Mapping[s
             make_wheel(geom, step, min(grip, greatest))
 
 
-def make_sliding(body: Any, unsaid: set[str]) -> None:
+def make_sliding(body: Any, unspecified: set[str]) -> None:
     """Let the balls of a body without a motor leave the load to the wheels.
 
     Args:
         body: a body of the specification.
-        unsaid: names of the geoms without a given friction: they slide, the others are only soft.
+        unspecified: names of the geoms without a given friction: they slide, the others are only soft.
     """
     for geom in body.geoms:
         if geom.group == COLLISION_GROUP and geom.type == load_mujoco().mjtGeom.mjGEOM_SPHERE:
-            if geom.name in unsaid:
+            if geom.name in unspecified:
                 make_slippery(geom)
             else:
                 make_soft(geom)

@@ -110,10 +110,10 @@ class NavsatSensor:
         place: SphericalCoordinates | None,
         generator: np.random.Generator,
     ) -> None:
-        said = navsat or Navsat()
-        across, up = said.horizontal_position, said.vertical_position
+        settings = navsat or Navsat()
+        across, up = settings.horizontal_position, settings.vertical_position
         self.position_noise = VectorNoise(NoiseXyz(across, across, up), generator)
-        across, up = said.horizontal_velocity, said.vertical_velocity
+        across, up = settings.horizontal_velocity, settings.vertical_velocity
         self.velocity_noise = VectorNoise(NoiseXyz(across, across, up), generator)
         self._mount = mount
         self._globe = Globe(place)
@@ -139,9 +139,9 @@ class AltimeterSensor:
     """
 
     def __init__(self, mount: Mount, altimeter: Altimeter | None, generator: np.random.Generator) -> None:
-        said = altimeter or Altimeter()
-        self._position_noise = NoiseSource(said.vertical_position, generator)
-        self._velocity_noise = NoiseSource(said.vertical_velocity, generator)
+        settings = altimeter or Altimeter()
+        self._position_noise = NoiseSource(settings.vertical_position, generator)
+        self._velocity_noise = NoiseSource(settings.vertical_velocity, generator)
         self._mount = mount
         self.reference = mount.pose()[2]
 
@@ -168,11 +168,11 @@ class Barometer:
         noise: its noise.
     """
 
-    def __init__(self, mount: Mount, said: AirPressure | None, generator: np.random.Generator) -> None:
-        said = said or AirPressure()
-        self.noise = NoiseSource(said.noise, generator)
+    def __init__(self, mount: Mount, settings: AirPressure | None, generator: np.random.Generator) -> None:
+        settings = settings or AirPressure()
+        self.noise = NoiseSource(settings.noise, generator)
         self._mount = mount
-        self._altitude = said.reference_altitude
+        self._altitude = settings.reference_altitude
 
     def measure(self) -> float:
         """The pressure in Pa.

@@ -35,9 +35,9 @@ class ForceTorqueSensor:
         offset: Transform = IDENTITY,
     ) -> None:
         self._simulation = simulation
-        self._said = sensor or ForceTorque()
-        self._force_noise = VectorNoise(self._said.force, generator)
-        self._torque_noise = VectorNoise(self._said.torque, generator)
+        self._settings = sensor or ForceTorque()
+        self._force_noise = VectorNoise(self._settings.force, generator)
+        self._torque_noise = VectorNoise(self._settings.torque, generator)
         self._joint = simulation.scene.joints[joint]
         child = simulation.scene.models[joint.partition("::")[0]].structure
         placed = next(held.link.pose for held in child.links if held.link.name == self._joint.child)
@@ -59,16 +59,16 @@ class ForceTorqueSensor:
         wrench, about = data.cfrc_int[body], data.subtree_com[simulation.model.body_rootid[body]]
         force = np.array(wrench[3:])
         torque = np.array(wrench[:3]) - np.cross(np.subtract(joint[:3], about), force)
-        if self._said.measure_direction != "parent_to_child":
+        if self._settings.measure_direction != "parent_to_child":
             force, torque = -force, -torque
         into = quaternion_inverse(np.array(self._axes(joint)))
         return self._force_noise.apply(rotate(into, force)), self._torque_noise.apply(rotate(into, torque))
 
     def _axes(self, joint: Transform) -> tuple[float, ...]:
         """The orientation in the world of the frame in which it measures."""
-        if self._said.frame == "parent":
+        if self._settings.frame == "parent":
             parent = self._joint.parent
             return (0.0, 0.0, 0.0, 1.0) if parent == "world" else self._simulation.link_pose(parent)[3:]
-        if self._said.frame == "sensor":
+        if self._settings.frame == "sensor":
             return compose(joint, self._offset)[3:]
         return self._simulation.link_pose(self._joint.child)[3:]

@@ -53,12 +53,12 @@ class ImuSensor:
     def __init__(
         self, mount: Mount, imu: Imu | None, *, generator: np.random.Generator, initial_reference: bool = False
     ) -> None:
-        said = imu or Imu()
-        self.turning_noise = VectorNoise(said.angular_velocity, generator)
-        self.acceleration_noise = VectorNoise(said.linear_acceleration, generator)
+        settings = imu or Imu()
+        self.angular_velocity_noise = VectorNoise(settings.angular_velocity, generator)
+        self.acceleration_noise = VectorNoise(settings.linear_acceleration, generator)
         self._mount = mount
         self._measured = mount.simulation.time
-        self._reference = self._start(said, initial_reference=initial_reference)
+        self._reference = self._start(settings, initial_reference=initial_reference)
 
     def _start(self, imu: Imu, *, initial_reference: bool) -> Quaternion:
         """The orientation of the reference frame in the world."""
@@ -77,9 +77,9 @@ class ImuSensor:
         period, self._measured = (simulation.time - self._measured) * 1e-9, simulation.time
         orientation = self._mount.pose()[3:]
         into = quaternion_inverse(orientation)
-        turning, felt = self._mount.felt()
+        angular, felt = self._mount.felt()
         return Inertial(
             quaternion_multiply(quaternion_inverse(self._reference), orientation),
-            self.turning_noise.on(rotate(into, turning), period),
+            self.angular_velocity_noise.on(rotate(into, angular), period),
             self.acceleration_noise.on(rotate(into, felt), period),
         )

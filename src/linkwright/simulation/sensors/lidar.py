@@ -132,5 +132,5 @@ class LidarSensor:
         return [float(name.startswith(prefix)) for name in names]
 
     def _retros(self, names: list[str]) -> list[float]:
-        said = {name: part.laser_retro for name, part in parts_of(self._simulation) if part.laser_retro}
-        return [said.get(part_of(name), 0.0) for name in names]
+        retros = {name: part.laser_retro for name, part in parts_of(self._simulation) if part.laser_retro}
+        return [retros.get(part_of(name), 0.0) for name in names]

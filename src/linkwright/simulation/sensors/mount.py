@@ -56,10 +56,10 @@ class Mount:
     def velocity(self) -> tuple[Vector3, Vector3]:
         """The velocity of the sensor in m/s and its angular velocity in rad/s, in the axes of the world."""
         linear, angular = self.simulation.link_velocity(self.link)
-        turning = _three(angular)
+        rates = _three(angular)
         if self._is_at_origin:
-            return _three(linear), turning
-        return added(_three(linear), cross(turning, self._arm())), turning
+            return _three(linear), rates
+        return added(_three(linear), cross(rates, self._arm())), rates
 
     @property
     def _is_at_origin(self) -> bool:
@@ -79,12 +79,12 @@ class Mount:
         simulation, mujoco, result = self.simulation, load_mujoco(), np.zeros(6)
         kind = mujoco.mjtObj.mjOBJ_XBODY
         mujoco.mj_objectAcceleration(simulation.model, simulation.data, kind, self.body, result, 0)
-        turning = _three(simulation.link_velocity(self.link)[1])
+        angular = _three(simulation.link_velocity(self.link)[1])
         p, q, r, x, y, z = result.tolist()
         if self._is_at_origin:
-            return turning, (x, y, z)
+            return angular, (x, y, z)
         arm = self._arm()
-        return turning, added(added((x, y, z), cross((p, q, r), arm)), cross(turning, cross(turning, arm)))
+        return angular, added(added((x, y, z), cross((p, q, r), arm)), cross(angular, cross(angular, arm)))
 
 
 def _three(values: Array) -> Vector3:

@@ -38,12 +38,12 @@ def overlaps(simulation: Simulation, names: Container[str] | None = None) -> lis
                 )
                 depths[key] = max(depths.get(key, 0.0), -float(contact.dist))
     deepest = sorted(depths.items(), key=lambda item: -item[1])
-    told = [_told(simulation, *pair, depth) for pair, depth in deepest[:_MOST]]
-    rest = len(deepest) - len(told)
+    findings = [_finding(simulation, *pair, depth) for pair, depth in deepest[:_MOST]]
+    rest = len(deepest) - len(findings)
     if rest:
         message = counted("{count} other pair of models overlaps", "{count} other pairs of models overlap", rest)
-        told.append(Diagnostic("SIM144", message, severity=Severity.WARNING))
-    return told
+        findings.append(Diagnostic("SIM144", message, severity=Severity.WARNING))
+    return findings
 
 
 def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
@@ -51,10 +51,10 @@ def _moving_first(simulation: Simulation, links: Iterable[str]) -> list[str]:
     return sorted(links, key=lambda link: int(simulation.model.body_weldid[simulation.body(link)]) == 0)
 
 
-def _told(simulation: Simulation, first: str, second: str, depth: float) -> Diagnostic:
-    told = {"first": first, "second": second, "depth": f"{depth:.2f}"}
+def _finding(simulation: Simulation, first: str, second: str, depth: float) -> Diagnostic:
+    values = {"first": first, "second": second, "depth": f"{depth:.2f}"}
     within = model_of(first) == model_of(second)
-    message: Phrase = phrase("'{first}' begins {depth} m inside '{second}'", **told)
+    message: Phrase = phrase("'{first}' begins {depth} m inside '{second}'", **values)
     hint = phrase("they are pushed apart slowly; move one of them, if that is not meant")
     if within:
         hint = phrase("they are pushed apart slowly; links of a model touch only where <self_collide> is true")

@@ -57,8 +57,8 @@ class Reports:
         self._finder: ResourceFinder | None = None
         self._written: dict[tuple[int, str, Transform], tuple[Model, WrittenModel]] = {}  # keeps the models of the ids
         self._posed = self._measured = 0.0
-        server.on_reset.append(self._tell_time)
-        server.simulation.call_every(round(NANOSECONDS / clock_rate) if clock_rate > 0 else 0, self._tell_time)
+        server.on_reset.append(self._publish_time)
+        server.simulation.call_every(round(NANOSECONDS / clock_rate) if clock_rate > 0 else 0, self._publish_time)
 
     def begin(self) -> None:
         """Publish the description, now and after each change of the world."""
@@ -120,7 +120,7 @@ class Reports:
         batch = TransformBatch((WORLD,) * len(bodies), self._names, simulation.time, poses)
         self._poses.publish(TFMessage(batch=batch))
 
-    def _tell_time(self) -> None:
+    def _publish_time(self) -> None:
         self._clock.publish(get_message(_CLOCK)(clock=Time.from_nanoseconds(self._server.simulation.time)))
 
     def _address(self, written: str, beside: Path) -> str:

@@ -58,7 +58,7 @@ class Runner:
         self.paused = paused
         self.real_time_factor = 0.0
         self._server = server
-        self._said_factor = factor
+        self._given_factor = factor
         self._factor = 1.0
         self._left = None if seconds is None else round(seconds * NANOSECONDS)
         self._watch, self._on_state, self._on_end = watch, on_state, on_end
@@ -104,7 +104,7 @@ class Runner:
 
     def _resume(self) -> None:
         """Restart counting real time, at the world's real time factor; the world may be another one."""
-        self._factor = self._said_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
+        self._factor = self._given_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
         self._began = self._measured = (time.monotonic(), self._server.simulation.time)
 
     def _run(self) -> None:

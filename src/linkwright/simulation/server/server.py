@@ -102,17 +102,17 @@ class SimulationServer:
         self._namespaces: dict[str, str] = {}
         self._of_world = set(simulation.scene.models)
         self._node_names: set[str] = set()
-        self._told: set[str] = set()
+        self._logged: set[str] = set()
         self._findings: dict[str, list[Diagnostic]] = {}
 
     def start(self) -> None:
         """Start the plugins of the world and of its models."""
-        self.tell(self.simulation.scene.diagnostics)
-        self._tell_unsimulated(unsimulated(self.simulation.world))
+        self.report(self.simulation.scene.diagnostics)
+        self._warn_unsimulated(unsimulated(self.simulation.world))
         self._load(_WORLD, of_world(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
-        self.tell(overlaps(self.simulation))  # not before: plugins attach models that are meant to overlap
+        self.report(overlaps(self.simulation))  # not before: plugins attach models that are meant to overlap
         self._changed()
 
     @property
@@ -149,9 +149,9 @@ class SimulationServer:
             raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
         self._exchange((), (Coming(model, name, pose, namespace),))
         stand_up(self.simulation, name)
-        self.tell(overlaps(self.simulation, (name,)))
-        self.tell(touches_nothing(self.simulation, name), name)
-        self._tell_unsimulated(unsimulated_in(model))
+        self.report(overlaps(self.simulation, (name,)))
+        self.report(touches_nothing(self.simulation, name), name)
+        self._warn_unsimulated(unsimulated_in(model))
 
     def renew(self, model: Model, name: str) -> None:
         """Replace a model by a changed one, which keeps its pose, velocity and joint positions.
@@ -168,7 +168,7 @@ class SimulationServer:
         coming = Coming(model, name, before.pose, self._namespaces.get(name, ""), here=True)
         check(self.simulation.world, self.simulation, (coming,), self.simulation.finder)
         self._exchange((), (replace(coming, motion=motion_of(self.simulation, name)),))
-        self.tell(touches_nothing(self.simulation, name), name)
+        self.report(touches_nothing(self.simulation, name), name)
 
     def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
         """Replace the running world by another one; common parts continue, and spawned models stay.
@@ -193,7 +193,7 @@ class SimulationServer:
         simulation.set_world(world, finder)
         simulation.place(changes.moved)
         self._exchange(changes.gone, (*renewed, *changes.new))
-        self.tell(overlaps(simulation, {*changes.moved, *(each.name for each in changes.new)}))
+        self.report(overlaps(simulation, {*changes.moved, *(each.name for each in changes.new)}))
         self._of_world = {model.name for model in wanted.models}
         if not alike(before.plugins, wanted.plugins):
             self._end(self._plugins.pop(_WORLD, []))
@@ -202,7 +202,7 @@ class SimulationServer:
     def _exchange(self, gone: Iterable[str], coming: Sequence[Coming]) -> None:
         """Remove models and add others, those of the same name in their places; connected ones are replaced as well."""
         simulation = self.simulation
-        told = len(simulation.scene.diagnostics)
+        count = len(simulation.scene.diagnostics)
         before: dict[str, list[SimulatedPlugin[object]]] = {}
         gone, coming = tuple(gone), (*coming, *self._hanging_on({*gone, *(each.name for each in coming)}))
         leaving = {*gone, *(each.name for each in coming)}
@@ -216,12 +216,12 @@ class SimulationServer:
         for each in coming:
             if each.motion is not None:
                 resume(simulation, each.name, each.motion, here=each.here)
-        self.tell(simulation.scene.diagnostics[told:])
+        self.report(simulation.scene.diagnostics[count:])
         for each in coming:
             self._namespaces[each.name] = each.namespace
             places = of_model(simulation.world, each.model, each.name)
-            goes_on = each.here and each.motion is not None
-            self._load(each.name, places, each.namespace, before[each.name] if goes_on else ())
+            continues = each.here and each.motion is not None
+            self._load(each.name, places, each.namespace, before[each.name] if continues else ())
         self._changed()
 
     def _hanging_on(self, names: Collection[str]) -> Iterator[Coming]:
@@ -284,7 +284,7 @@ class SimulationServer:
     def _end(self, plugins: list[SimulatedPlugin[object]]) -> None:
         for plugin in reversed(plugins):
             self._forget_node(plugin.place, plugin.node)
-            plugin.close(partial(self._tell_failure, plugin.place))
+            plugin.close(partial(self._log_failure, plugin.place))
 
     def _forget_node(self, place: PluginPlace, node: PluginNode) -> None:
         if not is_shared(place):
@@ -307,14 +307,14 @@ class SimulationServer:
         self._plugins[owner] = []
         unknown: dict[str, None] = {}
         for place in places:
-            with self._telling(place):
+            with self._logging_failures(place):
                 found = self._class(place)
                 if found is None:
                     unknown |= dict.fromkeys(_kinds(place))
                 else:
                     self._begin(owner, found, place, namespace, before)
-        new = [each for each in unknown if each not in self._told]
-        self._told.update(new)
+        new = [each for each in unknown if each not in self._logged]
+        self._logged.update(new)
         if new:
             names = joined(new)
             self.node.get_logger().info(phrase("plugins and sensors that are not simulated: {names}", names=names))
@@ -328,8 +328,8 @@ class SimulationServer:
             return sensor_class(place.sensor.sensor.type)
         filename, original = place.plugin.filename, original_library(place.plugin.name)
         found = plugin_class(library_name(filename))
-        if found is None and (found := plugin_class(original)) is not None and filename not in self._told:
-            self._told.add(filename)
+        if found is None and (found := plugin_class(original)) is not None and filename not in self._logged:
+            self._logged.add(filename)
             copied = phrase(
                 "'{copy}' is simulated as '{original}', whose class it names", copy=filename, original=original
             )
@@ -353,14 +353,14 @@ class SimulationServer:
             parameters, findings = parameters_from(
                 kind.PARAMETERS, place.plugin.element if place.plugin else None, kind.IGNORED
             )
-            self.tell(findings)
+            self.report(findings)
             plugin = kind(place, node, parameters, self)
             made.append(plugin)
             self._plugins[owner].append(plugin)
             plugin.start()
             same = next((simulated_plugin for simulated_plugin in before if plugin.is_like(simulated_plugin)), None)
             if same is not None:
-                plugin.go_on(same)
+                plugin.resume(same)
 
         calls.make(start)
         if not made:
@@ -369,14 +369,14 @@ class SimulationServer:
 
     def _failed(self, owner: str, place: PluginPlace, error: Exception) -> None:
         """End a plugin or sensor that raised an error; everything else continues."""
-        self._tell_failure(place, error)
+        self._log_failure(place, error)
         running = self._plugins.get(owner, [])
         ended = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is place]
         running[:] = [simulated_plugin for simulated_plugin in running if simulated_plugin.place is not place]
         self._end(ended)
 
-    def _tell_failure(self, place: PluginPlace, error: Exception) -> None:
-        self.tell(findings_of(error, place.name, place.element))
+    def _log_failure(self, place: PluginPlace, error: Exception) -> None:
+        self.report(findings_of(error, place.name, place.element))
         if not isinstance(error, LinkwrightError):
             for function in self.on_failure:
                 function(error)
@@ -419,21 +419,21 @@ class SimulationServer:
     def _now_ns(self) -> int:
         return self.simulation.time
 
-    def _tell_unsimulated(self, elements: Iterable[str]) -> None:
-        new = [element for element in elements if element not in self._told]
-        self._told.update(new)
+    def _warn_unsimulated(self, elements: Iterable[str]) -> None:
+        new = [element for element in elements if element not in self._logged]
+        self._logged.update(new)
         if new:
             self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(new)))
 
     @contextmanager
-    def _telling(self, place: PluginPlace) -> Iterator[None]:
+    def _logging_failures(self, place: PluginPlace) -> Iterator[None]:
         """Log the errors of one plugin, so that the others continue."""
         try:
             yield
         except Exception as error:  # noqa: BLE001 - a plugin of any world or package may raise anything
-            self._tell_failure(place, error)
+            self._log_failure(place, error)
 
-    def tell(self, findings: Iterable[Diagnostic], model: str = _WORLD) -> None:
+    def report(self, findings: Iterable[Diagnostic], model: str = _WORLD) -> None:
         """Log a finding once; one on a model is among the `findings` until the model is removed."""
         found = list(findings)
         if found and model != _WORLD:
@@ -441,9 +441,9 @@ class SimulationServer:
             self._findings_changed()
         for diagnostic in found:
             text = f"{diagnostic.span}: {diagnostic.message}" if diagnostic.span else str(diagnostic.message)
-            if text in self._told:
+            if text in self._logged:
                 continue
-            self._told.add(text)
+            self._logged.add(text)
             logger = self.node.get_logger()
             line = f"{text} ({diagnostic.hint})" if diagnostic.hint else text
             if diagnostic.severity is Severity.ERROR:  # two lines, as a logger knows its calls by their lines

@@ -126,7 +126,7 @@ class Services:
         placed = compose(pose, transform_of(entity.model.pose.pose))
         name = name or entity.model.name
         self._server.spawn(entity.model, name, placed, namespace)
-        self._server.tell(entity.diagnostics, name)
+        self._server.report(entity.diagnostics, name)
         return name
 
     def renew(self, text: str, name: str) -> None:
@@ -146,7 +146,7 @@ class Services:
         def renew() -> None:
             try:
                 self._server.renew(entity.model, name)
-                self._server.tell(entity.diagnostics, name)
+                self._server.report(entity.diagnostics, name)
             except LinkwrightError as error:
                 self._server.node.get_logger().error(told(error.diagnostics[0]))
 

@@ -72,8 +72,8 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
 
     def classic_frame(self) -> str:
         """The frame of its messages in Gazebo classic: that of the plugin's parameters, else the link."""
-        said: str = getattr(self.parameters, "frame_name", "")
-        return said.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]
+        frame: str = getattr(self.parameters, "frame_name", "")
+        return frame.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]
 
     def gz_frame(self) -> str:
         """The frame of its messages in gz: that of the sensor's element, else ``model/link/sensor``."""

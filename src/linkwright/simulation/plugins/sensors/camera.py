@@ -29,11 +29,11 @@ from linkwright.simulation.plugins.sensors.pictures import (
     PixelNoise,
     fill_camera_info,
     fill_depth,
-    fill_picture,
+    fill_image,
     limited,
 )
 from linkwright.simulation.rendering.optics import Optics, optics_of
-from linkwright.simulation.rendering.renderer import Picture, Wanted
+from linkwright.simulation.rendering.renderer import RenderedImage, Wanted
 from linkwright.simulation.rendering.sharing import shared_renderer
 
 P = TypeVar("P")
@@ -42,18 +42,18 @@ _DEPTH_TYPES = ("depth", "depth_camera", "rgbd_camera", "rgbd")
 
 
 @dataclass(frozen=True, slots=True)
-class Eye:
+class MountedCamera:
     """One camera of a sensor.
 
     Attributes:
-        camera: the parsed camera.
+        description: the parsed camera.
         optics: its projection.
         pose: its pose in the frame of the link.
         noise: on its colours.
         encoding: of its images.
     """
 
-    camera: Camera
+    description: Camera
     optics: Optics
     pose: Transform
     noise: PixelNoise
@@ -66,7 +66,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
     def make_sensor(self) -> None:
         """Make its cameras."""
         generator = self.random
-        self.eyes = [self._eye(camera, generator) for camera in self.sensor.sensor.cameras or (Camera(),)]
+        self.cameras = [self._mounted(camera, generator) for camera in self.sensor.sensor.cameras or (Camera(),)]
 
     def start(self) -> None:
         """Make cameras and topics."""
@@ -77,21 +77,21 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         """Release the renderer."""
         self._shared.release()
 
-    def see(self, eye: Eye, wanted: Wanted) -> Picture:
+    def see(self, camera: MountedCamera, wanted: Wanted) -> RenderedImage:
         """Render the image of one of its cameras, with noise on the colours."""
-        pose = compose(self.simulation.link_pose(self.sensor.link), eye.pose)
-        picture = self._shared.render(eye.optics, pose, wanted, self._tell_way)
-        if picture.colour is None:
-            return picture
-        return Picture(eye.noise.apply(picture.colour), picture.depth, picture.geoms)
+        pose = compose(self.simulation.link_pose(self.sensor.link), camera.pose)
+        rendered = self._shared.render(camera.optics, pose, wanted, self._log_renderer)
+        if rendered.colour is None:
+            return rendered
+        return RenderedImage(camera.noise.apply(rendered.colour), rendered.depth, rendered.geoms)
 
-    def publish_picture(self, output: Output, eye: Eye, picture: Picture, frame: str) -> None:
+    def publish_image(self, output: Output, camera: MountedCamera, rendered: RenderedImage, frame: str) -> None:
         """Publish the colours of an image."""
         message = self.message(IMAGE, frame)
-        fill_picture(message, picture.colour, eye.encoding)  # type: ignore[arg-type]  # it was asked for
+        fill_image(message, rendered.colour, camera.encoding)  # type: ignore[arg-type]  # it was asked for
         output.publish(message)
 
-    def _eye(self, camera: Camera, generator: np.random.Generator) -> Eye:
+    def _mounted(self, camera: Camera, generator: np.random.Generator) -> MountedCamera:
         encoding = ENCODINGS.get(camera.image.format.upper())
         if encoding is None:
             encoding = USUAL_ENCODING
@@ -99,9 +99,9 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
                 unknown = phrase("'{format}' is not an image format; bgr8 is used", format=camera.image.format)
                 self.node.logger.warning(unknown)
         pose = compose(self.sensor.pose, transform_of(camera.pose.pose))
-        return Eye(camera, optics_of(camera), pose, PixelNoise(camera.noise, generator), encoding)
+        return MountedCamera(camera, optics_of(camera), pose, PixelNoise(camera.noise, generator), encoding)
 
-    def _tell_way(self, way: Phrase) -> None:
+    def _log_renderer(self, way: Phrase) -> None:
         self.node.logger.info(phrase("camera images are rendered by {way}", way=way))
 
 
@@ -156,22 +156,22 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
 
     def make_topics(self) -> None:
         """Make the topics of each of its cameras."""
-        given, sensor = self.parameters, self.sensor.sensor
-        name = given.camera_name or sensor.name
+        parameters, sensor = self.parameters, self.sensor.sensor
+        name = parameters.camera_name or sensor.name
         self._frame = self.classic_frame()
         several = sensor.type == "multicamera"
-        bases = [f"{name}/{eye.camera.name}" if several else name for eye in self.eyes]
-        self._images = [self._output(IMAGE, base, given.image_topic_name) for base in bases]
-        self._infos = [self._output(INFO, base, given.camera_info_topic_name) for base in bases]
+        bases = [f"{name}/{camera.description.name}" if several else name for camera in self.cameras]
+        self._images = [self._output(IMAGE, base, parameters.image_topic_name) for base in bases]
+        self._infos = [self._output(INFO, base, parameters.camera_info_topic_name) for base in bases]
         self._depths: list[Output] = []
         if sensor.type in _DEPTH_TYPES:
             self._depths = [
-                self._output(IMAGE, name, given.depth_image_topic_name),
-                self._output(INFO, name, given.depth_info_topic_name),
-                self._output(CLOUD, name, given.point_cloud_topic_name),
+                self._output(IMAGE, name, parameters.depth_image_topic_name),
+                self._output(INFO, name, parameters.depth_info_topic_name),
+                self._output(CLOUD, name, parameters.point_cloud_topic_name),
             ]
-        self._asked = not given.triggered
-        if given.triggered:
+        self._asked = not parameters.triggered
+        if parameters.triggered:
             kind = get_message("std_msgs/msg/Empty")
             self.node.subscribe(kind, f"{name}/image_trigger", self._trigger)
 
@@ -193,7 +193,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
     def measure(self) -> None:
         """Render images, each only if its topics have subscriptions."""
         self._asked = not self.parameters.triggered
-        for eye, image, info in zip(self.eyes, self._images, self._infos, strict=True):
+        for camera, image, info in zip(self.cameras, self._images, self._infos, strict=True):
             depth, depth_info, cloud = self._depths or (None, None, None)
             has_cloud = cloud is not None and cloud.is_wanted
             wanted = Wanted(0)
@@ -201,35 +201,35 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
                 wanted |= Wanted.COLOUR
             if has_cloud or (depth is not None and depth.is_wanted):
                 wanted |= Wanted.DEPTH
-            picture = self.see(eye, wanted) if wanted else Picture(None, None, None)
+            rendered = self.see(camera, wanted) if wanted else RenderedImage(None, None, None)
             if image.is_wanted:
-                self.publish_picture(image, eye, picture, self._frame)
-            self._publish_info(info, eye)
+                self.publish_image(image, camera, rendered, self._frame)
+            self._publish_info(info, camera)
             if depth is not None and depth_info is not None and cloud is not None:
-                self._publish_depth(depth, cloud, eye, picture)
-                self._publish_info(depth_info, eye)
+                self._publish_depth(depth, cloud, camera, rendered)
+                self._publish_info(depth_info, camera)
 
-    def _publish_depth(self, depth: Output, cloud: Output, eye: Eye, picture: Picture) -> None:
+    def _publish_depth(self, depth: Output, cloud: Output, camera: MountedCamera, rendered: RenderedImage) -> None:
         nearest, farthest = self.parameters.min_depth, self.parameters.max_depth
-        if depth.is_wanted and picture.depth is not None:
+        if depth.is_wanted and rendered.depth is not None:
             message = self.message(IMAGE, self._frame)
-            fill_depth(message, picture.depth, nearest, farthest)
+            fill_depth(message, rendered.depth, nearest, farthest)
             depth.publish(message)
-        if cloud.is_wanted and picture.depth is not None and picture.colour is not None:
+        if cloud.is_wanted and rendered.depth is not None and rendered.colour is not None:
             message = self.message(CLOUD, self._frame)
-            points = points_of(eye.optics, limited(picture.depth, nearest, farthest))
-            fill_camera_cloud(message, points, picture.colour, swapped=self.gazebo_mistakes)
+            points = points_of(camera.optics, limited(rendered.depth, nearest, farthest))
+            fill_camera_cloud(message, points, rendered.colour, swapped=self.gazebo_mistakes)
             cloud.publish(message)
 
-    def _publish_info(self, output: Output, eye: Eye) -> None:
+    def _publish_info(self, output: Output, camera: MountedCamera) -> None:
         if not output.is_wanted:
             return
-        given, optics = self.parameters, eye.optics
-        center = given.cx or (optics.width + 1) / 2, given.cy or (optics.height + 1) / 2
+        parameters, optics = self.parameters, camera.optics
+        center = parameters.cx or (optics.width + 1) / 2, parameters.cy or (optics.height + 1) / 2
         message = self.message(INFO, self._frame)
         fill_camera_info(
-            message, optics, eye.camera.distortion, center=center, focal=given.focal_length,
-            baseline=given.hack_baseline,
+            message, optics, camera.description.distortion, center=center, focal=parameters.focal_length,
+            baseline=parameters.hack_baseline,
         )  # fmt: skip
         output.publish(message)
 
@@ -248,7 +248,7 @@ class GzCamera(CameraPlugin[NoParameters]):
         """Make the topics."""
         kind = self.sensor.sensor.type
         self._frame = self.gz_frame()
-        camera = self.eyes[0].camera
+        camera = self.cameras[0].description
         self._optical = camera.optical_frame_id or self._frame
         self._image = self._depth = self._cloud = None
         if kind in ("rgbd_camera", "rgbd"):
@@ -265,18 +265,18 @@ class GzCamera(CameraPlugin[NoParameters]):
         self._info = self.node.publisher(INFO, topic, usual="" if self.sensor.sensor.topic else "/camera_info")
 
     def _below(self, kind: str, leaf: str) -> Output:
-        said = self.sensor.sensor.topic
+        topic = self.sensor.sensor.topic
         return self.node.publisher(
-            kind, f"{said}/{leaf}" if said else self.gz_topic(leaf), usual="" if said else f"/{leaf}"
+            kind, f"{topic}/{leaf}" if topic else self.gz_topic(leaf), usual="" if topic else f"/{leaf}"
         )
 
     def _info_topic(self) -> str:
-        said = self.sensor.sensor.topic
-        if not said:
+        topic = self.sensor.sensor.topic
+        if not topic:
             return self.gz_topic("camera_info")
         if self._image is not None and self._depth is not None:
-            return f"{said}/camera_info"
-        above, slash, _ = said.rpartition("/")
+            return f"{topic}/camera_info"
+        above, slash, _ = topic.rpartition("/")
         return f"{above}{slash}camera_info"
 
     def _outputs(self) -> Iterator[Output]:
@@ -288,27 +288,27 @@ class GzCamera(CameraPlugin[NoParameters]):
 
     def measure(self) -> None:
         """Render an image, with the parts whose topics have subscriptions."""
-        (eye, *_) = self.eyes
+        (camera, *_) = self.cameras
         wanted = Wanted(0)
         if any(output is not None and output.is_wanted for output in (self._image, self._cloud)):
             wanted |= Wanted.COLOUR
         if any(output is not None and output.is_wanted for output in (self._depth, self._cloud)):
             wanted |= Wanted.DEPTH
-        picture = self.see(eye, wanted) if wanted else Picture(None, None, None)
+        rendered = self.see(camera, wanted) if wanted else RenderedImage(None, None, None)
         if self._image is not None and self._image.is_wanted:
-            self.publish_picture(self._image, eye, picture, self._optical)
-        clip = eye.camera.depth_clip or eye.camera.clip
+            self.publish_image(self._image, camera, rendered, self._optical)
+        clip = camera.description.depth_clip or camera.description.clip
         if self._depth is not None and self._depth.is_wanted:
             message = self.message(IMAGE, self._optical)
-            fill_depth(message, picture.depth, clip.near, clip.far)  # type: ignore[arg-type]  # it was asked for
+            fill_depth(message, rendered.depth, clip.near, clip.far)  # type: ignore[arg-type]  # it was asked for
             self._depth.publish(message)
         if self._cloud is not None and self._cloud.is_wanted:
             message = self.message(CLOUD, self._frame)
-            points = points_of(eye.optics, limited(picture.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
+            points = points_of(camera.optics, limited(rendered.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
             forwards = np.stack([points[:, :, 2], -points[:, :, 0], -points[:, :, 1]], axis=-1)
-            fill_camera_cloud(message, forwards, picture.colour)  # type: ignore[arg-type]  # it was asked for
+            fill_camera_cloud(message, forwards, rendered.colour)  # type: ignore[arg-type]  # it was asked for
             self._cloud.publish(message)
         if self._info.is_wanted:
             message = self.message(INFO, self._optical)
-            fill_camera_info(message, eye.optics, eye.camera.distortion)
+            fill_camera_info(message, camera.optics, camera.description.distortion)
             self._info.publish(message)

@@ -34,8 +34,8 @@ class _Contacts(OneTopic[P], Generic[P]):
 
     def make_sensor(self) -> None:
         """Make the sensor for the collision that its element names."""
-        said = self.sensor.sensor.contact
-        named = [] if said is None or said.collision == "__default__" else [said.collision]
+        contact = self.sensor.sensor.contact
+        named = [] if contact is None or contact.collision == "__default__" else [contact.collision]
         self.contacts = ContactSensor(self.mount, named)
 
 
@@ -60,8 +60,8 @@ class GzContact(_Contacts[NoParameters]):
 
     def make_topics(self) -> None:
         """Make the topic: that of ``<contact>``, or the one that gz gives the sensor."""
-        said = self.sensor.sensor.contact
-        named = "" if said is None or said.topic == _NO_TOPIC else said.topic
+        contact = self.sensor.sensor.contact
+        named = "" if contact is None or contact.topic == _NO_TOPIC else contact.topic
         usual = "" if named else "/contacts"
         self.output = self.node.publisher(_CONTACTS, named or self.gz_topic("contact"), usual=usual)
 

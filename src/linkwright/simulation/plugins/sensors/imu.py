@@ -44,7 +44,7 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
             header=Header(self.stamp(), self.frame),
             orientation=Quaternion(*measured.orientation),
             angular_velocity=Vector3(*measured.angular_velocity),
-            angular_velocity_covariance=self.imu.turning_noise.covariance,
+            angular_velocity_covariance=self.imu.angular_velocity_noise.covariance,
             linear_acceleration=Vector3(*measured.linear_acceleration),
             linear_acceleration_covariance=self.imu.acceleration_noise.covariance,
         )
@@ -68,8 +68,8 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
     def make_sensor(self) -> None:
         """Make the IMU; its orientation may be relative to that at the start."""
         initial = self.parameters.initial_orientation_as_reference
-        said = self.sensor.sensor.imu
-        self.imu = ImuSensor(self.mount, said, generator=self.random, initial_reference=initial)
+        imu = self.sensor.sensor.imu
+        self.imu = ImuSensor(self.mount, imu, generator=self.random, initial_reference=initial)
 
     def make_topics(self) -> None:
         """Make the topic."""
@@ -103,10 +103,10 @@ class OldImu(_ImuPlugin[OldImuParameters]):
     @property
     def mount(self) -> Mount:
         """The link that the plugin names."""
-        given = self.parameters
-        turned = (0.0, 0.0, 0.0, *quaternion_from_rpy(given.rpy_offset))
-        offset = compose((*given.xyz_offset, 0.0, 0.0, 0.0, 1.0), turned)
-        return Mount(self.simulation, self.link(given.body_name), offset)
+        parameters = self.parameters
+        turned = (0.0, 0.0, 0.0, *quaternion_from_rpy(parameters.rpy_offset))
+        offset = compose((*parameters.xyz_offset, 0.0, 0.0, 0.0, 1.0), turned)
+        return Mount(self.simulation, self.link(parameters.body_name), offset)
 
     def make_sensor(self) -> None:
         """Make the IMU."""

@@ -18,8 +18,8 @@ from linkwright.sdf.plugins import Plugin, library_name
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import NoParameters
-from linkwright.simulation.plugins.sensors.camera import IMAGE, INFO, CameraPlugin, Eye
-from linkwright.simulation.plugins.sensors.pictures import Pixels, fill_camera_info, fill_picture
+from linkwright.simulation.plugins.sensors.camera import IMAGE, INFO, CameraPlugin, MountedCamera
+from linkwright.simulation.plugins.sensors.pictures import Pixels, fill_camera_info, fill_image
 from linkwright.simulation.rendering.renderer import Wanted
 from linkwright.simulation.sensors.mount import GeomTable, part_of
 from linkwright.simulation.simulation import Simulation
@@ -106,19 +106,19 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
         """Make its camera."""
         super().make_sensor()
         self.labels = Labels(self.simulation)
-        self.frame = self.eyes[0].camera.optical_frame_id or self.gz_frame()
+        self.frame = self.cameras[0].description.optical_frame_id or self.gz_frame()
 
     def publish_colours(self, output: Output, colour: Pixels) -> None:
         """Publish an image in red, green and blue."""
         message = self.message(IMAGE, self.frame)
-        fill_picture(message, colour, "rgb8")
+        fill_image(message, colour, "rgb8")
         output.publish(message)
 
-    def publish_info(self, output: Output, eye: Eye) -> None:
+    def publish_info(self, output: Output, camera: MountedCamera) -> None:
         """Publish the ``CameraInfo``."""
         if output.is_wanted:
             message = self.message(INFO, self.frame)
-            fill_camera_info(message, eye.optics, eye.camera.distortion)
+            fill_camera_info(message, camera.optics, camera.description.distortion)
             output.publish(message)
 
 
@@ -142,13 +142,13 @@ class GzSegmentation(_LabellingCamera):
 
     def measure(self) -> None:
         """Make the maps."""
-        (eye, *_) = self.eyes
-        self.publish_info(self._info, eye)
+        (camera, *_) = self.cameras
+        self.publish_info(self._info, camera)
         if not (self._maps.is_wanted or self._coloured.is_wanted):
             return
-        geoms = self.see(eye, Wanted.GEOMS).geoms
+        geoms = self.see(camera, Wanted.GEOMS).geoms
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)  # type: ignore[arg-type]  # asked for
-        if eye.camera.segmentation_type in ("instance", "panoptic"):
+        if camera.description.segmentation_type in ("instance", "panoptic"):
             high, low = (instances >> 8).astype(np.uint8), (instances & 0xFF).astype(np.uint8)
             numbers, coloured = np.stack([low, high, labels], axis=-1), self._colours[(labels + 31 * low) % _LABELS]
             coloured[labels == 0] = 0
@@ -171,33 +171,33 @@ class GzBoxes(_LabellingCamera):
         topic = self.sensor.sensor.topic or self.gz_topic("boundingbox")
         usual = "" if self.sensor.sensor.topic else "/boundingbox"
         self._boxes = self.node.publisher(_DETECTIONS, topic, usual=usual)
-        self._pictures = self.node.publisher(IMAGE, f"{topic}_image", usual=f"{usual}_image" if usual else "")
+        self._images = self.node.publisher(IMAGE, f"{topic}_image", usual=f"{usual}_image" if usual else "")
         above, slash, _ = topic.rpartition("/")
         self._info = self.node.publisher(INFO, f"{above}{slash}camera_info")
 
     def is_wanted(self) -> bool:
         """Whether a subscriber exists."""
-        return any(output.is_wanted for output in (self._boxes, self._pictures, self._info))
+        return any(output.is_wanted for output in (self._boxes, self._images, self._info))
 
     def measure(self) -> None:
         """Find the boxes."""
-        (eye, *_) = self.eyes
-        self.publish_info(self._info, eye)
-        if not (self._boxes.is_wanted or self._pictures.is_wanted):
+        (camera, *_) = self.cameras
+        self.publish_info(self._info, camera)
+        if not (self._boxes.is_wanted or self._images.is_wanted):
             return
-        wanted = Wanted.GEOMS | (Wanted.COLOUR if self._pictures.is_wanted else Wanted(0))
-        picture = self.see(eye, wanted)
-        boxes = list(self._outlines(picture.geoms))
+        wanted = Wanted.GEOMS | (Wanted.COLOUR if self._images.is_wanted else Wanted(0))
+        rendered = self.see(camera, wanted)
+        boxes = list(self._outlines(rendered.geoms))
         if self._boxes.is_wanted:
             message = self.message(_DETECTIONS, self.frame)
             message.detections = [self._detection(message.header, *box) for box in boxes]
             self._boxes.publish(message)
-        if picture.colour is not None:
-            colour = picture.colour.copy()
+        if rendered.colour is not None:
+            colour = rendered.colour.copy()
             for _, left, top, right, bottom in boxes:
                 colour[[top, bottom], left : right + 1] = _FRAME_COLOUR
                 colour[top : bottom + 1, [left, right]] = _FRAME_COLOUR
-            self.publish_colours(self._pictures, colour)
+            self.publish_colours(self._images, colour)
 
     def _outlines(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
         """Label, left, top, right and bottom of each box; the pixels on these lines belong to it."""

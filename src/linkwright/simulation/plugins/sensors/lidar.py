@@ -36,8 +36,8 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
 
     def start(self) -> None:
         """Make lidar and topics."""
-        said = self.sensor.sensor.visualize
-        self._rays = self.node.publisher(_SCAN, RAYS if said else OTHER_RAYS, SENSOR_DATA_QOS)
+        visualize = self.sensor.sensor.visualize
+        self._rays = self.node.publisher(_SCAN, RAYS if visualize else OTHER_RAYS, SENSOR_DATA_QOS)
         super().start()
 
     def is_needed(self) -> bool:
@@ -64,10 +64,10 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
 
     def make_sensor(self) -> None:
         """Make the lidar."""
-        said = self.sensor.sensor
-        lidar = said.lidar or Lidar()
+        sensor = self.sensor.sensor
+        lidar = sensor.lidar or Lidar()
         self.lidar = LidarSensor(
-            self.mount, lidar, sees_visuals=said.type not in ("ray", "sonar"), generator=self.random
+            self.mount, lidar, sees_visuals=sensor.type not in ("ray", "sonar"), generator=self.random
         )
 
     def scan_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
@@ -199,9 +199,9 @@ class OldLaser(_OneLidar[LaserParameters]):
 
     def publish(self, scan: Scan) -> None:
         """Publish it."""
-        self.output.publish(self.told(self.classic_frame(), scan))
+        self.output.publish(self.output_message(self.classic_frame(), scan))
 
-    def told(self, frame: str, scan: Scan) -> Any:
+    def output_message(self, frame: str, scan: Scan) -> Any:
         """The message of a scan."""
         return self.scan_message(frame, scan)
 
@@ -211,7 +211,7 @@ class OldBlockLaser(OldLaser):
 
     KIND = "sensor_msgs/msg/PointCloud"
 
-    def told(self, frame: str, scan: Scan) -> Any:
+    def output_message(self, frame: str, scan: Scan) -> Any:
         """The message of a scan."""
         return self.old_cloud(frame, scan)
 
@@ -231,7 +231,7 @@ class OldRange(OldLaser):
     IGNORED = ("gaussianNoise", "fov")
     KIND = "sensor_msgs/msg/Range"
 
-    def told(self, frame: str, scan: Scan) -> Any:
+    def output_message(self, frame: str, scan: Scan) -> Any:
         """The message of a scan."""
         return self.range_message(frame, scan, getattr(self.parameters, "radiation", ""))
 
@@ -262,19 +262,23 @@ class Velodyne(_OneLidar[VelodyneParameters]):
 
     def publish(self, scan: Scan) -> None:
         """Publish a scan as a cloud."""
-        said = self.parameters
+        parameters = self.parameters
         message = self.message(_CLOUD, self.classic_frame())
         shape = scan.ranges.shape
         points: Array = self.points(scan).reshape(*shape, 3).swapaxes(0, 1).reshape(-1, 3)
         ranges: Array = scan.ranges.T.ravel()
         intensities: Array = scan.intensities.T.ravel()
         rings = np.tile(np.arange(shape[0], dtype=np.uint16), shape[1])
-        seen = (ranges > said.min_range) & (ranges < said.max_range) & (intensities >= said.min_intensity)
-        if said.organize_cloud:
+        seen = (
+            (ranges > parameters.min_range)
+            & (ranges < parameters.max_range)
+            & (intensities >= parameters.min_intensity)
+        )
+        if parameters.organize_cloud:
             points[~seen], intensities[~seen] = np.nan, np.nan
         else:
             points, intensities, rings = points[seen], intensities[seen], rings[seen]
-        height = shape[1] if said.organize_cloud else 1
+        height = shape[1] if parameters.organize_cloud else 1
         fill_lidar_cloud(message, points, intensities, rings, layout=VELODYNE, height=height)
         self.output.publish(message)
 

@@ -65,7 +65,7 @@ class PixelNoise:
         return np.invert(noisy, out=noisy)
 
 
-def fill_picture(message: Any, colour: Pixels, encoding: str) -> None:
+def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
     """Fill an Image message from colours of shape (height, width, 3) in red, green, blue, in one of `ENCODINGS`."""
     pixels = colour
     if encoding.startswith("mono"):
