@@ -98,7 +98,7 @@ class _Track:
         return len(data) - len(replaced)
 
     def drop(self) -> int:
-        """Drop the oldest message; returns the bytes that are free now."""
+        """Drop the oldest message; return the freed bytes."""
         oldest = self.kept[self.first]
         self.kept[self.first] = (oldest[0], oldest[1], b"")
         self.first += 1
@@ -115,7 +115,7 @@ class _Track:
         return 0 if replaced is None else _size(replaced[2])
 
     def thin(self, wanted: int) -> int:
-        """Drop messages whose neighbours are near for how long ago they are; returns the bytes that are free now."""
+        """Drop messages that are closer to their neighbours than their age requires; return the freed bytes."""
         kept = self.kept[self.first :]
         now_ns = kept[-1][0] + _SECOND
         gaps = [
@@ -137,7 +137,7 @@ class _Track:
         return freed
 
     def replace(self, number: int, packed: Packed) -> int:
-        """Replace a message by its packed form, by its number; returns the bytes that are free now."""
+        """Replace a message by its packed form, by its number; return the freed bytes."""
         place = self._place(number)
         if place is None:
             return 0  # it was dropped meanwhile
@@ -152,7 +152,7 @@ class _Track:
         return place if place < len(self.kept) and self.kept[place][1] == number else None
 
     def lasting(self, start_ns: int, end_ns: int) -> list[_Kept]:
-        """Of the messages from one time to another those that came again and again after it."""
+        """Return the messages of an interval that were repeated after it."""
         return [each for each in self.between(start_ns, end_ns) if each[1] in self._lasting]
 
     def still_at(self, at_ns: int) -> list[_Kept]:
@@ -303,7 +303,7 @@ class History:
 
     @property
     def start_ns(self) -> int:
-        """The time of the oldest message, nanoseconds since the epoch; now, where there is none."""
+        """The time of the oldest message, nanoseconds since the epoch; the current time if there is none."""
         with self.lock:
             oldest = self._first()
             return self.end_ns if oldest is None else oldest.kept[oldest.first][0]
@@ -382,7 +382,7 @@ class History:
 
 
 class _Onward(Iterator[Recorded]):
-    """Messages in the order of their times; after its end it continues when others came."""
+    """Messages in the order of their times; it continues after its end when new messages arrive."""
 
     def __init__(self, history: History, topics: Collection[str], start_ns: int) -> None:
         self._history = history

@@ -46,7 +46,7 @@ def in_order(files: Sequence[Path]) -> list[Path]:
 
 
 def are_of_one_recording(files: Sequence[Path]) -> bool:
-    """Whether several files are the parts of one recording, by their names: numbered one after the other."""
+    """Return whether several files are the parts of one recording, by their names: numbered one after the other."""
     found = [_NUMBERED.fullmatch(file.name) for file in files]
     numbers = sorted(int(match[2]) for match in found if match is not None)
     alike = {(match[1], match[3], match[4]) for match in found if match is not None}

@@ -57,7 +57,7 @@ class Part:
 
     @property
     def size(self) -> int:
-        """Bytes that were written, with those that wait to be."""
+        """The bytes written so far, with the buffered ones."""
         storage = self.storage
         if hasattr(storage, "conn"):
             (pages,) = storage.conn.execute("PRAGMA page_count").fetchone()

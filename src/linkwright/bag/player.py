@@ -147,11 +147,11 @@ class Player:
         self._schedule()
 
     def play_next(self) -> bool:
-        """Publish one more message while paused; whether there was one."""
+        """Publish one more message while paused; return whether there was one."""
         return self.burst(1) == 1
 
     def burst(self, count: int) -> int:
-        """Publish a number of messages while paused, or with 0 all of this round; returns their number."""
+        """Publish a number of messages while paused, or with 0 all of this round; return their number."""
         published = 0
         while (
             self._paused and self._next is not None and not self._is_beyond_end() and (published < count or not count)
@@ -177,7 +177,7 @@ class Player:
             self._alarm = None
 
     def now_ns(self) -> int:
-        """The time in the recording now, nanoseconds since the epoch."""
+        """The current time in the recording, nanoseconds since the epoch."""
         if self._paused:
             return self._position_ns
         return self._position_ns + max(0, round((self._steady_ns() - self._since_ns) * self._rate))
@@ -238,7 +238,7 @@ class Player:
         self._alarm = self._node.handle.dispatcher.call_at(self._since_ns + max(0, wait_ns), self._run)
 
     def _anchor(self) -> None:
-        """Take now as the origin of the playing time, because the rate is about to change."""
+        """Set the origin of the playing time to now, because the rate is about to change."""
         self._position_ns = self.now_ns()
         self._since_ns = self._steady_ns()
 

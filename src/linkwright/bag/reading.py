@@ -360,7 +360,7 @@ def _storage_targets(path: Path, called: str) -> list[Path]:
 
 
 def _lacks_ends(folder: Path) -> bool:
-    """Whether a recording of several files, which the library reads by its metadata, has one without its end."""
+    """Return whether a recording of several files, which the library reads by its metadata, has one without its end."""
     files = sorted(folder.glob("*.mcap"))
     return len(files) > 1 and are_of_one_recording(files) and any(is_unfinished(file) for file in files)
 

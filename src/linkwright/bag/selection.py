@@ -69,7 +69,7 @@ class TopicSelection:
         return bool(self.everything or self.every_service or self.types or self.pattern)
 
     def takes(self, name: str, type_name: str) -> bool:
-        """Whether a topic is recorded.
+        """Return whether a topic is recorded.
 
         Args:
             name: its absolute name.

@@ -35,7 +35,7 @@ class Packed(bytes):
 
 @cache
 def _zstd() -> Any:
-    """The library; None where the extra `bag`, with which it comes, is not installed."""
+    """The library; None if the extra `bag` is not installed."""
     if sys.version_info >= (3, 14):
         from compression import zstd
     else:

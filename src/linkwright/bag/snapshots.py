@@ -18,7 +18,7 @@ class LatestMessages:
         self._kept: deque[tuple[str, int, bytes]] = deque()
 
     def add(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
-        """Keep a message, given as `BagWriter.write` takes it."""
+        """Store a message, with the arguments of `BagWriter.write`."""
         content = bytes(data)
         if len(content) > self._room:
             return

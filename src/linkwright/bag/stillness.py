@@ -85,7 +85,7 @@ def _begins_with_header(type_name: str) -> bool:
 
 
 class _Layout(NamedTuple):
-    """Where the stamps and poses of transforms are, which is the same in each message with the same frames.
+    """The offsets of stamps and poses, which are the same in each message with the same frames.
 
     Attributes:
         what: the frames.

@@ -35,7 +35,7 @@ _COUNTS = struct.Struct("<QHIIIIQQ")
 
 
 def is_unfinished(path: Path) -> bool:
-    """Whether an MCAP file begins as one but does not end as one."""
+    """Return whether an MCAP file begins as one but does not end as one."""
     with path.open("rb") as file:
         if file.read(len(MAGIC)) != MAGIC:
             return False
@@ -92,7 +92,7 @@ class ReadableFile:
         return str(self._path)
 
     def exists(self) -> bool:
-        """Whether the file exists."""
+        """Return whether the file exists."""
         return self._path.exists()
 
     def is_dir(self) -> bool:

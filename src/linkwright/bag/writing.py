@@ -153,7 +153,7 @@ class BagWriter:
                 raise self._ended(error) from error
 
     def take_snapshot(self) -> bool:
-        """Write the messages that are kept; whether they are kept at all.
+        """Write the messages kept for a snapshot; return whether they are kept at all.
 
         Raises:
             LinkwrightError: BAG108, the disk refuses.

@@ -13,7 +13,7 @@ from linkwright.xmltree import Element
 
 
 def alike(one: Any, other: Any) -> bool:
-    """Whether two parts of the model of a file, or tuples of them, have equal content.
+    """Return whether two parts of the model of a file, or tuples of them, have equal content.
 
     Comments, blanks and positions make no difference. The parameters of plugins do, which only their elements hold, and
     so do the folders of files that name meshes by paths.

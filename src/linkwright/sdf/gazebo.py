@@ -139,11 +139,11 @@ class Extensions:
         return found
 
     def stays_fixed(self, joint: urdf.Joint) -> bool:
-        """Whether the links of a fixed joint stay separate (``preserveFixedJoint``)."""
+        """Return whether the links of a fixed joint stay separate (``preserveFixedJoint``)."""
         return self._is_true(joint, _KEPT_FIXED)
 
     def becomes_revolute(self, joint: urdf.Joint) -> bool:
-        """Whether a fixed joint becomes a revolute one with equal limits (``disableFixedJointLumping``)."""
+        """Return whether a fixed joint becomes a revolute one with equal limits (``disableFixedJointLumping``)."""
         return self._is_true(joint, _MADE_REVOLUTE) and not self.stays_fixed(joint)
 
     def _is_true(self, joint: urdf.Joint, word: str) -> bool:

@@ -29,7 +29,7 @@ _OLD = re.compile(r"1\.[012]").fullmatch
 
 
 def is_old(root: Element) -> bool:
-    """Whether a document declares SDF 1.0 to 1.2."""
+    """Return whether a document declares SDF 1.0 to 1.2."""
     return _OLD(root.attributes.get("version", "").strip()) is not None
 
 

@@ -157,7 +157,7 @@ def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
 
 
 def is_too_deep(root: Element, report: SdfReport) -> bool:
-    """Whether an element is nested too deeply to be read, with a finding."""
+    """Return whether an element is nested too deeply to be read, with a finding."""
     deep = _too_deep(root)
     if deep is not None:
         message = phrase("elements are nested more than {count} deep", count=_DEEPEST)
@@ -218,7 +218,7 @@ def _is_let_be(element: Element, rule: ElementRule) -> bool:
 
 
 def _is_flat(root: Element) -> bool:
-    """Whether names may contain '::': up to SDF 1.7, where included models became part of the including one."""
+    """Return whether names may contain '::': up to SDF 1.7, where included models became part of the including one."""
     return _minor(root) <= _NEWEST_FLAT_MINOR
 
 

@@ -122,7 +122,7 @@ def _circle_of(name: str, frames: Frames) -> tuple[str, ...]:
 
 
 def _is_known(name: str, frames: Frames) -> bool:
-    """Whether a frame exists, or may exist in a model that could not be included, which has been reported."""
+    """Return whether a frame exists, or may exist in a model that could not be included, which has been reported."""
     if name in frames:
         return True
     head = name.partition(SEPARATOR)[0]

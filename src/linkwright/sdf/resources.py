@@ -297,7 +297,7 @@ def model_file(folder: Path) -> Path | Missing:
 
 
 def _holds_world(file: Path) -> bool:
-    """Whether an SDF file contains a world."""
+    """Return whether an SDF file contains a world."""
     return b"<world" in file.read_bytes()
 
 

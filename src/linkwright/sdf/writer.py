@@ -24,7 +24,7 @@ _GAP = "\x01"
 
 @dataclass(frozen=True, slots=True)
 class WrittenModel:
-    """A model as a world has it.
+    """A model as part of a world.
 
     Attributes:
         text: its element.

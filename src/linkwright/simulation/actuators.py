@@ -21,11 +21,11 @@ class Actuated(Protocol):
 
     @property
     def model(self) -> Any:
-        """MuJoCo's model now; another one after `renew`."""
+        """The current MuJoCo model, which `renew` replaces."""
 
     @property
     def data(self) -> Any:
-        """MuJoCo's data now; others after `renew`."""
+        """The current MuJoCo data, which `renew` replaces."""
 
     @property
     def revision(self) -> int:
@@ -78,7 +78,7 @@ class Motor:
         model.actuator_gainprm[number, 0], model.actuator_biasprm[number, 2] = gain, -gain
 
     def _actuator(self) -> int:
-        """The index of the actuator in MuJoCo's model now."""
+        """The index of the actuator in MuJoCo's current model."""
         simulation = self._simulation
         simulation.renew()
         if self._revision != simulation.revision:

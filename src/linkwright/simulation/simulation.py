@@ -346,7 +346,7 @@ class Simulation:
         return UnstableError(Diagnostic("SIM120", message, hint=hint))
 
     def body(self, name: str) -> int:
-        """The index of a link's body in MuJoCo's model now.
+        """The index of a link's body in MuJoCo's current model.
 
         Raises:
             KeyError: there is no such link.
@@ -407,7 +407,7 @@ class Simulation:
         return compose(self.link_pose(root), invert(offset))
 
     def moves_freely(self, name: str) -> bool:
-        """Whether a model is fixed neither to the world nor to another one.
+        """Return whether a model is fixed neither to the world nor to another one.
 
         Raises:
             KeyError: there is no such model.

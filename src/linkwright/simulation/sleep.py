@@ -109,7 +109,7 @@ class Sleep:
         self._allow()
 
     def _are_touching(self) -> Any:
-        """Whether each tree touches something."""
+        """Return whether each tree touches something."""
         model, contacts = self._model, self._data.contact
         geoms = contacts.geom[contacts.efc_address >= 0]
         geoms = geoms[geoms >= 0]

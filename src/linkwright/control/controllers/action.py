@@ -39,7 +39,7 @@ class Goal:
         self._node = node
 
     def is_of(self, handle: ServerGoalHandle) -> bool:
-        """Whether it is the goal of a handle."""
+        """Return whether it is the goal of a handle."""
         return self._handle is handle
 
     def feedback(self, message: Any) -> None:

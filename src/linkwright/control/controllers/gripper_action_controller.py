@@ -176,7 +176,7 @@ class Gripper(Controller[P]):
         self._max_effort = request.command.max_effort
 
     def _command(self, error: float, velocity: float, period_s: float) -> float:
-        """Command the gripper; returns the effort to be reported, here the greatest."""
+        """Command the gripper; return the effort to be reported, here the greatest."""
         self.commands[0].value = self._wanted
         return self._max_effort
 

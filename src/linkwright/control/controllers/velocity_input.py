@@ -63,7 +63,7 @@ class VelocityInput:
         self._command: tuple[Velocity, int] | None = None
 
     def _lose(self) -> bool:
-        """Drop the command of a publisher that is lost; whether it was still valid, and not zero."""
+        """Drop the command of a publisher that is lost; return whether it was still valid, and not zero."""
         velocity, _ = self._come or self._command or ((0.0,), 0)
         self.forget()
         return any(velocity)

@@ -26,7 +26,7 @@ class Timing:
 
 
 class Estimator:
-    """Keeps measurements until their time has come, and hands them to a filter in the order of their stamps.
+    """Keeps measurements until they are due, and hands them to a filter in the order of their stamps.
 
     Args:
         kalman: the filter.
@@ -82,7 +82,7 @@ class Estimator:
                     self._states.append(kalman.snapshot())
 
     def _go_back(self, time_ns: int) -> int:
-        """Restore the last state before a time and queue the measurements since then again; returns their number."""
+        """Restore the last state before a time and queue the measurements since then again; return their number."""
         oldest = None
         while self._states and self._states[-1].time_ns >= time_ns:
             oldest = self._states.pop()

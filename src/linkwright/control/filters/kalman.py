@@ -177,7 +177,7 @@ class KalmanFilter(ABC):
         self.time_ns = time_ns
 
     def correct(self, measurement: Measurement) -> bool:
-        """Correct the state by a measurement of now; whether it passed the Mahalanobis test."""
+        """Correct the state by a current measurement; return whether it passed the Mahalanobis test."""
         used = _used(measurement)
         if not used:
             return False

@@ -96,7 +96,7 @@ class HardwareDescription:
         return (*self.joints, *self.sensors, *self.gpios)
 
     def is_set(self, name: str) -> bool:
-        """Whether a parameter of the hardware is ``true``."""
+        """Return whether a parameter of the hardware is ``true``."""
         return self.parameters.get(name, "").strip() in _TRUE
 
 

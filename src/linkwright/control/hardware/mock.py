@@ -120,7 +120,7 @@ class GenericSystem(Hardware):
                 )
 
     def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
-        """Move the joints, with dynamics, by those interfaces from now on."""
+        """Integrate the joints, with dynamics, by these interfaces from now on."""
         for name, joint in self._joints.items():
             for mode in _MODES:
                 if self._dynamic and f"{name}/{mode}" in start:

@@ -104,7 +104,7 @@ class Resources:
         return [*self._commands, *(interface.name for given in self._references.values() for interface in given)]
 
     def is_available(self, name: str) -> bool:
-        """Whether an interface is available: its hardware is configured, or its controller active."""
+        """Return whether an interface is available: its hardware is configured, or its controller active."""
         owner = self._owners.get(name)
         return name in self._available if owner is None else owner.state in (INACTIVE, ACTIVE)
 
@@ -170,7 +170,7 @@ class Resources:
     # --- its life -----------------------------------------------------------------------------------------------------
 
     def set_state(self, name: str, target: LifecycleState) -> bool:
-        """Take hardware to a lifecycle state; whether it got there."""
+        """Bring hardware to a lifecycle state; return whether it got there."""
         hardware = self.components[name]
         if hardware.state == FINALIZED:
             return target == FINALIZED

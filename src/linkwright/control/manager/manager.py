@@ -85,7 +85,7 @@ class ControllerManager:
     # --- loading ------------------------------------------------------------------------------------------------------
 
     def load(self, name: str) -> bool:
-        """Load a controller, whose type is the parameter ``NAME.type``; whether that succeeded."""
+        """Load a controller, whose type is the parameter ``NAME.type``; return whether that succeeded."""
         logger = self._logger
         if name in self.controllers:
             logger.error(f"A controller named '{name}' was already loaded inside the controller manager")
@@ -131,7 +131,7 @@ class ControllerManager:
         return None
 
     def unload(self, name: str) -> bool:
-        """Unload a controller that is not active; whether that succeeded."""
+        """Unload a controller that is not active; return whether that succeeded."""
         loaded = self.controllers.get(name)
         if loaded is None or loaded.is_active:
             why = "it is still active" if loaded is not None else "no controller with this name exists"
@@ -145,7 +145,7 @@ class ControllerManager:
         return True
 
     def reload(self, *, force: bool) -> bool:
-        """Unload all controllers; whether that succeeded: active ones prevent it unless it is forced."""
+        """Unload all controllers; return whether that succeeded: active ones prevent it unless it is forced."""
         active = [controller.name for controller in self._active]
         if active and not force:
             self._logger.error(
@@ -193,7 +193,7 @@ class ControllerManager:
     # --- configuring --------------------------------------------------------------------------------------------------
 
     def configure(self, name: str) -> bool:
-        """Configure a controller; whether it is inactive then."""
+        """Configure a controller; return whether it is inactive then."""
         self._logger.info(f"Configuring controller '{name}'")
         loaded = self.controllers.get(name)
         if loaded is None:
@@ -224,7 +224,7 @@ class ControllerManager:
         return True
 
     def cleanup(self, name: str) -> bool:
-        """Take an inactive controller back to unconfigured; whether that succeeded."""
+        """Bring an inactive controller back to unconfigured; return whether that succeeded."""
         loaded = self.controllers.get(name)
         if loaded is None or not loaded.is_inactive:
             why = "it is not inactive" if loaded is not None else "no controller with this name exists"
@@ -392,7 +392,7 @@ class ControllerManager:
         loaded.controller.commands, loaded.controller.states = [], []
 
     def _call(self, loaded: Loaded, what: str, callback: Callable[[], object]) -> bool:
-        """Call a callback of a controller; whether it succeeded. An error is logged."""
+        """Call a callback of a controller; return whether it succeeded. An error is logged."""
         logger = loaded.controller.node.logger
         try:
             callback()
@@ -413,7 +413,7 @@ class ControllerManager:
             logger.error(_traced("Caught exception in callback for on_error", error))  # noqa: TRY400 - as above
 
     def set_hardware_state(self, name: str, target: LifecycleState) -> bool:
-        """Take hardware to a lifecycle state; whether it got there. Its controllers are deactivated first."""
+        """Bring hardware to a lifecycle state; return whether it got there. Its controllers are deactivated first."""
         hardware = self.resources.components[name]
         if hardware.state is ACTIVE and target is not ACTIVE:
             self._stop(self._users_of([hardware]))

@@ -27,7 +27,7 @@ class StateTolerance:
     acceleration: float = 0.0
 
     def holds(self, position: float, velocity: float, acceleration: float) -> bool:
-        """Whether errors are within the tolerance."""
+        """Return whether errors are within the tolerance."""
         return (
             not (self.position > 0.0 and abs(position) > self.position)
             and not (self.velocity > 0.0 and abs(velocity) > self.velocity)

@@ -99,7 +99,7 @@ def _colour(material: Material | None) -> Color | None:
 
 
 def is_size(kind: str, size: tuple[float, ...]) -> bool:
-    """Whether numbers are a valid size of a shape."""
+    """Return whether numbers are a valid size of a shape."""
     return len(size) == COUNTS[kind] and all(isfinite(each) and 1e-6 <= each <= 1e6 for each in size)
 
 

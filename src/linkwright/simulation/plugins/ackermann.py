@@ -132,7 +132,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._angle = min(max(angle, -parameters.max_steer), parameters.max_steer)
 
     def _rest(self) -> bool:
-        """Stop, with the wheels steered as they are; whether the car was to move."""
+        """Stop, with the wheels steered as they are; return whether a motion was commanded."""
         before, self._speed = self._speed, 0.0
         return before != 0.0
 

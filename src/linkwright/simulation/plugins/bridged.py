@@ -40,7 +40,7 @@ class BridgedTopics:
         self._graph.unwatch(self._changed)
 
     def has(self, topic: str) -> bool:
-        """Whether a bridge offers a topic under another type."""
+        """Return whether a bridge offers a topic under another type."""
         return topic in self._bridged([topic])
 
     def notify(self, topic: str, move: Callable[[], None]) -> None:

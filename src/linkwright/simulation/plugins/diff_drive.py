@@ -128,7 +128,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         self._wanted = (float(twist.linear.x), float(twist.angular.z))
 
     def _rest(self) -> bool:
-        """Stop; whether it was to move."""
+        """Stop; whether a motion was commanded."""
         before, self._wanted = self._wanted, (0.0, 0.0)
         return before != self._wanted
 

@@ -186,7 +186,7 @@ def numbers(vector: Any) -> tuple[float, float, float]:
 
 
 def has_numbers(message: Any) -> bool:
-    """Whether all floating-point numbers of a message are finite."""
+    """Return whether all floating-point numbers of a message are finite."""
     if isinstance(message, float):
         return isfinite(message)
     if hasattr(message, "get_fields_and_field_types"):

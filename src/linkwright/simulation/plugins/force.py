@@ -63,7 +63,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self._push()
 
     def _rest(self) -> bool:
-        """Clear the force; whether there was one."""
+        """Clear the force; return whether there was one."""
         before = self._wrench
         self.reset()
         return before != _STILL

@@ -64,7 +64,7 @@ class DriveCommands:
             self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
     def rest(self) -> bool:
-        """Command a stop; whether it was to move."""
+        """Command a stop; return whether a motion was commanded."""
         before, self._wanted = self._wanted, (0.0, 0.0, 0.0)
         return before != self._wanted
 

@@ -112,7 +112,7 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         self._wanted = float(message.data)
 
     def _rest(self) -> bool:
-        """Stop a motion that has no end; whether there was one. A position is held."""
+        """Stop an endless motion; return whether there was one. A position is held."""
         return False
 
     def _push(self, derivative: int) -> None:

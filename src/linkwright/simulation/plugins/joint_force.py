@@ -46,7 +46,7 @@ class GzJointForce(SimulatedPlugin[JointForceParameters]):
         self._force = float(message.data)
 
     def _rest(self) -> bool:
-        """Clear the force; whether there was one."""
+        """Clear the force; return whether there was one."""
         before = self._force
         self.reset()
         return before != 0.0

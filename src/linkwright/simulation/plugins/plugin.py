@@ -169,7 +169,7 @@ class SimulatedPlugin(Generic[P]):
             setattr(self, name, getattr(before, name))
 
     def is_like(self, other: SimulatedPlugin[Any]) -> bool:
-        """Whether another one has the same place in its model and the same parameters."""
+        """Return whether another one has the same place in its model and the same parameters."""
         one, two = self.place, other.place
         same_place = (one.path, one.name) == (two.path, two.name)
         return type(self) is type(other) and same_place and bool(self.parameters == other.parameters)

@@ -138,6 +138,6 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
 
 
 def _is_possible(ixx: float, iyy: float, izz: float, ixy: float, ixz: float, iyz: float) -> bool:
-    """Whether a body can have this inertia."""
+    """Return whether a body can have this inertia."""
     tensor = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
     return bool(np.isfinite(tensor).all()) and is_positive_definite(tensor) and triangle_excess(tensor) <= TOLERANCE

@@ -55,7 +55,7 @@ SYSTEMS_OF_GZ = tuple(Plugin(f"gz-sim-{name}-system") for name in ("physics", "u
 
 
 def is_of_gz(filename: str) -> bool:
-    """Whether a library is one of gz, whose plugins have no node of their own."""
+    """Return whether a library is one of gz, whose plugins have no node of their own."""
     return library_name(filename).startswith("gz-sim-")
 
 

@@ -65,7 +65,7 @@ class MovableGeoms:
         self._hollow: Any = np.zeros(count, dtype=bool)
 
     def settle(self, origin: Array) -> bool:
-        """Find out which geoms rest, as a camera sees the world; whether they are others than before.
+        """Find out which geoms rest, for a camera; return whether they changed.
 
         A box with a camera in it never rests: it is not seen by that camera, but by others.
         """
@@ -99,7 +99,7 @@ class MovableGeoms:
         return {int(geoms[each]): placed[each] for each in np.flatnonzero(~outside)}
 
     def _around(self, origin: Array) -> Any:
-        """Whether the bounding boxes of the geoms contain a point: shape (geoms,)."""
+        """Return whether the bounding boxes of the geoms contain a point: shape (geoms,)."""
         model, data, geoms = self._simulation.model, self._simulation.data, self._geoms
         inside = np.einsum("ijk,ij->ik", data.geom_xmat[geoms].reshape(-1, 3, 3), data.geom_xpos[geoms] - origin)
         return (np.abs(inside) < model.geom_size[geoms] + _THIN).all(axis=1) & self._is_box

@@ -201,7 +201,7 @@ class EmbreeCaster:
         self._places, self._sizes = self._fixed_places(), self._simulation.model.geom_size.copy()
 
     def _release_changed(self) -> None:
-        """Move geoms out of the static tree that were moved or reshaped all the same.
+        """Move changed geoms out of the static tree.
 
         A dataset thereby has another scene for each image.
         """
@@ -247,7 +247,7 @@ class EmbreeCaster:
 
 
 def is_invisible(model: Any, geom: int) -> bool:
-    """Whether a geom is not drawn."""
+    """Return whether a geom is not drawn."""
     material = model.geom_matid[geom]
     rgba = model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]
     return bool(rgba[3] == 0)

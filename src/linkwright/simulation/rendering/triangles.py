@@ -17,7 +17,7 @@ Mesh = tuple[Array, Any]
 
 
 def is_endless(model: Any, geom: int) -> bool:
-    """Whether a geom is an infinite plane."""
+    """Return whether a geom is an infinite plane."""
     plane = model.geom_type[geom] == load_mujoco().mjtGeom.mjGEOM_PLANE
     return bool(plane and (model.geom_size[geom, 0] <= 0 or model.geom_size[geom, 1] <= 0))
 

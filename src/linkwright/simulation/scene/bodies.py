@@ -71,7 +71,7 @@ class BodyWriter:
         self._mujoco = load_mujoco()
 
     def give_mass(self, body: Any, link: Link, frames: Frames) -> None:
-        """Give a body the mass properties of its link; 1 kg and 1 kg m2 where it has none, as SDF has it."""
+        """Give a body the mass properties of its link; 1 kg and 1 kg m2 if it has none, as in SDF."""
         inertial = link.inertial or _USUAL_INERTIAL
         if inertial.auto:
             inertial = _worked_out(link, frames) or _USUAL_INERTIAL

@@ -116,7 +116,7 @@ def let_walk(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -
 
 
 def put_kinematic(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
-    """Set the poses of a model's kinematic links in MuJoCo's data; whether it has any.
+    """Set the poses of a model's kinematic links in MuJoCo's data; return whether it has any.
 
     Args:
         structure: the links of the model.

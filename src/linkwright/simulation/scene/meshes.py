@@ -194,7 +194,7 @@ class MeshLibrary:
         material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = self._textures[image]
 
     def has_room_for_image(self, geom: Any) -> bool:
-        """Whether a geom is a mesh with texture coordinates."""
+        """Return whether a geom is a mesh with texture coordinates."""
         return geom.meshname in self._mapped
 
     def worn(self, visual: Visual) -> str:

@@ -371,7 +371,7 @@ class Scene:
             self.spec.delete(part)
 
     def is_welded(self, parent: str, child: str) -> bool:
-        """Whether `weld` holds a link at another one."""
+        """Return whether `weld` holds a link at another one."""
         return self.spec.equality(_weld_name(parent, child)) is not None
 
     def _actuator(self, joint: str, limit: float) -> Any:

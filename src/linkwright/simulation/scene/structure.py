@@ -142,7 +142,7 @@ def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Struc
 
 
 def is_below(holding: Mapping[str, PlacedJoint], link: str, other: str) -> bool:
-    """Whether a link is another one, or one of its descendants; `holding` has the joints by their children."""
+    """Return whether a link is another one, or one of its descendants; `holding` has the joints by their children."""
     while other != link:
         if other not in holding:
             return False

@@ -62,7 +62,7 @@ class ContactSensor:
         return name in self._wanted if self._wanted else name.rpartition(SEPARATOR)[0] == self._mount.link
 
     def measure(self) -> list[Contact]:
-        """The contacts now, one for each pair of collisions.
+        """Return the current contacts, one for each pair of collisions.
 
         Raises:
             KeyError: its link is gone.

@@ -119,7 +119,7 @@ class NavsatSensor:
         self._globe = Globe(place)
 
     def measure(self) -> Fix:
-        """The position and velocity now.
+        """Return the current position and velocity.
 
         Raises:
             KeyError: its link is gone.

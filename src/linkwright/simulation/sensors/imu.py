@@ -68,7 +68,7 @@ class ImuSensor:
         return quaternion_from_rpy(turns.get(imu.localization, (0.0, 0.0, 0.0)))
 
     def measure(self) -> Inertial:
-        """A measurement of now.
+        """Return a current measurement.
 
         Raises:
             KeyError: its link is gone.

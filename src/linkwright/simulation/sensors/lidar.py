@@ -83,7 +83,7 @@ class LidarSensor:
         return rays
 
     def measure(self) -> Scan:
-        """A measurement of now.
+        """Return a current measurement.
 
         Raises:
             KeyError: its link is gone.

@@ -41,7 +41,7 @@ class Mount:
 
     @property
     def body(self) -> int:
-        """The index of the link in MuJoCo's model now."""
+        """The index of the link in MuJoCo's current model."""
         return self.simulation.body(self.link)
 
     def pose(self) -> Transform:

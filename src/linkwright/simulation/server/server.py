@@ -464,7 +464,7 @@ class SimulationServer:
 
 
 def is_shared(place: PluginPlace) -> bool:
-    """Whether a plugin or sensor uses the simulator's node."""
+    """Return whether a plugin or sensor uses the simulator's node."""
     return place.plugin is None or is_of_gz(place.plugin.filename)
 
 

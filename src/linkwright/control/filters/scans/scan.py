@@ -25,7 +25,7 @@ Lookup = Callable[[str, str, int], "Transform | None"]
 
 @dataclass(slots=True, eq=False)
 class Scan:
-    """A laser scan, as sensor_msgs/msg/LaserScan has it.
+    """A laser scan, like sensor_msgs/msg/LaserScan.
 
     Attributes:
         ranges: shape (n,), metres; missing measurements are NaN, infinite, or outside the limits.

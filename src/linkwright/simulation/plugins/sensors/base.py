@@ -50,10 +50,10 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
 
     @abstractmethod
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists."""
+        """Return whether a subscriber exists."""
 
     def is_needed(self) -> bool:
-        """Whether it is to measure now."""
+        """Return whether it is to measure now."""
         return self.is_wanted()
 
     @abstractmethod
@@ -116,7 +116,7 @@ class OneTopic(SensorPlugin[P], Generic[P]):
     output: Output
 
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists."""
+        """Return whether a subscriber exists."""
         return self.output.is_wanted
 
 

@@ -187,7 +187,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists and, if a trigger is used, an image was requested."""
+        """Return whether a subscriber exists and, if a trigger is used, an image was requested."""
         return self._asked and any(image.is_wanted for image in (*self._images, *self._infos, *self._depths))
 
     def measure(self) -> None:
@@ -283,7 +283,7 @@ class GzCamera(CameraPlugin[NoParameters]):
         yield from (output for output in (self._image, self._depth, self._cloud, self._info) if output is not None)
 
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists."""
+        """Return whether a subscriber exists."""
         return any(output.is_wanted for output in self._outputs())
 
     def measure(self) -> None:

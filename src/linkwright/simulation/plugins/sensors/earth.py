@@ -49,7 +49,7 @@ class ClassicGps(_Receiver[FrameName]):
         self._velocities = self.node.publisher("geometry_msgs/msg/Vector3Stamped", "~/vel", SENSOR_QOS)
 
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists."""
+        """Return whether a subscriber exists."""
         return self._fixes.is_wanted or self._velocities.is_wanted
 
     def measure(self) -> None:

@@ -137,7 +137,7 @@ class GzSegmentation(_LabellingCamera):
         self._colours[0] = 0
 
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists."""
+        """Return whether a subscriber exists."""
         return any(output.is_wanted for output in (self._maps, self._coloured, self._info))
 
     def measure(self) -> None:
@@ -176,7 +176,7 @@ class GzBoxes(_LabellingCamera):
         self._info = self.node.publisher(INFO, f"{above}{slash}camera_info")
 
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists."""
+        """Return whether a subscriber exists."""
         return any(output.is_wanted for output in (self._boxes, self._images, self._info))
 
     def measure(self) -> None:

@@ -41,7 +41,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         super().start()
 
     def is_needed(self) -> bool:
-        """Whether its measurements or its rays have a subscriber."""
+        """Return whether its measurements or its rays have a subscriber."""
         return self.is_wanted() or self._rays.is_wanted
 
     def measure(self) -> None:
@@ -299,7 +299,7 @@ class GzLidar(_LidarPlugin[NoParameters]):
         )
 
     def is_wanted(self) -> bool:
-        """Whether a subscriber exists."""
+        """Return whether a subscriber exists."""
         return self._scans.is_wanted or self._clouds.is_wanted
 
     def publish(self, scan: Scan) -> None:
