@@ -108,7 +108,7 @@ class _Track:
             del self.kept[: self.first]
             self.first = 0
         if self.name == TRANSFORMS:
-            return _size(oldest[2])  # of these only the last seconds are of use
+            return _size(oldest[2])  # only their last seconds are useful
         key = deserialize(whole(oldest[2]), TFMessage).batch.children if self.name == STATIC_TRANSFORMS else None
         replaced = self.before.pop(key, None)
         self.before[key] = oldest

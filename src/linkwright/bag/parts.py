@@ -88,7 +88,7 @@ class Part:
 
     def close(self) -> _Metadata:
         """Write the index; return the metadata of this file alone."""
-        with ScratchFolder("bag") as folder:  # where the library writes these
+        with ScratchFolder("bag") as folder:  # the library writes them there
             self._writer.metapath = Path(folder) / METADATA
             self._writer.close()
             document = yaml.safe_load(self._writer.metapath.read_text(encoding="utf-8"))

@@ -44,7 +44,7 @@ class Content(NamedTuple):
             return False
         if self.poses == newer.poses:
             return True
-        with np.errstate(invalid="ignore"):  # infinite numbers, which are the same only bit by bit
+        with np.errstate(invalid="ignore"):  # infinite numbers must be equal bit by bit
             moved = np.abs(np.frombuffer(self.poses) - np.frombuffer(newer.poses))
         return bool((moved <= _SAME_PLACE).all())
 

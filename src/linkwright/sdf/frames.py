@@ -71,7 +71,7 @@ class Frames:
 
     def __contains__(self, name: str) -> bool:
         head, colon, tail = name.partition(SEPARATOR)
-        if not colon or name in self.named:  # old files have '::' in names of links
+        if not colon or name in self.named:  # old files have '::' in link names
             return name in self._roots or name in self.named
         return isinstance(self.named.get(head), Model) and tail in self.inside(head)
 
@@ -91,7 +91,7 @@ class Frames:
         Raises:
             FrameError: it does not exist, or is defined relative to itself through others.
         """
-        pending: dict[str, None] = {}  # from the frame that is asked for to the first that is known
+        pending: dict[str, None] = {}  # from the requested frame to the first known one
         while name not in self._roots and name not in self._poses:
             if name in pending:
                 circle = list(pending)

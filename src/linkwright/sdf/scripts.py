@@ -209,7 +209,7 @@ def _with_word(look: Look, word: str, values: list[str]) -> Look:
     if word in _COLORS and getattr(look, word) is None:
         with suppress(ValueError):
             numbers = [float(value) for value in values[:4]]
-            # The last of four or five numbers of a specular colour is how narrow it shines.
+            # The last of four or five numbers of a specular colour is the shininess.
             alpha = numbers[3] if len(numbers) == 4 and (word != "specular" or len(values) == 5) else 1.0
             if len(numbers) >= 3:
                 colours: dict[str, Any] = {word: (numbers[0], numbers[1], numbers[2], alpha)}

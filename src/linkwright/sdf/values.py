@@ -218,7 +218,7 @@ def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Po
         if length == 0.0:
             raise ValueError(found)
         if abs(length - 1.0) < 1e-12:
-            length = 1.0  # one that was written by a program stays the same to the last bit
+            length = 1.0  # a number written by a program keeps every bit
         quaternion: Quaternion = (qx / length, qy / length, qz / length, qw / length)
         return Pose((x, y, z), rpy_from_quaternion(quaternion), quaternion)
     x, y, z, roll, pitch, yaw = found

@@ -71,7 +71,7 @@ class _Leg:
         found = {waypoint.time: transform_of(waypoint.pose.pose) for waypoint in trajectory.waypoints}
         self._times = sorted(found)
         poses = [found[time] for time in self._times]
-        self._times[0] = min(self._times[0], 0.0)  # the first point is where it begins, whatever its time
+        self._times[0] = min(self._times[0], 0.0)  # the walk begins at the first point, whatever its time
         stretch = 0.5 * (1.0 - trajectory.tension)
         self._keys = [_key(poses, index, stretch) for index in range(len(poses))]
         self.length = self._times[-1]

@@ -40,7 +40,7 @@ class Exchange:
         self.come = threading.Event()
         self._out: list[tuple[Outlet, Any]] = []
         self._in: deque[Command] = deque()
-        self._free: SimpleQueue[None] = SimpleQueue()  # places for batches; a semaphore is slower by far
+        self._free: SimpleQueue[None] = SimpleQueue()  # free slots for batches; a semaphore is much slower
         self._make_room()
         self._closed = False
 

@@ -96,7 +96,7 @@ class Stepper:
         struck = [index for index, _ in hits]
         depths = -contacts.dist[struck] - now[::3] * model.opt.timestep
         since = float(np.clip(depths / -speeds[rows[struck]], 0.0, 2.0 * model.opt.timestep).min())
-        self._mujoco.mj_integratePos(model, data.qpos, gained, since)  # as if they had parted when they met
+        self._mujoco.mj_integratePos(model, data.qpos, gained, since)  # as if they had separated at the contact
 
     def _ways(self, contact: Any) -> Array:
         """The Jacobian of a contact along its normal and tangents, shape (3, degrees of freedom)."""

@@ -26,7 +26,7 @@ class Schedule:
     """Tasks by simulated time; those that are due at the same time are done in the order in which they were added."""
 
     def __init__(self) -> None:
-        self._heap: list[tuple[int, int, Task]] = []  # when each is due, its turn among those of that time, the task
+        self._heap: list[tuple[int, int, Task]] = []  # due time, order among tasks of that time, task
         self._count = 0
 
     @property

@@ -89,8 +89,8 @@ class Simulation:
         self._joints: dict[str, tuple[int, int]] = {}
         self._pushes: dict[str, dict[str, Array]] = {}
         self._arriving: list[Servo] = []  # not in MuJoCo's model yet
-        self._changed = False  # whether the scene is another one than MuJoCo's model
-        self._is_reshaped = False  # whether it has other bodies or joints
+        self._changed = False  # whether the scene differs from MuJoCo's model
+        self._is_reshaped = False  # whether its bodies or joints differ
         self._current = False
         self._set_model(*made)
 
@@ -304,7 +304,7 @@ class Simulation:
         if self._changed:
             self.renew()
         mujoco, (positions, velocities) = self._mujoco, self._state
-        before = positions.tobytes(), velocities.tobytes()  # in half of the time of a copy into arrays
+        before = positions.tobytes(), velocities.tobytes()  # half the time of a copy into arrays
         try:
             self._stepper.make_steps(count)
         except mujoco.FatalError as error:
@@ -313,7 +313,7 @@ class Simulation:
                 Diagnostic("SIM121", phrase("MuJoCo gave up: {said}", said=foreign(reason)))
             ) from None
         self._current = False
-        dot = mujoco.mju_dot  # in half of the time of a comparison; numpy's would warn where it is too much
+        dot = mujoco.mju_dot  # half the time of a comparison; numpy's warns of overflows
         if not (dot(positions, positions) < _SURELY and dot(velocities, velocities) < _SURELY) and not self._is_sound():
             raise self._unstable(count, np.frombuffer(before[0]), np.frombuffer(before[1]))
         self.time += count * self.step
@@ -469,7 +469,7 @@ class Simulation:
         Raises:
             KeyError: there is no such joint, or it does not move.
         """
-        if self._is_reshaped:  # not for motors: each of a hundred robots would have the model compiled for its own
+        if self._is_reshaped:  # not for motors: each of a hundred robots would recompile the model
             self.renew()
         place = self._joints.get(name)
         if place is None:

@@ -113,6 +113,6 @@ class Sleep:
         model, contacts = self._model, self._data.contact
         geoms = contacts.geom[contacts.efc_address >= 0]
         geoms = geoms[geoms >= 0]
-        touching = np.zeros(model.ntree + 1, dtype=bool)  # the last is for the world, whose tree is -1
+        touching = np.zeros(model.ntree + 1, dtype=bool)  # the last one is for the world, whose tree is -1
         touching[model.body_treeid[model.geom_bodyid[geoms]]] = True
         return touching[:-1]

@@ -1,4 +1,4 @@
-"""Action servers of controllers: goals come on the event loop, and are worked on in the thread of the updates."""
+"""Action servers of controllers: goals arrive on the event loop, and are executed in the thread of the updates."""
 
 from __future__ import annotations
 

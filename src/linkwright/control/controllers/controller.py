@@ -168,7 +168,7 @@ class Controller(ABC, Generic[P]):
         """
 
     def on_deactivate(self) -> None:
-        """Stop: set safe commands, such as zero velocity. `commands` and `states` go afterwards."""
+        """Stop: set safe commands, such as zero velocity. `commands` and `states` become unavailable afterwards."""
 
     def on_cleanup(self) -> None:
         """Release what `on_configure` made; topics and services are removed automatically."""

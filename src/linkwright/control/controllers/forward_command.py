@@ -60,7 +60,7 @@ class _Forwarding(Controller[P], Generic[P]):
         self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
 
     def on_activate(self) -> None:
-        """Drop commands that came before."""
+        """Drop earlier commands."""
         self._wanted = None
 
     def on_deactivate(self) -> None:

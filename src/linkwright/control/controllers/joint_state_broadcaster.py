@@ -59,7 +59,7 @@ class JointStateBroadcaster(Controller[Parameters]):
         self._dynamic = self.node.publisher("control_msgs/msg/DynamicJointState", f"{begin}dynamic_joint_states")
 
     def on_activate(self) -> None:
-        """Work out which interfaces fill which fields."""
+        """Determine which interfaces fill which fields."""
         named = self.parameters.map_interface_to_joint_state
         fields = {named.position: 0, named.velocity: 1, named.effort: 2}
         self._of: dict[str, dict[str, StateInterface]] = {}
@@ -110,5 +110,5 @@ class JointStateBroadcaster(Controller[Parameters]):
 
 
 def _values(states: Sequence[StateInterface]) -> array[float]:
-    """Values for a message: an array is taken as it is, and the elements of a list would be looked at one by one."""
+    """Return values for a message as an array, because the elements of a list would be checked one by one."""
     return array("d", [state.value for state in states])

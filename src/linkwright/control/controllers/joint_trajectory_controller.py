@@ -269,7 +269,7 @@ class JointTrajectoryController(Controller[Parameters]):
     # --- its work -----------------------------------------------------------------------------------------------------
 
     def update(self, time_ns: int, period_s: float) -> None:
-        """Command the point that is due at the next update, and check the errors of now against the tolerances."""
+        """Command the point that is due at the next update, and check the current errors against the tolerances."""
         if time_ns < self._following_ns - self._period_ns:
             self._give_up("Time jumped backwards.")
             self._hold()

@@ -91,7 +91,7 @@ class LimitedDrive(Controller[P], Generic[P]):
         self._limited = node.publisher("geometry_msgs/msg/TwistStamped", "~/cmd_vel_out") if limited else None
 
     def on_activate(self) -> None:
-        """Start at rest, and take commands."""
+        """Start at rest, and accept commands."""
         for limiter in self._limiters:
             limiter.restart()
         for reference in self.references:

@@ -83,7 +83,7 @@ class MecanumDriveController(Controller[Parameters]):
 
     @classmethod
     def variant(cls, given: Collection[str]) -> type[Controller[Any]]:
-        """Husarion's controller of the same type name, where its parameters are given."""
+        """Return Husarion's controller of the same type name if its parameters are given."""
         return HusarionMecanumController if "front_left_wheel_name" in given else cls
 
     def command_interfaces(self) -> InterfaceNames:
@@ -140,7 +140,7 @@ class MecanumDriveController(Controller[Parameters]):
         self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
 
     def on_activate(self) -> None:
-        """Start at rest, and take commands."""
+        """Start at rest, and accept commands."""
         for reference in self.references:
             reference.value = nan
         self._odometry.odometer.stand()

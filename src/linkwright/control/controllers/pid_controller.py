@@ -59,7 +59,7 @@ class Parameters:
 
 
 class PidController(Controller[Parameters]):
-    """Commands by PID; its references come from ``~/reference`` or from another controller."""
+    """A PID controller; its references come from ``~/reference`` or from another controller."""
 
     PARAMETERS = Parameters
 

@@ -64,7 +64,7 @@ class SteeringParameters:
     wheelbase: float = parameter(0.0, description="between the axles, in m")
 
     def of_traction(self, front: float, rear: float) -> float:
-        """The parameter of the driven axle, of those for front and rear that older files have."""
+        """Return the parameter of the driven axle, from those for front and rear in older files."""
         return rear if self.front_steering else front
 
     @property
@@ -182,7 +182,7 @@ class SteeringController(Controller[P], Generic[P]):
                 )
 
     def on_activate(self) -> None:
-        """Start at rest, and take commands."""
+        """Start at rest, and accept commands."""
         for reference in self.references:
             reference.value = nan
         self._odometry.odometer.stand()

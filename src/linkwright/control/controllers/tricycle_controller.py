@@ -132,7 +132,7 @@ class TricycleController(Controller[Parameters]):
         self._output = node.publisher("ackermann_msgs/msg/AckermannDrive", "~/cmd_ackermann") if asked else None
 
     def on_activate(self) -> None:
-        """Start at rest, and take commands."""
+        """Start at rest, and accept commands."""
         self._traction.restart()
         angle = self.states[1].value
         self._steering.restart(0.0 if isnan(angle) else angle)

@@ -48,12 +48,12 @@ class VelocityInput:
             node.subscribe("geometry_msgs/msg/Twist", unstamped, self._receive_twist, qos, commander=commander)
 
     def open(self) -> None:
-        """Take commands from now on."""
+        """Accept commands from now on."""
         self.forget()
         self._is_open = True
 
     def close(self) -> None:
-        """Drop the last command, and take no more."""
+        """Drop the last command, and accept no more."""
         self.forget()
         self._is_open = False
 

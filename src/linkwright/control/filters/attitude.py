@@ -171,7 +171,7 @@ class ComplementaryFilter:
         if length >= _FREE_FALL:
             up = rotate(self.orientation, _unit(acceleration))
             gain = self.gain_acc * (_trust(length) if self.do_adaptive_gain else 1.0)
-            # From where up is seen to where it is.
+            # From the measured up direction to the true one.
             back = quaternion_inverse(rotation_from_z(up))
             self.orientation = quaternion_multiply(_part(back, gain), self.orientation)
         if magnetic is not None and hypot(*magnetic) > 0.0:

@@ -11,7 +11,7 @@ from linkwright.control.filters.kalman import KalmanFilter, Measurement, Snapsho
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """When an estimator predicts without measurements, and how far it goes back for late ones.
+    """When an estimator predicts without measurements, and how far it rewinds for late ones.
 
     Attributes:
         sensor_timeout_ns: after which time without measurements the state is predicted.
@@ -43,7 +43,7 @@ class Estimator:
 
     def add(self, measurement: Measurement) -> None:
         """Add a measurement; it is used in the first `advance` to its time or a later one."""
-        self._count += 1  # of two with one stamp the first is used first
+        self._count += 1  # with equal stamps, the first received is used first
         heapq.heappush(self._queue, (measurement.time_ns, self._count, measurement))
 
     def clear(self) -> None:
@@ -53,7 +53,7 @@ class Estimator:
         self._states.clear()
 
     def advance(self, now_ns: int) -> None:
-        """Use the measurements up to now, and predict the state where none came for long."""
+        """Use the measurements up to now, and predict the state after a long gap."""
         kalman, history_ns = self.filter, self._timing.history_ns
         predict = self._timing.predict_to_now
         if self._queue:

@@ -88,7 +88,7 @@ def derivatives(state: Vector, seconds: float) -> Matrix:
     jacobian[ANGLES, RATES] = angle_rates * seconds
     jacobian[VELOCITY, ACCELERATION] = np.eye(3) * seconds
 
-    # Turning the body a little about an axis moves a point of it by the cross product of the axis with the point.
+    # A small rotation about an axis moves a point by the cross product of the axis with the point.
     shift = _shift(state, seconds)
     moved = turn @ shift
     mx, my, mz = moved.tolist()

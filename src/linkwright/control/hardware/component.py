@@ -57,7 +57,7 @@ class Hardware:
 
     def _state_interface(self, component: ComponentDescription, interface: InterfaceDescription) -> StateInterface:
         value = interface.initial_value
-        if value != value:  # not a number; as it was written before there was initial_value
+        if value != value:  # not a number; the older form of initial_value
             text = component.parameters.get(f"initial_{interface.name}", "")
             value = float(text) if text.replace(".", "", 1).lstrip("-").isdigit() else nan
         return StateInterface(component.name, interface.name, value)

@@ -435,7 +435,7 @@ class ControllerManager:
             self._stop_those_of(failed)
         for loaded in self._active:
             if loaded.controller.state is not ACTIVE:
-                continue  # one before it has failed, and it with that
+                continue  # the failure of an earlier one deactivated it
             if loaded.period_ns:
                 if time_ns < loaded.next_ns:
                     continue
@@ -449,7 +449,7 @@ class ControllerManager:
                 else:
                     loaded.timing.measure(loaded.controller.step, time_ns, step_s)
             except Exception as error:  # noqa: BLE001 - a fault of a controller must not end the others
-                self._fail(loaded, error)  # `_active` is another list then
+                self._fail(loaded, error)  # `_active` was replaced
                 continue
             wrong = loaded.take_back_wrong_commands()
             if wrong:

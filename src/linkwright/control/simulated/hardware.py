@@ -137,7 +137,7 @@ class SimulatedSystem(Hardware):
         for name, joint in self._joints.items():
             if f"{name}/{joint.mode}" in stop:
                 joint.set_mode("")
-            for kind in (EFFORT, POSITION, VELOCITY):  # a velocity goes before a position, as with gz_ros2_control
+            for kind in (EFFORT, POSITION, VELOCITY):  # velocity takes precedence over position, as in gz_ros2_control
                 if f"{name}/{kind}" in start:
                     joint.set_mode(kind)
 

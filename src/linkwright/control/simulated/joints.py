@@ -134,7 +134,7 @@ class SimulatedJoint:
         if pid is None:
             return
         command = self._commands[self._mode].value
-        if command == command:  # until there is a number it stays where it is
+        if command == command:  # it keeps its position until the command is a number
             self._target = command
         if self._motor is not None:
             self._motor.release()

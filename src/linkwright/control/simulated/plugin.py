@@ -47,7 +47,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
 
     PARAMETERS = Parameters
     IGNORED = (
-        "robot_param",  # the description comes by its topic
+        "robot_param",  # the description arrives on its topic
         "robot_param_node",
         "e_stop_topic",
         "control_period",

@@ -293,7 +293,7 @@ def _coloured(entity: Entity, colour: Sequence[float]) -> list[Replacement]:
             parts = (made("ambient", text), made("diffuse", text))
             edits.append(writing.inserted_in(visual.element, [made("material", *parts)]))
             continue
-        script = material.first("script")  # it would come before the colours
+        script = material.first("script")  # it would override the colours
         missing = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
         for tag in ("ambient", "diffuse"):
             if tag not in missing:

@@ -255,7 +255,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
 
     def _motors(self) -> dict[str, GzMulticopterMotor]:
         """The rotors of the model, by joint."""
-        if len(self._rotors) < len(self._joints):  # plugins of a model come one after the other
+        if len(self._rotors) < len(self._joints):  # plugins of a model start one after the other
             found = self._environment.plugins(self.place.path.partition(SEPARATOR)[0])
             motors = [
                 simulated_plugin for simulated_plugin in found if isinstance(simulated_plugin, GzMulticopterMotor)

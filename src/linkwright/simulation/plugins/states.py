@@ -34,7 +34,7 @@ class ClassicState(SimulatedPlugin[StateParameters]):
         self._entities = Entities(self.simulation)
         self._models = node.publisher("gazebo_msgs/msg/ModelStates", "model_states", 1)
         self._links = node.publisher("gazebo_msgs/msg/LinkStates", "link_states", 1)
-        if node.name.count("/") > 1:  # the simulator has those without a namespace
+        if node.name.count("/") > 1:  # the simulator offers the topics without a namespace
             node.service("gazebo_msgs/srv/GetEntityState", "get_entity_state", self._get)
             node.service("gazebo_msgs/srv/SetEntityState", "set_entity_state", self._set)
         node.service("gazebo_msgs/srv/SetModelConfiguration", "set_joint_positions", self._set_joints)

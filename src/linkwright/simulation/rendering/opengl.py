@@ -189,7 +189,7 @@ class OpenGlRenderer:
     def _update(self, hole: Optics, pose: Transform) -> None:
         simulation, mujoco = self._simulation, self._mujoco
         model, axes = simulation.model, axes_of(pose)
-        model.vis.map.zfar = hole.far  # how far planes without an end go
+        model.vis.map.zfar = hole.far  # the extent of infinite planes
         groups = model.geom_group.copy()
         model.geom_group[_beside(simulation, hole, np.array(pose[:3]), axes)] = COLLISION_GROUP
         catches = mujoco.mjtCatBit.mjCAT_ALL.value
@@ -236,7 +236,7 @@ class OpenGlRenderer:
         ambient = np.array(self._simulation.world.scene.ambient[:3])
         for light, placed in zip(scene.lights, lights[:_LIGHTS], strict=False):
             description = placed.light
-            directional = description.type == "directional"  # a point light is a spot that shines all round
+            directional = description.type == "directional"  # a point light is a spot light in all directions
             light.type = (kinds.mjLIGHT_DIRECTIONAL if directional else kinds.mjLIGHT_SPOT).value
             light.pos[:], light.dir[:] = placed.position, placed.direction
             light.attenuation[:] = (

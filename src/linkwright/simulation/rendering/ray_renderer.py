@@ -57,7 +57,7 @@ class RayRenderer:
 
     def _shaded(self, hits: Hits, origin: Array, rays: Any, forwards: Array) -> Any:
         simulation = self._simulation
-        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a dataset has others for each image
+        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a dataset changes them for each image
         if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._paints)):
             self._colours = geom_colours(simulation.model)
             self._paints = tuple(paint.copy() for paint in paints)

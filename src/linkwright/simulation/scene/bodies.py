@@ -106,7 +106,7 @@ class BodyWriter:
                 "no body has the inertia of link '{name}'; it moves with the mean of its moments", name=link.name
             )
             self._warn("SIM111", message, inertial.element or link.element)
-        elif excess > -_FLAT:  # of flat bodies MuJoCo would take the mean for a rounding
+        elif excess > -_FLAT:  # MuJoCo treats the mean of flat bodies as a rounding error
             tensor = tensor + np.eye(3) * np.trace(tensor) / 2 * (max(excess, 0.0) + _FLAT)
         least = float(np.linalg.eigvalsh(tensor)[0])
         if least < _LEAST_MOMENT:

@@ -61,7 +61,7 @@ class Connections:
             above.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
         wanted = set(names)
         ordered: dict[str, None] = {}
-        begun: set[str] = set()  # joints may lead back to where they come from, by way of other links
+        begun: set[str] = set()  # joints may form a cycle through other links
         pending = list(reversed(names))
         while pending:
             name = pending[-1]

@@ -55,9 +55,9 @@ class MeshLibrary:
         self._finder = finder
         self._files: dict[tuple[str, Path], Path | None] = {}
         self._assets: dict[Hashable, list[str]] = {}
-        self._textures: dict[bytes, str] = {}  # images as PNG, and the names of their textures
+        self._textures: dict[bytes, str] = {}  # images as PNG -> names of their textures
         self._reported: set[str] = set()
-        self._mapped: set[str] = set()  # meshes of the specification with coordinates of images
+        self._mapped: set[str] = set()  # meshes of the specification with texture coordinates
 
     def look_in(self, finder: ResourceFinder) -> None:
         """Set the finder of files; missing files are looked for again."""

@@ -116,7 +116,7 @@ class Scene:
         self._writer = BodyWriter(meshes)
         self._meshes = meshes
         self._motors = 0
-        self._driven: dict[str, dict[str, float]] = {}  # of each model, joints with the rotors of their motors
+        self._driven: dict[str, dict[str, float]] = {}  # by model: joints with the rotor inertias of their motors
         self._unsettled: set[str] = set()
         self.spec.modelname = world.name or WORLD
         self.spec.compiler.degree = False
@@ -421,7 +421,7 @@ class Scene:
             parent, above = self.bodies[joint.parent], poses[joint.parent]
         driven = (
             joint is None and link.kinematic and not placed.static
-        )  # it moves where it is put, and nothing moves it
+        )  # it moves to given poses, and no force moves it
         body = self.bodies[placed.name] = parent.add_body(name=placed.name, mocap=driven)
         set_pose(body, compose(invert(above), placed.pose))
         fixed = placed.static or driven
@@ -434,7 +434,7 @@ class Scene:
                 self._writer.add_joint(body, joint, placed.pose)
                 self.joints[joint.name] = joint
         else:
-            body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # else MuJoCo 3 puts it where its rays miss it
+            body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # else MuJoCo 3 places it where its rays miss it
         self._writer.add_visuals(body, link, placed.frames, fixed=fixed)
         self._writer.add_collisions(body, link, placed.frames, fixed=fixed)
         return body

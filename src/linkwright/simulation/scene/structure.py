@@ -129,14 +129,14 @@ def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Struc
     held: dict[str, list[str]] = {}
     for joint in joints:
         is_taken = joint.child in holding or is_below(holding, joint.child, joint.parent)
-        if is_taken or joint.joint.type == "gearbox":  # which couples joints, and holds nothing
+        if is_taken or joint.joint.type == "gearbox":  # it couples joints, and holds no link
             loops.append(joint)
         else:
             holding[joint.child] = joint
             held.setdefault(joint.parent, []).append(joint.child)
 
     ordered = [name for name in links if name not in holding or holding[name].parent == WORLD]
-    for name in ordered:  # it grows while it is walked along
+    for name in ordered:  # it grows during the iteration
         ordered += held.get(name, ())
     return Structure(tuple(HeldLink(links[name], holding.get(name)) for name in ordered), tuple(loops))
 

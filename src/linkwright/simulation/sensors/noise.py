@@ -115,7 +115,7 @@ class VectorNoise:
         """
         if self._silent:
             return vector
-        if self._white:  # it is asked for often: drawing many at once takes hardly longer than drawing three
+        if self._white:  # drawing many numbers at once takes hardly longer than drawing three
             if not self._drawn:
                 self._drawn = self._generator.standard_normal((_AHEAD, 3)).tolist()
             (x, y, z), (a, b, c) = vector, self._drawn.pop()

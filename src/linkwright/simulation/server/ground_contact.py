@@ -67,7 +67,7 @@ def _depth(simulation: Simulation, name: str) -> float:
         is_own = [body in own for body in bodies]
         if is_own[0] == is_own[1] or model.body_weldid[bodies[is_own.index(False)]] != 0:
             continue
-        up = float(contact.frame[2]) * (1.0 if is_own[1] else -1.0)  # its direction is from the first to the second
+        up = float(contact.frame[2]) * (1.0 if is_own[1] else -1.0)  # its direction points from the first to the second
         if up > _UPWARD:
             depth = max(depth, -float(contact.dist) / up)
     return depth

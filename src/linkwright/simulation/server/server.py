@@ -446,7 +446,7 @@ class SimulationServer:
             self._logged.add(text)
             logger = self.node.get_logger()
             line = f"{text} ({diagnostic.hint})" if diagnostic.hint else text
-            if diagnostic.severity is Severity.ERROR:  # two lines, as a logger knows its calls by their lines
+            if diagnostic.severity is Severity.ERROR:  # two lines, because a logger identifies its calls by their lines
                 logger.error(line)
             else:
                 logger.warning(line)

@@ -121,7 +121,7 @@ class _Window:
         self._last.append(values.copy())
         several = np.sort(np.stack(self._last), axis=0)  # NaN is last
         if self._median:
-            # Of an even number the greater one of those in the middle, as the package filters takes it.
+            # Of an even number, the greater of the two middle values, as in the package filters.
             chosen: Floats = several[len(several) // 2]
             return chosen.copy()
         return np.asarray(several.mean(axis=0), dtype=np.float32)

@@ -77,7 +77,7 @@ def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: 
     rows = np.zeros((height * width, 8), np.float32)
     rows[:, :3] = points.reshape(-1, 3)
     bytes_of = rows.view(np.uint8).reshape(height * width, 32)
-    # As PCL packs them, blue is the lowest byte.
+    # PCL's order: blue is the lowest byte.
     bytes_of[:, 16:19] = colour.reshape(-1, 3)[:, :: 1 if swapped else -1]
     _fill(message, rows.view(_COLOURED).reshape(-1), height)
     message.is_dense = False

@@ -57,9 +57,9 @@ class PixelNoise:
             self._more, self._less = (np.maximum(array, 0).astype(np.uint8) for array in (drawn, -drawn))
         start = int(self._generator.integers(_PLACES))
         more, less = (array[start : start + colour.size].reshape(colour.shape) for array in (self._more, self._less))
-        noisy: Pixels = np.maximum(colour, less)  # in bytes, in a sixth of the time of larger numbers that are clipped
+        noisy: Pixels = np.maximum(colour, less)  # bytes take a sixth of the time of clipping larger integers
         noisy -= less
-        np.invert(noisy, out=noisy)  # and so with how much is missing to white
+        np.invert(noisy, out=noisy)  # and likewise the distance to white
         np.maximum(noisy, more, out=noisy)
         noisy -= more
         return np.invert(noisy, out=noisy)
@@ -72,7 +72,7 @@ def fill_image(message: Any, colour: Pixels, encoding: str) -> None:
         pixels = np.round(colour @ _GREY).astype(np.uint8)
     elif encoding.startswith("bgr"):
         pixels = np.empty_like(colour)
-        for channel in range(3):  # an eighth of the time of turning all three round at once
+        for channel in range(3):  # an eighth of the time of reversing all three at once
             pixels[:, :, channel] = colour[:, :, 2 - channel]
     elif encoding.startswith("bayer"):
         pixels = _mosaic(colour, encoding.removeprefix("bayer_")[:4])
