@@ -144,7 +144,7 @@ async def test_a_world_that_is_edited_is_not_replaced_by_its_file(tmp_path):
         edited = world(FALLING, box("edited", "5 5 1 0 0 0"))
         await it.look(lambda _: it.worlds.load(str(file), edited))
         file.write_text(world(box("other", "5 5 1 0 0 0")))
-        await it.until("has changed, and the world that is edited goes on")
+        await it.until("has changed; the simulation continues with the edited world")
         assert await it.look(has("ground", "falling", "edited"))
         before = it.worlds.loaded
         file.write_text(edited)
@@ -171,7 +171,7 @@ async def test_a_world_that_cannot_be_simulated_is_told(tmp_path):
     async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         never = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
         (tmp_path / "a.world").write_text(world(FALLING, never))
-        await it.until("the simulation goes on as before: ")
+        await it.until("the simulation continues unchanged: ")
         assert "a time step of -1.0 s" in it.err.getvalue()
 
 

@@ -22,7 +22,7 @@ def test_two_of_one_kind_warn_and_both_work(machine: Machine) -> None:
     path = machine.write("a.launch.py", launch_file(*actions))
     launches = [machine.launch(path), machine.launch(path)]
     for launch in launches:
-        launch.wait_for("has nodes of the same names")
+        launch.wait_for("has nodes with the same names")
         launch.wait_for("I heard: ", times=4)
     for launch in launches:
         assert launch.count("Another process has a node") == 0

@@ -66,8 +66,8 @@ def draw():
     [
         ("1 / 0", "ZeroDivisionError: division by zero (squares.py:5)"),
         ("raise SystemExit(3)", "SystemExit: 3 (squares.py:5)"),
-        ("return 3", "BadResultError: the scenario returned no dict but int"),
-        ("return {'x': [1]}", "BadResultError: result 'x' is no number, text, True or False but list"),
+        ("return 3", "BadResultError: the scenario must return a dict, not int"),
+        ("return {'x': [1]}", "BadResultError: result 'x' must be a number, text, True or False, not list"),
         ("return {'n': 1}", "BadResultError: a result cannot be called 'n': that is a column already, or no text"),
         ("from linkwright.descriptions import load; load('<robot')", "XML203 <robot_description>:1:1"),
     ],
@@ -80,15 +80,15 @@ def test_what_goes_wrong_is_the_outcome(tmp_path, body, error):
 
 
 BAD = {
-    "SWEEP102 squares.py:1:5 this is no Python: invalid syntax": "def :\n",
+    "SWEEP102 squares.py:1:5 this is not valid Python: invalid syntax": "def :\n",
     "SWEEP102 squares.py:2:1 the scenario cannot be loaded: ZeroDivisionError: division by zero": "\n1 / 0\n",
     "SWEEP102 squares.py:1:1 the scenario cannot be loaded: ModuleNotFoundError: No module named 'nothing_of_this'": (
         "import nothing_of_this\n"
     ),
     "SWEEP103  there is no scenario in 'squares.py'": HEAD,
     "SWEEP103 squares.py:7:1 there are 2 scenarios in 'squares.py'": f"{SQUARES}\n@scenario()\ndef other(): ...\n",
-    "SWEEP104 squares.py:2:1 the function 'f' takes no 'm'": f"{HEAD}@scenario(m=[1])\ndef f(): ...\n",
-    "SWEEP104 squares.py:2:1 the function 'f' needs 'm', of which @scenario says nothing": (
+    "SWEEP104 squares.py:2:1 the function 'f' does not take 'm'": f"{HEAD}@scenario(m=[1])\ndef f(): ...\n",
+    "SWEEP104 squares.py:2:1 the function 'f' needs 'm', which @scenario does not set": (
         f"{HEAD}@scenario()\ndef f(m, k=1, seed=0): ...\n"
     ),
     "SWEEP104 squares.py:2:1 a parameter cannot be called 'row': that is a column already": (
@@ -98,13 +98,13 @@ BAD = {
     "SWEEP105 squares.py:2:1 parameter 'm' needs a list of values, a Uniform or a Normal": (
         f"{HEAD}@scenario(m='maze')\ndef f(m): ...\n"
     ),
-    "SWEEP105 squares.py:2:1 a value of parameter 'm' is no number, text, True or False but dict": (
+    "SWEEP105 squares.py:2:1 a value of parameter 'm' must be a number, text, True or False, not dict": (
         f"{HEAD}@scenario(m=[{{}}])\ndef f(m): ...\n"
     ),
-    "SWEEP105 squares.py:2:1 parameter 'm': the numbers that it is drawn by are to be finite": (
+    "SWEEP105 squares.py:2:1 parameter 'm': the numbers of its distribution must be finite": (
         f"{HEAD}@scenario(m=Uniform(0, float('inf')))\ndef f(m): ...\n"
     ),
-    "SWEEP105 squares.py:2:1 the seeds are to be a positive number of them, or a list of whole numbers from 0 on": (
+    "SWEEP105 squares.py:2:1 the seeds must be a positive number of seeds, or a list of integers from 0 on": (
         f"{HEAD}@scenario(seeds=0)\ndef f(): ...\n"
     ),
 }

@@ -1,4 +1,4 @@
-"""The form for a description that fails for arguments which nobody gave."""
+"""The form for a description that fails because arguments have no value."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from linkwright.viewer.protocol.arguments import ArgumentForm
 
 _MOST_TRIED = 12
-"""Sets of values with which the description is expanded; of more nobody chooses."""
+"""Sets of values with which the description is expanded; no user chooses between more."""
 
 
 def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Diagnostic]) -> ArgumentForm | None:
-    """The arguments that a description needs, with the sets of values of its callers that make a robot of it.
+    """Return the arguments that a description needs, with those sets of values of its callers that give a robot.
 
     Takes as long as it takes to expand the description with each set; may run in another thread.
 
     Args:
         call: the use of xacro that failed.
         finder: where packages are.
-        findings: what was wrong.
+        findings: the errors of that use.
 
     Returns:
-        None where other values would change nothing, as far as that is known.
+        The form, or None if other values would change nothing, as far as that is known.
     """
     from linkwright.descriptions.argument_sets import argument_sets
     from linkwright.lint.argument_sets import asked_argument
@@ -59,6 +59,6 @@ def _expands(call: XacroCall, values: Mapping[str, str], finder: PackageFinder) 
 
 
 def _label(values: Mapping[str, str], sets: Sequence[Mapping[str, str]]) -> str:
-    """The values that sets differ in."""
+    """Return the values in which the sets differ, as a label."""
     apart = [name for name in values if any(other.get(name) != values[name] for other in sets)]
     return " ".join(f"{name}:={values[name]}" for name in apart or values)

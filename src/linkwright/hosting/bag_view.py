@@ -1,4 +1,4 @@
-"""A recording that is shown: in a graph of its own, with a timeline in the page."""
+"""The view of a recording: in a graph of its own, with a timeline in the page."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class BagView(ModelView):
         self._bag = bag
 
     def _publish(self) -> bool:
-        """Have its topics ready."""
+        """Prepare its topics."""
         self.log.diagnostics(self._bag.findings)
         from linkwright.viewer.recorded_robot import published
 

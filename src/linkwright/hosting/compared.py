@@ -1,4 +1,4 @@
-"""Two descriptions that are shown in one scene: the new one as `view` shows it, the old one seen through."""
+"""The view of two descriptions in one scene: the new one as `view` shows it, the old one transparent."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None = None) -> int:
-    """Show two descriptions in one scene, with what differs, until the user ends it.
+    """Show two descriptions in one scene, with their differences, until the user ends it.
 
     Args:
         pair: the two; the caller closes it.
@@ -37,7 +37,7 @@ def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None 
     options = replace(options, title=f"{pair.old.title} → {pair.new.title}")
     log = LaunchLog()
     if pair.old.revision is not None:
-        pair.old.read()  # nobody can repair it
+        pair.old.read()  # this version cannot be corrected, so that an error ends the command
 
     def run(signals: SignalWatch) -> bool:
         async def show() -> bool:
@@ -69,7 +69,7 @@ class ComparedView(ModelView):
     def _publish(self) -> bool:
         if self._pair.old.path.is_file():
             return super()._publish()
-        self._read_old()  # says why there is none
+        self._read_old()  # it reports the error
         self.shut_down("there is no model")
         return False
 
@@ -102,7 +102,7 @@ class ComparedView(ModelView):
             self._old_reload.start()
 
     def _read_old(self) -> str | None:
-        """The text of the old description; None where there is none now, which is told."""
+        """Return the text of the old description; reports an error and returns None if it has none now."""
         try:
             text = self._old.expand(self._old_call)
         except DescriptionError as error:
@@ -121,14 +121,14 @@ class ComparedView(ModelView):
 
 
 class _OldDescriptions(Descriptions):
-    """Descriptions whose texts no other description has: both files may say the same."""
+    """Descriptions with unique texts: both files may have the same content."""
 
     def __init__(self, finder: PackageFinder, library: DescriptionLibrary) -> None:
         super().__init__(finder)
         self._library = library
 
     def remember(self, call: XacroCall, description: Description, text: str | None = None) -> str:
-        """Keep a description; returns what stands for its text."""
+        """Store a description; returns the text that identifies it."""
         from linkwright.descriptions.pairs import text_of_old
 
         return super().remember(call, description, text_of_old(description) if text is None else text)

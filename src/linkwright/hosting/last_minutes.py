@@ -1,4 +1,4 @@
-"""How much of the last minutes is kept; by itself, because the help of commands says it and imports nothing large."""
+"""The default size of the live history; a module of its own because commands' help needs it and must load quickly."""
 
 DEFAULT_HISTORY = 256_000_000
-"""Bytes of the last minutes that a viewer keeps; the guide of the viewer says how long a time that is."""
+"""Bytes of live history that a viewer stores; the viewer's guide gives the corresponding time."""

@@ -21,7 +21,7 @@ SCREEN = "screen"
 LOG = "log"
 OWN_LOG = "own_log"
 SHARED_OWN_LOG = "own_log of both"
-"""The file of a process that both its streams go to, beside one for each."""
+"""The file of a process for both its streams, beside one for each."""
 
 LAUNCH_LOG = "launch.log"
 
@@ -40,10 +40,10 @@ OUTPUT_MODES = tuple(_OUTPUT_MODES)
 
 
 def output_destinations(mode: str | Mapping[str, Iterable[str] | str]) -> dict[int, frozenset[str]]:
-    """Where stdout (1) and stderr (2) of a process go, by the ``output`` of its action.
+    """Return the destinations of a process's stdout (1) and stderr (2), from the ``output`` of its action.
 
     Raises:
-        KeyError: with the mode, stream or destination that does not exist.
+        KeyError: the mode, stream or destination that does not exist.
     """
     if isinstance(mode, str):
         stdout, stderr = _OUTPUT_MODES[mode]
@@ -64,14 +64,15 @@ def output_destinations(mode: str | Mapping[str, Iterable[str] | str]) -> dict[i
 class LaunchLog:
     """The log of one launch.
 
-    On the screen, lines of the launcher and of nodes go to stderr, what processes write to the stream they write it
-    to. In the folder of the launch, below the one that `log_base` gives, ``launch.log`` has all of the
-    launcher and of what goes to the log; processes with a log of their own have theirs beside it. The variables
-    ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` and ``OVERRIDE_LAUNCH_LOG_FORMAT`` change how lines look, as in ROS.
+    On the screen, lines of the launcher and of nodes go to stderr, the output of processes to the stream that they
+    write to. In the folder of the launch, below the one that `log_base` gives, ``launch.log`` has all lines of the
+    launcher and all output that goes to the log; processes with a log of their own have theirs beside it. The
+    variables ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` and ``OVERRIDE_LAUNCH_LOG_FORMAT`` change the format of lines, as in
+    ROS.
 
     Args:
         stdout: where the output of processes goes.
-        stderr: where all else goes.
+        stderr: where all other lines go.
         debug: whether it logs in detail.
     """
 
@@ -88,7 +89,7 @@ class LaunchLog:
 
     @property
     def folder(self) -> Path:
-        """The folder for the log files of this launch; where it cannot be made, the one that all logs are in."""
+        """The folder for the log files of this launch, or the folder of all logs if it cannot be created."""
         if self._folder is None:
             base = log_base()
             try:
@@ -101,40 +102,40 @@ class LaunchLog:
         return self._folder
 
     def begin(self) -> None:
-        """The first lines: where the files are, and the log level."""
+        """Log the first lines: the folder of the files, and the log level."""
         folder = self.folder
         if self._has_folder:
             self.say("launch", f"All log files can be found below {folder}")
         self.say("launch", f"Default logging verbosity is set to {'DEBUG' if self._debug else 'INFO'}")
 
     def detail(self, name: str, text: str) -> None:
-        """A line for those who look for a fault in a launch file."""
+        """Log a detail for users who debug a launch file."""
         if self._debug:
             self._own_line("DEBUG", name, text)
 
     def say(self, name: str, text: str) -> None:
-        """A line that says what goes on."""
+        """Log a line of information."""
         self._own_line("INFO", name, text)
 
     def caution(self, name: str, text: str) -> None:
-        """A line that says what may be wrong."""
+        """Log a warning."""
         self._own_line("WARNING", name, text)
 
     def complain(self, name: str, text: str) -> None:
-        """A line that says what is wrong."""
+        """Log an error."""
         self._own_line("ERROR", name, text)
 
     def announce(self, line: str) -> None:
-        """A line for programs that read our stdout; written at once."""
+        """Print a line for programs that read our stdout, without delay."""
         self._print(1, line)
 
     def diagnostics(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Findings about the user's files."""
+        """Log findings about the user's files."""
         with suppress(OSError):
             print_diagnostics(diagnostics, self._streams[2])
 
     def node_record(self, process: str, record: LogRecord, destinations: frozenset[str]) -> None:
-        """Print a record of a node of this process, in rcutils' format behind the name of its process."""
+        """Log a record of a node of this process, in rcutils' format after the name of its process."""
         from linkwright.graph import console_line
 
         line = f"[{process}] {console_line(record)}"
@@ -144,7 +145,7 @@ class LaunchLog:
         self._file(process, 2, line, destinations)
 
     def process_line(self, process: str, stream: int, line: str, destinations: frozenset[str]) -> None:
-        """A line that a process wrote.
+        """Log a line that a process wrote.
 
         Args:
             process: its name, such as ``talker-1``.
@@ -177,7 +178,7 @@ class LaunchLog:
             self._write(f"{process}.log", line)
 
     def _print(self, stream: int, line: str) -> None:
-        with suppress(OSError):  # the reader, such as head, has gone, or its disk is full; the launch goes on
+        with suppress(OSError):  # the reader, such as head, has gone, or its disk is full; the launch continues
             print(line, file=self._streams[stream], flush=True)
 
     def _painted(self, line: str, colour: str | None) -> str:
@@ -187,7 +188,7 @@ class LaunchLog:
         if self._closed:
             return
         if name not in self._files:
-            folder = self.folder  # which may find that nothing can be written
+            folder = self.folder  # this line may fail, too
             if name not in self._files:
                 self._files[name] = self._open(folder / name)
         file = self._files[name]
@@ -217,18 +218,18 @@ FORMATS = {
 FILE_FORMATS = {"default": FORMATS["default_with_timestamp"]}
 
 Line = Callable[[str, str, str], str]
-"""Makes a line of a level, a logger's name and a text."""
+"""Formats a line from a level, a logger's name and a text."""
 
 
 def line_format(wanted: str | None, named: dict[str, str]) -> Line:
-    """What makes lines.
+    """Return a function that formats lines.
 
     Args:
         wanted: a name of `named`, or a format with the fields of Python's log records in braces; None for the default.
         named: formats by name.
 
     Returns:
-        The maker of lines. A format that cannot be filled gives the default one's lines.
+        The function. For a format that cannot be filled, it uses the default one.
     """
     template = named.get(wanted or "default", wanted or "")
 
@@ -255,7 +256,7 @@ LATEST = "latest"
 
 
 def log_base(environment: Mapping[str, str] | None = None) -> Path:
-    """The folder of all logs: ``ROS_LOG_DIR``, else ``ROS_HOME/log``, else ``~/.ros/log``."""
+    """Return the folder of all logs: ``ROS_LOG_DIR``, else ``ROS_HOME/log``, else ``~/.ros/log``."""
     environment = os.environ if environment is None else environment
     given = environment.get("ROS_LOG_DIR")
     if given:
@@ -265,13 +266,13 @@ def log_base(environment: Mapping[str, str] | None = None) -> Path:
 
 
 def new_log_folder(base: Path) -> Path:
-    """Make the folder of one launch, named by the date, the machine and the process; ``latest`` links to it.
+    """Create the folder of one launch, named by the date, the machine and the process; ``latest`` links to it.
 
     Raises:
-        OSError: it cannot be made.
+        OSError: it cannot be created.
     """
     while True:
-        # The machine's own time, as ROS names these folders; a person is to find the launch of this morning.
+        # Local time, as in ROS's names of these folders, so that a user finds the launch of this morning.
         seconds, nanoseconds = divmod(time.time_ns(), 1_000_000_000)
         stamp = f"{time.strftime('%Y-%m-%d-%H-%M-%S', time.localtime(seconds))}-{nanoseconds // 1000:06d}"
         folder = base / f"{stamp}-{socket.gethostname()}-{os.getpid()}"

@@ -1,4 +1,4 @@
-"""The network of ROS 2: joined in the background; names of nodes that another launch has too are told of."""
+"""The network of ROS 2: joined in the background; warns of node names that another launch uses too."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _SWITCH = "LINKWRIGHT_DDS"
 _DELAY_SECONDS = 0.8
-"""With a viewer the page and the robot come first: what joins the network takes a processor for a fifth of a second."""
+"""With a viewer the page and the robot come first: joining the network takes a processor for a fifth of a second."""
 
 
 class Network:
@@ -28,7 +28,7 @@ class Network:
         session: the launch.
 
     Attributes:
-        domain_id: the ROS_DOMAIN_ID that was joined; None before, or where none can be.
+        domain_id: the ROS_DOMAIN_ID that was joined; None before, or if joining fails.
 
     Raises:
         LinkwrightError: DDS121, the network has to be joined with security.
@@ -45,18 +45,18 @@ class Network:
         self.domain_id: int | None = None
 
     def offer(self, graph: Graph) -> None:
-        """Note the graph."""
+        """Set the graph to join with."""
         self._graph = graph
 
     def join_soon(self, *, with_viewer: bool) -> None:
-        """Join in a moment, once; nothing happens without a graph, or where it is switched off."""
+        """Join after a delay, once; does nothing without a graph, or if joining is switched off."""
         if self._graph is None or self._handle is not None or not self._is_wanted():
             return
         loop = asyncio.get_running_loop()
         self._handle = loop.call_later(_DELAY_SECONDS if with_viewer else 0.0, self._join)
 
     def close(self) -> None:
-        """Stop joining."""
+        """Cancel joining."""
         if self._handle is not None:
             self._handle.cancel()
         self._graph = None
@@ -80,18 +80,18 @@ class Network:
 
 
 _GATHER_SECONDS = 0.3
-"""Nodes of another launch are heard of one after another; so long they are waited for, to be told of together."""
+"""Seconds to collect names, because nodes of another launch are discovered one by one: one warning lists them all."""
 _LISTED = 6
-"""Names in the line, which is one of the terminal."""
+"""The most names in the warning, which is one line of the terminal."""
 
 
 class SharedNames:
-    """What the graph of a launch tells of shared names.
+    """Warnings of the node names that a launch shares with another.
 
     Args:
         network: knows which domain the names are shared on.
         log: where the line goes.
-        show: called when `findings` are others.
+        show: called when `findings` change.
     """
 
     def __init__(self, network: Network, log: LaunchLog, show: Callable[[], None]) -> None:
@@ -103,15 +103,15 @@ class SharedNames:
         self._told: frozenset[str] = frozenset()
         self._telling: asyncio.TimerHandle | None = None
         self.findings: list[Diagnostic] = []
-        """What the page shows: one finding as long as names are shared, else none."""
+        """The findings for the page: one as long as names are shared, else none."""
 
     def notice(self, names: frozenset[str]) -> None:
-        """Note the full names of nodes that are shared now; from any thread."""
-        with suppress(RuntimeError):  # the loop has come to its end
+        """Set the full names of the nodes that are shared now; from any thread."""
+        with suppress(RuntimeError):  # the loop is closed
             self._loop.call_soon_threadsafe(self._gather, names)
 
     def close(self) -> None:
-        """Tell of nothing any more."""
+        """Cancel a pending warning."""
         if self._telling is not None:
             self._telling.cancel()
 
@@ -132,8 +132,8 @@ class SharedNames:
     def _finding(self, names: frozenset[str]) -> Diagnostic:
         domain = self._network.domain_id or 0
         message = phrase(
-            "another launch or program on ROS_DOMAIN_ID {domain} has nodes of the same names, and the two disturb each"
-            " other: {names}",
+            "another launch or program on ROS_DOMAIN_ID {domain} has nodes with the same names, and the two "
+            "interfere: {names}",
             domain=domain,
             names=_listed(sorted(names)),
         )

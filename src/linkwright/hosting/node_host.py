@@ -1,4 +1,4 @@
-"""Nodes and viewers that run in this process, for a launch or for one model that is shown."""
+"""The nodes and viewers of this process, for a launch or for the view of one model."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _ON_SCREEN = output_destinations("screen")[2]
 
 
 class NodeHost:
-    """Starts, holds and ends the nodes of this process.
+    """Starts, stores and ends the nodes of this process.
 
-    The viewer is started before the nodes that were asked for together with it, so that its page answers as
+    The viewer is started before the nodes that were planned together with it, so that its page answers as
     early as can be.
     """
 
@@ -55,7 +55,7 @@ class NodeHost:
 
     @property
     def is_busy(self) -> bool:
-        """Whether anything runs here or is about to."""
+        """Whether nodes run here or are planned."""
         return bool(self._planned or self._running or self._viewers or self._starting.locked())
 
     @property
@@ -81,7 +81,7 @@ class NodeHost:
 
     @property
     def launcher_node(self) -> Node:
-        """The launcher's own node, with which it asks services and follows topics; made when first asked for."""
+        """The launcher's own node, with which it calls services and follows topics; created on first use."""
         if self._launcher is None:
             self._launcher = self.graph.create_node(
                 f"launch_ros_{os.getpid()}", enable_rosout=False, parameters={"use_sim_time": self._simulated_time}
@@ -98,16 +98,16 @@ class NodeHost:
             self._launcher.set_parameters([Parameter("use_sim_time", value=value)])
 
     def plan(self, plan: HostedPlan) -> None:
-        """Have a node started as soon as the launcher comes to it; none any more once the launch ends."""
+        """Have a node started as soon as the launcher reaches it, unless the launch is ending."""
         if not self._closing:
             self._planned.append(plan)
 
     def forget_planned(self) -> None:
-        """Start nothing of what was planned."""
+        """Drop all plans that have not started."""
         self._planned.clear()
 
     async def give_out_pages(self) -> None:
-        """Give out the pages of the viewers that are planned, and load meanwhile what these are made of.
+        """Serve the pages of the viewers that are planned, and meanwhile load the modules that these need.
 
         A server that cannot listen raises its error when its viewer is started.
         """
@@ -119,7 +119,7 @@ class NodeHost:
             await asyncio.to_thread(load_viewer)
 
     async def start_planned(self) -> None:
-        """Start what was planned, viewers first. Between two nodes the loop gets its turn."""
+        """Start all planned nodes, viewers first. Between two nodes the loop gets its turn."""
         if not self._planned:
             return
         async with self._starting:
@@ -142,12 +142,12 @@ class NodeHost:
             self.network.join_soon(with_viewer=self.has_viewer)
 
     def show_findings(self, findings: list[Diagnostic]) -> None:
-        """Show in the viewers what is wrong with the model files now."""
+        """Show the current findings about model files in the viewers."""
         self._model_findings = findings
         self._show_findings()
 
     def stop_matching(self, matcher: Callable[[Any], bool]) -> None:
-        """End the nodes whose owners a matcher accepts, as a signal would end their processes."""
+        """End the nodes whose owners match, as a signal would end their processes."""
         for plan, running in tuple(self._running.values()):
             if matcher(plan.owner):
                 self._stop_node(plan, running)
@@ -163,7 +163,7 @@ class NodeHost:
         self.stop_matching(lambda _: True)
 
     async def close(self) -> None:
-        """End everything."""
+        """End all nodes and viewers."""
         self.close_nodes()
         for plan in self._viewers.plans():
             await self._stop_viewer(plan, self._viewers.take(plan))
@@ -206,7 +206,7 @@ class NodeHost:
         self._viewers.attach_panel(running)
 
     def _not_started(self, plan: HostedPlan, error: LinkwrightError) -> None:
-        """Tell why; a node whose model file is wrong is started as soon as that is repaired."""
+        """Log the reason; a node whose model file is wrong is started as soon as that is fixed."""
         session = self._session
         found = self._description_of(plan) if plan.waits else None
         if found is None or session.ending:
@@ -228,7 +228,7 @@ class NodeHost:
         session.reload.report(call, error.diagnostics)
 
     def _bind_descriptions(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
-        """Give the node every new text of its descriptions, and show what is remarkable about the first."""
+        """Give the node every new text of its descriptions, and show the findings about the first."""
         from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 
         session = self._session
@@ -273,7 +273,7 @@ class NodeHost:
         self._ended(plan, status)
 
     def _finished(self, plan: HostedPlan, running: RunningNode, done: asyncio.Future[int]) -> None:
-        """End a node that has done its work, and start it again where it respawns."""
+        """End a node that has finished, and restart it if it respawns."""
         if plan.process_name not in self._running or done.cancelled():
             return
         self._stop_node(plan, running, done.result())
@@ -294,7 +294,7 @@ class NodeHost:
     # --- viewers --------------------------------------------------------------------------------------------
 
     async def _start_viewer(self, plan: HostedPlan, *, with_world: bool = False) -> bool:
-        """Start it; where it cannot start, tell why, end the launch, and return False."""
+        """Start it; if it cannot start, log the reason, end the launch, and return False."""
         session = self._session
         nodes = [running for _, running in self._running.values()]
         try:
@@ -339,7 +339,7 @@ class NodeHost:
 
     @contextmanager
     def _holding_back(self) -> Iterator[None]:
-        """Keep off the screen what a node that does not start says is fatal: its diagnostics say it, with the place."""
+        """Hold back the fatal messages of a node that fails to start: its diagnostics report them with their place."""
         self._held_back, off_screen = [], False
         try:
             yield
@@ -354,7 +354,7 @@ class NodeHost:
 
     @contextmanager
     def _speak_as(self, process_name: str) -> Iterator[None]:
-        """Attribute the records of unknown loggers to a process meanwhile."""
+        """Attribute the records of unknown loggers to a process inside the block."""
         before, self._speaking = self._speaking, process_name
         try:
             yield
@@ -362,7 +362,7 @@ class NodeHost:
             self._speaking = before
 
     def _process_of(self, logger: str) -> str:
-        """The process that a logger, or the nearest one above it, belongs to, or the node that made it."""
+        """Return the process of a logger, or of its nearest ancestor, or the node that made it."""
         makers = {} if self._graph is None else dict(self._graph.makers)
         while logger:
             if logger in self._process_of_logger:

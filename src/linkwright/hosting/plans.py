@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from linkwright.viewer import RvizConfig, Viewer
 
 VIEWER = ("rviz2", "rviz2")
-"""Package and executable of RViz, for which our viewer stands in."""
+"""Package and executable of RViz, which our viewer replaces."""
 
 _GAZEBO_WINDOW = "gzclient"
-"""The executable of Gazebo's window, whose place our viewer takes, too."""
+"""The executable of Gazebo's window, which our viewer replaces too."""
 
 
 @dataclass(eq=False)
@@ -32,7 +32,7 @@ class HostedPlan:
     """A node to be started in this process.
 
     Attributes:
-        owner: who asks for it, such as an action of a launch file; None for what only comes with another node.
+        owner: the object that asks for it, such as an action of a launch file; None for a node that another needs.
         process_name: its name in the log, such as ``robot_state_publisher-1``.
         package: the package it belongs to.
         executable: its executable there.
@@ -41,14 +41,14 @@ class HostedPlan:
         parameters: values by name.
         remappings: rules ``(from, to)``.
         arguments: its command line.
-        viewer_config: makes the viewer's configuration; by default the command line says which.
+        viewer_config: makes the viewer's configuration; by default the command line selects it.
         viewer_started: called with the viewer when it runs.
         destinations: where its lines on stdout (1) and stderr (2) go, see `linkwright.hosting.launch_log`.
-        respawns: how often it is started again when it has done its work; without end if negative.
+        respawns: how often it is restarted after it has finished; without limit if negative.
         respawn_delay: seconds to wait before that.
         for_others: parameters for further nodes that it makes, by their names; None for none.
-        environment: the environment variables that it has, those of the moment when the plan was made.
-        waits: whether, if it cannot start with its model, it starts as soon as the model file is repaired.
+        environment: its environment variables, those at the time of the plan.
+        waits: whether, if it cannot start with its model, it starts as soon as the model file is fixed.
     """
 
     owner: Any
@@ -71,17 +71,17 @@ class HostedPlan:
 
     @property
     def is_viewer(self) -> bool:
-        """Whether it is RViz, for which our viewer stands in."""
+        """Whether it is RViz, which our viewer replaces."""
         return is_viewer(self.package, self.executable)
 
     @property
     def opens_gazebo_window(self) -> bool:
-        """Whether the program that it stands in for is Gazebo's window, or opens one besides."""
+        """Whether the program is Gazebo's window, or opens one besides."""
         return self.executable == _GAZEBO_WINDOW or self.parameters.get("gui") is True
 
     @property
     def gazebo_window(self) -> HostedPlan:
-        """The viewer that stands in for the window which this node opens."""
+        """The viewer that replaces the window that this node opens."""
         from linkwright.hosting.world_config import world_config
 
         return HostedPlan(
@@ -95,7 +95,7 @@ class HostedPlan:
         )
 
     def node_options(self, library: DescriptionLibrary) -> NodeOptions:
-        """How to start it; `library` is the readings of robot descriptions that the process shares."""
+        """Return the options to start it with; `library` holds the robot descriptions that the process has read."""
         from linkwright.graph.parameters.rules import ParameterRules
         from linkwright.nodes import NodeOptions
 
@@ -112,28 +112,28 @@ class HostedPlan:
 
     @property
     def details(self) -> dict[str, Any]:
-        """Its details for events."""
+        """The details of its launch events."""
         command = [self.executable, *self.arguments]
         return {"name": self.process_name, "cmd": command, "cwd": None, "env": None, "pid": os.getpid()}
 
 
 def is_viewer(package: str | None, executable: str) -> bool:
-    """Whether a node is RViz, for which our viewer stands in."""
+    """Return whether a node is RViz, which our viewer replaces."""
     return (package, executable) == VIEWER
 
 
 @dataclass(frozen=True)
 class HostOptions:
-    """How nodes and viewers of this process are run.
+    """The options of the nodes and viewers of this process.
 
     Attributes:
         host: the address that the viewer's server binds to.
         port: its port; None for the default one, or the next that is free.
         open_browser: whether the page is opened in the user's browser.
-        title: what the page is called.
+        title: the title of the page.
         network: whether the nodes join the ROS 2 network, where other programs see them.
-        history: how many bytes of what comes a viewer keeps, to go back to the last minutes; 0 for none.
-        rviz: the file with the displays of what is viewed; None for the usual ones.
+        history: how many bytes of messages a viewer stores as live history; 0 for no history.
+        rviz: the file with the displays of the viewer; None for the default ones.
     """
 
     host: str = "127.0.0.1"
@@ -146,15 +146,15 @@ class HostOptions:
 
 
 class Supervisor(Protocol):
-    """The run that a host belongs to: a launch, or one model that is shown."""
+    """The run that a host belongs to: a launch, or the view of one model."""
 
     @property
     def finder(self) -> PackageFinder:
-        """Where packages are."""
+        """The finder of packages."""
 
     @property
     def options(self) -> HostOptions:
-        """How nodes and viewers are run."""
+        """The options of nodes and viewers."""
 
     @property
     def log(self) -> LaunchLog:
@@ -162,7 +162,7 @@ class Supervisor(Protocol):
 
     @property
     def descriptions(self) -> Descriptions:
-        """The robot descriptions that are expanded."""
+        """The robot descriptions of the run."""
 
     @property
     def reload(self) -> LiveReload:
@@ -174,22 +174,22 @@ class Supervisor(Protocol):
 
     @property
     def has_processes(self) -> bool:
-        """Whether it runs any processes besides."""
+        """Whether it runs any processes besides nodes."""
 
     def fail(self, what: object) -> None:
-        """Record a failure: the exit status is 1 unless it is mended."""
+        """Record a failure: the exit status is 1 unless it is fixed."""
 
     def mend(self, what: object) -> None:
-        """Clear a failure: what had failed works now."""
+        """Clear a failure that is fixed."""
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run something in the background; the run does not end before it has."""
+        """Run a coroutine in the background; the run ends after it."""
 
     def shut_down(self, reason: str) -> None:
-        """End the run as soon as what is being done is done."""
+        """End the run as soon as the current work is done."""
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Note that a node or viewer runs."""
+        """Handle the start of a node or viewer."""
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Note that a node or viewer has ended, or could not start, with an exit status."""
+        """Handle the end of a node or viewer, or its failure to start, with an exit status."""

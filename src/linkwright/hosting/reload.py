@@ -19,12 +19,12 @@ from linkwright.hosting.xacro_calls import Descriptions, XacroCall
 _SETTLE_SECONDS = 0.06
 """Wait before a failure is reported: an editor may be in the middle of writing."""
 _MISSING_ATTEMPTS = 8
-"""How many such waits for a missing file: some editors delete it before they write it."""
+"""Waits for a missing file: some editors delete it before they write it."""
 _CATCH_UP_SECONDS = 0.4
-"""When the files are looked at once for changes between their first reading and the beginning of the watch."""
+"""The time after which files are checked once for changes between their first reading and the start of the watch."""
 
 _STEP_MS = 20
-"""How often the watcher looks whether the system's notifications have settled: the latency is once this."""
+"""Interval in which the watcher checks whether the system's notifications have settled: the latency is one interval."""
 _DEBOUNCE_MS = 100
 
 Apply = Callable[[str], None]
@@ -35,8 +35,8 @@ class LiveReload:
     """Watches the files of the descriptions of a launch.
 
     Args:
-        descriptions: what expands them.
-        show: takes all findings of the moment, to be shown in the viewer.
+        descriptions: expands them.
+        show: called with all current findings, which the viewer shows.
         log: where findings are printed.
     """
 
@@ -59,18 +59,18 @@ class LiveReload:
         self._watch_files()
 
     def unbind(self, call: XacroCall, apply: Apply) -> None:
-        """Call `apply` no longer."""
+        """Stop calling `apply`."""
         self._targets[call].remove(apply)
 
     def show(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Show what is wrong with something, which has been printed; nothing wrong clears it."""
+        """Show findings about an object, which have been printed; no findings clear the earlier ones."""
         self._findings[about] = tuple(diagnostics)
         self._show(self.findings())
 
     def report(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
-        """Print what is wrong with a description and show it; nothing wrong clears it.
+        """Print the findings of a description and show them; no findings clear the earlier ones.
 
-        Errors are printed again with each saving, as long as they are there; warnings and remarks once.
+        Errors are printed again with each saving, as long as they persist; warnings and remarks once.
         """
         findings = tuple(diagnostics)
         known = {_essence(finding) for finding in self._findings.get(about, ())}
@@ -80,7 +80,7 @@ class LiveReload:
         self.show(about, findings)
 
     def findings(self) -> list[Diagnostic]:
-        """All that is wrong now."""
+        """The findings of all descriptions."""
         return [finding for findings in self._findings.values() for finding in findings]
 
     def start(self) -> None:
@@ -89,7 +89,7 @@ class LiveReload:
         self._watch_files()
 
     def close(self) -> None:
-        """Watch no longer."""
+        """Stop watching."""
         self._closed = True
         if self._watch is not None:
             self._watch.close()
@@ -118,7 +118,7 @@ class LiveReload:
         self._log.caution("launch", f"model files are not watched for changes: {reason}")
 
     def _catch_up(self) -> None:
-        """Reload what was saved, or removed, after it was read and before the watch began."""
+        """Reload the files that were saved, or removed, after they were read and before the watch began."""
         for call in self._targets if not self._closed else ():
             read_ns = self._descriptions.read_ns(call)
             saved = [_saved_ns(path) for path in self._files_of_interest(call)]
@@ -135,7 +135,7 @@ class LiveReload:
             if not paths.isdisjoint(files | {real(file) for file in files}):
                 self._saved.add(call)
             if self._is_broken(call):
-                # Any file beside it may be the missing piece, and any package.
+                # Any file beside it, and any package, may be the missing one.
                 self._descriptions.finder.forget()
                 self._start_reload(call)
             elif call in self._saved:
@@ -169,7 +169,7 @@ class LiveReload:
                 break
             await asyncio.sleep(_SETTLE_SECONDS)
             if call in self._again:
-                return  # there is a newer change, which starts over
+                return  # a newer change starts a new reload
         known = [_essence(finding) for finding in self._findings.get(call, ())]
         if call in self._saved or known != [_essence(finding) for finding in findings]:
             self.report(call, findings)
@@ -177,7 +177,7 @@ class LiveReload:
         self._watch_files()
 
     async def _read(self, call: XacroCall) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """The text and what is remarkable about it; no text where the model has no robot."""
+        """Return the text and the findings about it; no text if the model has no robot."""
         loop = asyncio.get_running_loop()
         try:
             description = await loop.run_in_executor(None, self._descriptions.read, call)
@@ -204,7 +204,7 @@ def _essence(finding: Diagnostic) -> tuple[object, ...]:
 
 
 def _saved_ns(path: Path) -> int:
-    """When a file was changed; 0 for one that is not there."""
+    """Return when a file was changed; 0 for one that does not exist."""
     try:
         return path.stat().st_mtime_ns
     except OSError:
@@ -215,8 +215,8 @@ class FileWatch:
     """Calls back on the event loop when files of some folders change.
 
     Folders are watched rather than files, because editors save by writing a new file and renaming it. Files
-    behind links (``colcon build --symlink-install``) are watched where they really are too. For a folder that is not
-    there, such as one that a build is about to make anew, the nearest one above it is watched.
+    behind links (``colcon build --symlink-install``) are watched where they really are too. For a folder that does not
+    exist, such as one that a build is about to create again, the nearest existing one above it is watched.
 
     Args:
         on_change: called with the paths that changed.
@@ -284,7 +284,7 @@ class FileWatch:
 
     def _changed(self, paths: set[Path]) -> None:
         if not paths.isdisjoint(Path(name) for name, _ in self._folders):
-            self._folders = frozenset()  # one of them is gone; made anew, it may have the same number
+            self._folders = frozenset()  # one of them is gone; a new one may get the same number
         self._on_change(paths)
 
     def _call(self, function: Callable[..., None], argument: object) -> None:
@@ -295,7 +295,7 @@ class FileWatch:
 
 
 def _nearest_folder(file: Path) -> tuple[Path, int]:
-    """The folder of a file, or the nearest above it that is there, and a number that one made anew does not have."""
+    """Return the nearest existing folder above a file, and a number that a folder created later does not have."""
     for folder in file.absolute().parents:
         try:
             facts = folder.stat()
@@ -307,7 +307,7 @@ def _nearest_folder(file: Path) -> tuple[Path, int]:
 
 
 def real(path: Path) -> Path:
-    """The path with links followed; the path itself where that goes in circles."""
+    """Return the path with links followed, or the path itself if the links form a cycle."""
     try:
         return path.resolve()
     except OSError:

@@ -1,4 +1,4 @@
-"""The command line of ``rviz2``, as far as the viewer that stands in for it obeys it."""
+"""The command line of ``rviz2``, as far as the viewer that replaces it supports it."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ usage: rviz2 [-d FILE] [-f FRAME] [--ros-args ...]
 
 Shows what RViz would show, in the browser.
 
-  -h, --help                   show this and end
+  -h, --help                   show this help and exit
   -d, --display-config FILE    the .rviz file to open
   -f, --fixed-frame FRAME      the Fixed Frame, instead of the file's
   --ros-args ...               names, remappings and parameters of the node
 
-RViz's -s, -l, --stereo, --fullscreen and --force-x11 are taken and have no meaning here.
+RViz's -s, -l, --stereo, --fullscreen and --force-x11 are accepted and ignored.
 """
 
 
@@ -45,9 +45,9 @@ def asks_for_help(arguments: Sequence[str]) -> bool:
 
 
 def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagnostic]]:
-    """The configuration that the arguments ask for, and what is to be said of them.
+    """Return the configuration that the arguments ask for, and findings about them.
 
-    As in RViz, a file that cannot be read is told about, and the default configuration takes its place.
+    As in RViz, a file that cannot be read is reported, and the default configuration replaces it.
     """
     from linkwright.viewer import RvizConfig
 
@@ -72,7 +72,7 @@ def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagno
     waiting = iter(arguments)
     for argument in waiting:
         if argument == "--ros-args":
-            for each in waiting:  # names and remappings of a node; the viewer shows what the file says
+            for each in waiting:  # names and remappings of a node; the viewer keeps those of the file
                 if each == "--":
                     break
         elif argument in _CONFIG or argument in _FIXED_FRAME:

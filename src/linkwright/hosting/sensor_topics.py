@@ -1,4 +1,4 @@
-"""The topics that scans and pictures of a simulated robot have, by the text of its description."""
+"""The topics of the scans and images of a simulated robot, from the text of its description."""
 
 from __future__ import annotations
 
@@ -51,5 +51,5 @@ def _first(pattern: re.Pattern[str], text: str, otherwise: str) -> str:
 
 
 def _distinct(topics: Iterable[str]) -> list[str]:
-    """Each once, from the root."""
+    """Return distinct absolute names."""
     return list(dict.fromkeys(f"/{topic.strip('/')}" for topic in topics))

@@ -1,6 +1,6 @@
 """Ctrl-C and other signals: the first ends a run in order, the second hurries, the third ends it at once.
 
-What has an end that must be written, such as a recording, gets it in any case (`unfinished`).
+Work that must be completed, such as a recording whose end must be written, is completed in any case (`unfinished`).
 """
 
 from __future__ import annotations
@@ -25,30 +25,30 @@ from linkwright.unfinished import finish_all
 T = TypeVar("T")
 
 _DEADLINE_SECONDS = 1.9
-"""However badly something hangs: this long after a signal the program finishes its recordings and is over, or, after
+"""However badly the program hangs: this long after a signal it finishes its recordings and ends, or, after
 the first one, its event loop gives the processes the time that they have."""
 _SAME_KEYPRESS_SECONDS = 0.3
-"""Signals this close count as one: a wrapper may pass a terminal's Ctrl-C on."""
+"""Signals within this time count as one: a wrapper may pass a terminal's Ctrl-C on."""
 
 _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
 class Session(Protocol):
-    """What a signal ends in order."""
+    """A run that a signal ends in order."""
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop | None:
-        """The loop it runs on, while it does."""
+        """The loop it runs on, or None."""
 
     @property
     def visiting(self) -> bool:
-        """Whether something runs right now that a KeyboardInterrupt is to break off; the event loop cannot react."""
+        """Whether it runs code that a KeyboardInterrupt should interrupt, because the event loop cannot react."""
 
     def interrupt(self, reason: str) -> None:
-        """End it because the user said so."""
+        """End it because the user asked for it."""
 
     def seconds_to_end(self) -> float:
-        """How long its processes may take for that."""
+        """The time that its processes may take to end."""
 
     def kill_all(self) -> None:
         """End its processes at once; called from a signal handler."""
@@ -58,8 +58,8 @@ class SignalWatch:
     """Handles signals inside a ``with`` block; only the main thread can, elsewhere it does nothing.
 
     Attributes:
-        session: what is to be ended; None before there is one, when a KeyboardInterrupt is raised instead.
-        received: the first signal that came, or None.
+        session: the run to end; None before there is one, when a KeyboardInterrupt is raised instead.
+        received: the first signal that was received, or None.
     """
 
     def __init__(self) -> None:
@@ -74,7 +74,7 @@ class SignalWatch:
 
     @property
     def exit_status(self) -> int | None:
-        """The exit status that the signal asks for, as shells count: 128 and its number."""
+        """The exit status for the signal, as in shells: 128 and its number."""
         return None if self.received is None else 128 + self.received
 
     def __enter__(self) -> SignalWatch:  # noqa: PYI034 - typing.Self needs Python 3.11
@@ -131,7 +131,7 @@ class SignalWatch:
         session.loop.call_soon_threadsafe(session.interrupt, interruption_text(number))
 
     def _loop_runs(self, session: Session) -> None:
-        """The event loop does not hang: it may take as long as the processes may."""
+        """Note that the event loop does not hang: it may take as long as the processes may."""
         if not self._hurried:
             self._end_after(_DEADLINE_SECONDS + session.seconds_to_end())
 
@@ -151,7 +151,7 @@ class SignalWatch:
             signal_again(number)
 
     def _end_at_once(self) -> None:
-        """End the process, in a thread of its own: the main one may hang, or be writing what is finished here."""
+        """End the process, in a thread of its own: the main thread may hang, or write files that must be completed."""
         if self.session is not None:
             self.session.kill_all()
         finish_all()
@@ -161,19 +161,19 @@ class SignalWatch:
 
 
 def interruption_text(number: int) -> str:
-    """The line of the log about a signal."""
+    """Return the log line about a signal."""
     if number == signal.SIGINT:
         return "user interrupted with ctrl-c (SIGINT)"
     return f"received signal {signal.Signals(number).name}"
 
 
 def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: LaunchLog) -> int:
-    """Run something that signals end.
+    """Run a program that signals end.
 
     Args:
-        run: does it, and returns whether nothing failed.
+        run: runs it, and returns whether nothing failed.
         finder: where packages are meanwhile.
-        log: where a signal is told of that comes before there is a session.
+        log: where signals are reported that arrive before there is a session.
 
     Returns:
         The exit status: 0, 1 if something failed, 128 and the signal's number after a signal.
@@ -194,9 +194,9 @@ def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: L
 
 @contextmanager
 def own_environment(finder: PackageFinder) -> Iterator[None]:
-    """Inside a ``with`` block packages are found with a finder, and ``AMENT_PREFIX_PATH`` says what it says.
+    """Inside a ``with`` block packages are found with a finder, and ``AMENT_PREFIX_PATH`` names the same prefixes.
 
-    What happened to the environment of this process meanwhile is undone.
+    Changes to the environment of this process are undone afterwards.
     """
     before = dict(os.environ)
     try:

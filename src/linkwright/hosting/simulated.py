@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _SIMULATOR = ("gazebo_ros", "gzserver")
 _CLOCK_RATE = 100.0
-"""Hz of simulated time in which the time is told: transforms are not older than that."""
+"""Rate in Hz at which simulated time is published: transforms are not older than that."""
 _SCAN_DISPLAY, _IMAGE_DISPLAY = "rviz_default_plugins/LaserScan", "rviz_default_plugins/Image"
 _ODOMETRY_DISPLAY, _ODOMETRY_TOPIC = "rviz_default_plugins/Odometry", "/odom"
 _DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum|velocity.control", re.IGNORECASE)
@@ -38,31 +38,31 @@ def _as_it_is(description: Description) -> str:
 
 
 def _completed(description: Description, found: Inference) -> str:
-    from linkwright.inference.applying import completed  # not above: only robots that lack something need it
+    from linkwright.inference.applying import completed  # here, because only some robots need it
 
     return write(completed(description.document, found))
 
 
 @dataclass(frozen=True, slots=True)
 class SimulatedWorld:
-    """A world, and what is put into it.
+    """A world, and the robot or model in it.
 
     Attributes:
         world: a file, or the name of a world.
         path: the file that gives the page its name.
         description: a robot in URDF; None for none, or for a model in SDF.
         text: the robot or model as it is simulated, as URDF or SDF; empty for none.
-        name: what it is called in the world.
-        pose: of its frame: x, y, z in m, roll, pitch, yaw in rad.
+        name: its name in the world.
+        pose: the pose of its frame: x, y, z in m, roll, pitch, yaw in rad.
         seconds: after how many simulated seconds it ends; 0 for never.
-        rate: simulated seconds in a real one; 0 for what the world says, negative for as many as can be.
+        rate: simulated seconds per real one; 0 for the world's rate, negative for as many as possible.
         step: the time step in s; 0 for that of the world.
-        seed: what all random numbers follow from.
-        paused: whether it begins paused.
+        seed: the seed of all random numbers.
+        paused: whether it starts paused.
         headless: whether there is no page.
-        gazebo_mistakes: whether plugins make the known mistakes of Gazebo.
+        gazebo_mistakes: whether plugins reproduce the known bugs of Gazebo.
         arguments: name and value of the xacro arguments of the robot.
-        complete: makes the text that is simulated of the robot when its file was saved.
+        complete: returns the text to simulate, from the robot's saved file.
     """
 
     world: str
@@ -85,13 +85,13 @@ class SimulatedWorld:
     def of(
         cls, world: str, description: Description, found: Inference, infer: Callable[[Robot], Inference]
     ) -> SimulatedWorld:
-        """A robot with all that was inferred about it, standing on the ground of a world.
+        """Return a robot with everything that was inferred about it, on the ground of a world.
 
         Args:
             world: a file, or the name of a world.
             description: the robot.
-            found: what was inferred about it.
-            infer: how that is done for what its file says later.
+            found: the inference about it.
+            infer: infers again after its file has changed.
         """
 
         def complete(later: Description) -> str:
@@ -131,11 +131,11 @@ def run_simulated(
     """Simulate a world until the user ends it, or its seconds are over.
 
     Args:
-        world: the world, and what is in it.
+        world: the world, and the model in it.
         finder: where packages are.
         options: how it is run.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
-        writer: takes what all topics carry, with their simulated times; None for no recording.
+        writer: records all topics, with their simulated times; None for no recording.
 
     Returns:
         The exit status, see `linkwright.hosting.signals.run_to_end`.
@@ -163,7 +163,7 @@ class SimulatedView(ModelView):
         self._files = descriptions
 
     def _publish(self) -> bool:
-        """Have the robot published, if it is one; it, and the world, are read again when their files are saved."""
+        """Have the robot, if there is one, published; it and the world are read again when their files are saved."""
         description, text = self._world.description, self._world.text
         if text:
             self._files.begin(self._call)
@@ -181,9 +181,9 @@ class SimulatedView(ModelView):
             self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
 
     def _viewer_config(self) -> RvizConfig:
-        """The world with the robot in it, its scans and pictures.
+        """The world with the robot in it, its scans and images.
 
-        Pictures cost time to make, so that only the first camera's are shown; odometry would cover the robot.
+        Images take time to render, so that only the first camera's are shown; odometry would cover the robot.
         """
         from linkwright.hosting.world_config import world_config
 
@@ -206,7 +206,7 @@ class SimulatedView(ModelView):
         return config
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Without the simulator there is nothing to be seen."""
+        """End the view if the simulator has ended."""
         if plan.package == _SIMULATOR[0]:
             if status:
                 self.fail(plan)

@@ -1,4 +1,4 @@
-"""The files of a simulated world and of the robot in it, as they are read again when they are saved."""
+"""The files of a simulated world and its robot, which are read again when they are saved."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ class SimulatedDescriptions(Descriptions):
         """Read a robot, model or world; may run in another thread.
 
         Raises:
-            LinkwrightError: what is wrong with it; of a world, what was not from the start.
+            LinkwrightError: the file is wrong; of a world, only errors that were not there from the start.
         """
         if not isinstance(call, WorldCall) and is_world(call.path.name):
             return self._read_model(call)
         return super().read(call)
 
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Remember what was read; its text, of a world its file, and what is remarkable about it."""
+        """Remember a robot, model or world; returns its text or, for a world, its file, and the findings about it."""
         if isinstance(call, WorldCall):
             return super().take(call, description)
         if is_world(call.path.name):
@@ -52,7 +52,7 @@ class SimulatedDescriptions(Descriptions):
         return self.take_text(call, self._complete(description), description.files), description.diagnostics
 
     def take_text(self, call: XacroCall, text: str, files: tuple[Path, ...]) -> str:
-        """Remember which file the text that is simulated comes from, and all files that it was made of."""
+        """Remember the file of a text that is simulated, and all files that it was made from."""
         self._calls[text] = call
         self._files[call] = files
         return text

@@ -1,4 +1,4 @@
-"""The files of what a simulator simulates, whoever started it: what is saved is taken over while it runs."""
+"""The files of a running simulation, whoever started it: the simulator loads them when they are saved."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ _LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
 
 
 def follow_files(running: RunningNode, session: Supervisor, launcher: Callable[[], Node]) -> None:
-    """Have a simulator take over its world, and robots that were spawned, when their files are saved.
+    """Have a simulator reload its world, and robots that were spawned, when their files are saved.
 
-    What is wrong with the models in it is shown in the viewers.
+    The viewers show errors in their models.
 
     A robot is followed where its description is a text that this process has expanded from a file.
 
     Args:
-        running: a node that has started; nothing happens where it is no simulator.
+        running: a node that has started; nothing happens if it is not a simulator.
         session: what it runs in.
-        launcher: gives the node that asks services.
+        launcher: gives the node that calls services.
     """
     from linkwright.nodes.simulator import Simulator
 
     if not isinstance(running, Simulator):
         return
     loop, world, server = asyncio.get_running_loop(), running.services.worlds.loaded, running.server
-    about = f"what {running.node.get_fully_qualified_name()} simulates"
+    about = f"simulation of {running.node.get_fully_qualified_name()}"
 
     def show() -> None:
         if not running.node.handle.is_destroyed:
@@ -59,22 +59,22 @@ def follow_files(running: RunningNode, session: Supervisor, launcher: Callable[[
 
 
 def _renew(simulator: Simulator, name: str, text: str) -> None:
-    """Have a robot come anew where it is, if it is still there.
+    """Replace a robot at its current pose, if it still exists.
 
     Raises:
-        LinkwrightError: what is wrong with its description.
+        LinkwrightError: its description is wrong.
     """
     if not simulator.node.handle.is_destroyed and name in simulator.server.simulation.scene.models:
         simulator.services.renew(text, name)
 
 
 async def _load_world(call: WorldCall, path: str, session: Supervisor, node: Node, simulator: Simulator) -> None:
-    """Have the simulator take the world of a file, which was saved; not over changes that were made in the page."""
+    """Have the simulator load a saved world file, unless the page has unsaved changes."""
     from linkwright.messages import get_service
 
     if simulator.services.worlds.is_unsaved:
-        message = phrase("'{path}' has changed, and the world that is edited goes on without that", path=path)
-        hint = phrase("save the edited world as another file, or take its changes back")
+        message = phrase("'{path}' has changed; the simulation continues with the edited world instead", path=path)
+        hint = phrase("save the edited world as another file, or undo its changes")
         session.reload.report(call, [Diagnostic("SIM154", message, severity=Severity.WARNING, hint=hint)])
         return
     client = node.create_client(get_service(_LOAD_WORLD), "/load_world")
@@ -82,5 +82,5 @@ async def _load_world(call: WorldCall, path: str, session: Supervisor, node: Nod
     request.world_resource.uri = path
     answer = await client.call_async(request)
     if answer is not None and answer.result.result != answer.result.RESULT_OK:
-        message = phrase("the simulation goes on as before: {reason}", reason=foreign(answer.result.error_message))
+        message = phrase("the simulation continues unchanged: {reason}", reason=foreign(answer.result.error_message))
         session.reload.report(call, [Diagnostic("SIM153", message)])

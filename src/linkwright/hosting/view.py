@@ -1,4 +1,4 @@
-"""Showing one model file, with sliders for its joints, without a launch file."""
+"""The view of one model file, with sliders for its joints, without a launch file."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from linkwright.viewer.protocol.arguments import ArgumentForm
 
 _PUBLISH_FREQUENCY = 60.0
-"""Hz; at robot_state_publisher's own 20 a dragged slider is seen to lag."""
+"""Hz; at robot_state_publisher's default of 20 a dragged slider lags visibly."""
 _FIRST_LINK = re.compile(r"""<link\s[^>]*?\bname\s*=\s*["']([^"'$]+)["']""")
 
 
@@ -43,7 +43,7 @@ def run_view(
     Args:
         model_path: the file.
         arguments: name -> value of the xacro arguments.
-        options: how it is run; when left out, its nodes are seen by no other program.
+        options: how it is run; by default no other program sees its nodes.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
 
     Returns:
@@ -66,19 +66,19 @@ def run_view(
 
 
 class ModelView:
-    """One model that is shown, on the running event loop: robot_state_publisher, sliders and the viewer.
+    """The view of one model, on the running event loop: robot_state_publisher, sliders and the viewer.
 
     Args:
         call: the model.
         finder: where packages are.
         options: how it is run.
         log: what is printed.
-        descriptions: what reads models; one that reads robots by default.
+        descriptions: reads models; by default robots.
 
     Attributes:
         ending: whether it is about to end.
         visiting: whether the model is expanded right now, so that the event loop cannot react.
-        has_processes: that it never runs any.
+        has_processes: always false.
     """
 
     has_processes = False
@@ -117,7 +117,7 @@ class ModelView:
 
         Args:
             foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
-            writer: takes what all topics carry, with the times that ``/clock`` tells; None for no recording.
+            writer: records all topics, with the times of ``/clock``; None for no recording.
         """
         self.loop = asyncio.get_running_loop()
         try:
@@ -132,7 +132,7 @@ class ModelView:
                     await self.host.start_planned()
                     self.reload.start()
             await self._is_over.wait()
-            self._end_recording()  # before what takes time: nothing more is recorded
+            self._end_recording()  # first, because the rest takes time: nothing more is recorded
             self.ending = True
             self.reload.close()
             self.host.close_nodes()
@@ -146,7 +146,7 @@ class ModelView:
         return not self._failures
 
     def _recording(self, writer: BagWriter) -> Recorder:
-        """A recording; where the disk refuses it, that is told, all else goes on, and the exit status is 1."""
+        """Return a recorder. If the disk is full, it logs an error, the view continues, and the exit status is 1."""
         from linkwright.bag import Recorder, TopicSelection
 
         def guarded(callback: Callable[..., object]) -> Callable[..., object]:
@@ -180,7 +180,7 @@ class ModelView:
     # --- what is shown ----------------------------------------------------------------------------------------
 
     def _publish(self) -> bool:
-        """Have the model published, as soon as its file is right; returns whether the view goes on."""
+        """Have the model published, as soon as its file is right; returns whether the view continues."""
         self.visiting = True
         try:
             self._text = self.descriptions.expand(self._call)
@@ -205,7 +205,7 @@ class ModelView:
         return True
 
     def _plan_others(self) -> None:
-        """Have the nodes started that the model is shown with."""
+        """Have the nodes started that show the model."""
         self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
         self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._take_viewer)
 
@@ -228,7 +228,7 @@ class ModelView:
         self.spawn(self.host.start_planned())
 
     async def _find_arguments(self, call: XacroCall, error: DescriptionError) -> None:
-        """Ask the pages for arguments, where these are what is missing."""
+        """Ask the pages for arguments, if missing ones are the error."""
         form = await asyncio.to_thread(argument_form, call, self.finder, error.diagnostics)
         if form is not None and call is self._call and self._text is None:
             self._form = form
@@ -246,7 +246,7 @@ class ModelView:
         self._publish_anew(XacroCall(self._call.path, tuple(values.items())))
 
     def _look_at_root(self) -> None:
-        """Make the root the fixed frame of a model that was not known when the viewer began."""
+        """Make the root the fixed frame of a model that was unknown when the viewer started."""
         robot = None if self._text is None else self.descriptions.library.read(self._text).robot
         manager = None if self._viewer is None else self._viewer.managers.shared
         if robot is not None and manager is not None and manager.fixed_frame not in robot.links:
@@ -283,7 +283,7 @@ class ModelView:
         self.host.plan(plan)
 
     def _viewer_config(self) -> RvizConfig:
-        """Grid, RobotModel, and TF, on for a robot without visuals to be drawn; its root link is the fixed frame."""
+        """Return a Grid, a RobotModel, and a TF (enabled without visuals); the root link is the fixed frame."""
         from linkwright.viewer import RvizConfig, has_visuals, size_of
 
         library = self.descriptions.library
@@ -297,11 +297,11 @@ class ModelView:
     # --- what its nodes and signals ask for ---------------------------------------------------------------------
 
     def fail(self, what: object) -> None:
-        """Record a failure: the exit status is 1 unless it is mended."""
+        """Record a failure: the exit status is 1 unless it is fixed."""
         self._failures.add(what)
 
     def mend(self, what: object) -> None:
-        """Clear a failure: what had failed works now."""
+        """Clear a failure that is fixed."""
         self._failures.discard(what)
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
@@ -317,30 +317,30 @@ class ModelView:
             self._is_over.set()
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Begin the log with the first one: an error that keeps all from starting comes alone."""
+        """Begin the log with the first node: an error that keeps all of them from starting is printed alone."""
         if not self._has_begun:
             self._has_begun = True
             self.log.begin()
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Nothing waits for that."""
+        """Ignore it: this view does not depend on its nodes."""
 
     def interrupt(self, reason: str) -> None:
-        """End it because the user said so."""
+        """End it because the user asked for it."""
         self.log.caution("launch", reason)
         self._is_over.set()
 
     def shut_down(self, reason: str) -> None:
-        """End it; what has not started yet does not start."""
+        """End it; nodes that have not started yet do not start."""
         self.host.forget_planned()
         self._is_over.set()
 
     def seconds_to_end(self) -> float:
-        """No time: there are no processes."""
+        """Zero: there are no processes."""
         return 0.0
 
     def kill_all(self) -> None:
-        """There are no processes to be ended."""
+        """Nothing to do: there are no processes."""
 
     async def _close(self) -> None:
         self.reload.close()
@@ -358,7 +358,7 @@ def _config_of(rviz: Path) -> RvizConfig:
 
 
 def _first_link(path: Path) -> str:
-    """The first link that the text of a broken model names, for most the root."""
+    """Return the first link that the text of a broken model names, usually the root."""
     try:
         found = _FIRST_LINK.search(path.read_text(encoding="utf-8", errors="replace"))
     except OSError:

@@ -1,4 +1,4 @@
-"""The viewers of this process, pages that stand in for RViz."""
+"""The viewers of this process, pages that replace RViz."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 _CLOSE_SECONDS = 0.8
 
 _RETURN_SECONDS = 2.5
-"""Longer than pages wait between two looks for the program."""
+"""Longer than the interval in which pages check for the program."""
 
 _LOOK_SECONDS = 0.1
 
 
 class ViewerHost:
-    """Starts, holds and ends viewers."""
+    """Starts, stores and ends viewers."""
 
     def __init__(self, session: Supervisor) -> None:
         self._session = session
@@ -47,11 +47,11 @@ class ViewerHost:
         return any(shows_world(viewer.config) for _, viewer in self._viewers.values())
 
     def plans(self) -> Iterator[HostedPlan]:
-        """The plans of those that run."""
+        """The plans of the running viewers."""
         return iter([plan for plan, _ in self._viewers.values()])
 
     def show_findings(self, findings: list[Diagnostic]) -> None:
-        """Show what is wrong with the model files now."""
+        """Show the current findings about model files."""
         self._findings = findings
         for _, viewer in self._viewers.values():
             viewer.show_diagnostics(findings)
@@ -62,10 +62,10 @@ class ViewerHost:
             _attach_panel(viewer, running)
 
     async def give_out_page(self, plan: HostedPlan) -> None:
-        """Say where a viewer is going to be: its page is fetched while the viewer is made.
+        """Print the address of a viewer: its page is fetched while the viewer is created.
 
         Raises:
-            LinkwrightError: VIEW101 to VIEW103, it cannot listen there.
+            LinkwrightError: VIEW101 to VIEW103, it cannot listen at the address.
         """
         from linkwright.viewer.web.page_server import PageServer
 
@@ -86,16 +86,16 @@ class ViewerHost:
     async def start(
         self, plan: HostedPlan, graph: Graph, nodes: list[RunningNode], *, with_world: bool = False
     ) -> None:
-        """Start a viewer, and say where it is.
+        """Start a viewer, and print its address.
 
         Args:
-            plan: how.
-            graph: what it shows.
-            nodes: those that run already.
+            plan: its plan.
+            graph: the graph to show.
+            nodes: the nodes that run already.
             with_world: whether the page shows the simulated world too, in place of a window of its own.
 
         Raises:
-            LinkwrightError: why it cannot start.
+            LinkwrightError: it cannot start.
         """
         from linkwright.viewer import Viewer, find_unsaved
         from linkwright.viewer.guests import GuestRecordings
@@ -113,7 +113,7 @@ class ViewerHost:
             from linkwright.hosting.world_config import show_world
 
             show_world(config)
-        server = self._servers.get(plan.process_name)  # still ours to close where no viewer can be made
+        server = self._servers.get(plan.process_name)  # must be closed here if creating the viewer fails
         is_given_out = server is not None
         if server is None:
             server = PageServer(session.options.host, self._port_for(plan))
@@ -139,14 +139,14 @@ class ViewerHost:
             session.spawn(self._open_unless_back(viewer))
         instead = "RViz" if plan.owner is not None else "Gazebo's window"
         session.log.say(
-            plan.process_name, f"started in the launcher's process: the viewer in the browser stands in for {instead}"
+            plan.process_name, f"started in the launcher's process: the viewer in the browser replaces {instead}"
         )
         viewer.show_diagnostics([*self._findings, *findings])
         for running in nodes:
             _attach_panel(viewer, running)
 
     async def _open_unless_back(self, viewer: Viewer) -> None:
-        """Open the page, unless one that was open before the program was started again comes back by itself."""
+        """Open the page, unless an open page of the run before reconnects by itself."""
         for _ in range(round(_RETURN_SECONDS / _LOOK_SECONDS)):
             if self._session.ending or len(viewer.audience) > 0:
                 return
@@ -154,7 +154,7 @@ class ViewerHost:
         _open_in_browser(viewer.url)
 
     def _port_for(self, plan: HostedPlan) -> int | None:
-        """The port that was asked for; None, the next that is free, where another page has it."""
+        """Return the requested port, or None for the next free one if another page uses it."""
         port = self._session.options.port
         if port and self._at_given_port not in ("", plan.process_name):
             return None
@@ -166,17 +166,17 @@ class ViewerHost:
             self._at_given_port = ""
 
     def take(self, plan: HostedPlan) -> Viewer:
-        """A viewer that is to be ended, which this host then holds no longer."""
+        """Return a viewer that is about to end, and forget it."""
         self._release_port(plan)
         return self._viewers.pop(plan.process_name)[1]
 
     async def close(self) -> None:
-        """Stop giving out pages whose viewers were never made."""
+        """Stop serving pages whose viewers were never created."""
         while self._servers:
             await self._servers.popitem()[1].close()
 
     async def stop(self, plan: HostedPlan, viewer: Viewer) -> None:
-        """End a viewer; what was not saved is kept first, before anything can take its time."""
+        """End a viewer; its unsaved configuration is stored first, before a shutdown takes too long."""
         self._session.log.diagnostics(viewer.keep_unsaved())
         try:
             await asyncio.wait_for(viewer.close(), _CLOSE_SECONDS)
@@ -185,7 +185,7 @@ class ViewerHost:
 
 
 def load_viewer() -> None:
-    """Load the modules of viewers, which takes longer than all that starts before them; may run in another thread."""
+    """Load the modules of viewers, which takes longer than everything before them; may run in another thread."""
     import linkwright.viewer.guests
     import linkwright.viewer.viewer  # noqa: F401 - only loaded
 
@@ -200,7 +200,7 @@ def _attach_panel(viewer: Viewer, running: RunningNode) -> None:
 def _open_in_browser(url: str) -> None:
     """Open the page; in a thread, because some browsers take their time to answer.
 
-    Not where there is no display: a browser for the terminal would take ours.
+    Not without a display: a text browser would take over the terminal.
     """
     displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in displays):

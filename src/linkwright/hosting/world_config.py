@@ -10,17 +10,17 @@ if TYPE_CHECKING:
 _DISPLAY, _FRAME = "linkwright/World", "world"
 _MAP = "rviz_default_plugins/Map"
 _DISTANCE = 5.0
-"""Metres from which an empty world is seen."""
+"""Distance from which an empty world is seen, in m."""
 
 
 def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
-    """A configuration with the world in it, robots included, on a grid; it stands still.
+    """Return a configuration with the world in it, robots included, on a grid, in a fixed view.
 
-    Models of robots and transforms are there too, but off: they would draw what is in the world a second time.
+    It has displays of robot models and transforms, but disabled: they would draw the world's content a second time.
 
     Args:
-        name: of the page.
-        x: of the place that is looked at, in m.
+        name: the name of the page.
+        x: of the focal point, in m.
         y: likewise.
     """
     from linkwright.viewer import RvizConfig
@@ -34,7 +34,7 @@ def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
 
 
 def show_world(config: RvizConfig) -> None:
-    """Add the display of the world to a configuration that has none; switched off where a map would lie under it."""
+    """Add the display of the world to a configuration without one; disabled if there is a map in the same place."""
     if not shows_world(config):
         world = config.make(_DISPLAY, "World")
         world.checked = not any(display.cls == _MAP and display.checked for display in config.walk())

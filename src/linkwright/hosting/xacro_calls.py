@@ -1,4 +1,4 @@
-"""Descriptions that come from files: which text was expanded from which file, with which arguments; and worlds."""
+"""Descriptions from files: the file and arguments of each expanded text; and worlds."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class DescriptionError(LinkwrightError):
     """A model file that cannot be expanded.
 
     Attributes:
-        call: what was to be expanded.
+        call: the use of xacro.
     """
 
     def __init__(self, call: XacroCall, diagnostics: Iterable[Diagnostic]) -> None:
@@ -51,12 +51,12 @@ class DescriptionError(LinkwrightError):
 
     @property
     def missing(self) -> bool:
-        """Whether the model file itself cannot be read, so that no edit can repair it."""
+        """Whether the model file itself cannot be read, so that no edit can fix it."""
         return not self.call.path.is_file() or not os.access(self.call.path, os.R_OK)
 
 
 class Descriptions:
-    """Expands model files and remembers what came out, with the positions that messages and the viewer need.
+    """Expands model files and remembers the results, with the positions that messages and the viewer need.
 
     Args:
         finder: where packages are.
@@ -84,15 +84,15 @@ class Descriptions:
         return self._library
 
     def expand(self, call: XacroCall) -> str:
-        """The text of a description, remembered in the library.
+        """Return the text of a description, remembered in the library.
 
         Raises:
-            DescriptionError: what the file, or one it includes, does wrong.
+            DescriptionError: the errors of the file, or of one that it includes.
         """
         return self.remember(call, self.read(call))
 
     def begin_with(self, world: LoadedWorld) -> WorldCall:
-        """Take a world that was read already; what is wrong with it is known, and nobody is told again."""
+        """Take a world that was read already; its findings are known and are not reported again."""
         call = WorldCall(world.path.absolute())
         self._read_ns[call] = world.read_ns
         self._known |= {_essence(diagnostic) for diagnostic in world.diagnostics}
@@ -110,8 +110,8 @@ class Descriptions:
             The `Description` of a robot, the `LoadedWorld` of a world.
 
         Raises:
-            DescriptionError: what the file, or one it includes, does wrong; what is wrong in the parts that are whole
-                is told with it; of a world, what was not wrong from the start.
+            DescriptionError: the errors of the file, or of one that it includes, with the findings of its valid
+                parts; of a world, only errors that were not there from the start.
         """
         if isinstance(call, WorldCall):
             return self._read_world(call)
@@ -119,7 +119,7 @@ class Descriptions:
 
         self.begin(call)
         try:
-            xacro = None if call.path.suffix == ".sdf" else True  # what is SDF may be shown, too
+            xacro = None if call.path.suffix == ".sdf" else True  # a model in SDF may be shown, too
             found = examine(call.path, arguments=dict(call.arguments), packages=self.finder, xacro=xacro, partly=True)
         except LinkwrightError as error:
             raise DescriptionError(call, error.diagnostics) from error
@@ -132,7 +132,7 @@ class Descriptions:
         self._read_ns[call] = time.time_ns()
 
     def remember(self, call: XacroCall, description: Description, text: str | None = None) -> str:
-        """Keep a description; returns its text, which is `text` if that is what stands for it elsewhere."""
+        """Store a description; returns its text, or `text` if another text identifies it elsewhere."""
         text = self.library.remember(description, text, self.finder)
         self._files[call] = description.files
         self._calls[text] = call
@@ -143,9 +143,9 @@ class Descriptions:
         return text
 
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Remember what was read; its text, of a world its file, and what is remarkable about it.
+        """Remember a robot or world; returns its text or, for a world, its file, and the findings about it.
 
-        The text is None where there is no robot.
+        The text is None if there is no robot.
         """
         if isinstance(call, WorldCall):
             self._take_world(call, description)
@@ -154,19 +154,19 @@ class Descriptions:
         return (None if description.robot is None else text), description.diagnostics
 
     def call_of(self, text: str) -> XacroCall | None:
-        """The use of xacro that gave a text, or None for a text from elsewhere."""
+        """Return the use of xacro that gave a text, or None for a text from elsewhere."""
         return self._calls.get(text)
 
     def warnings_of(self, call: XacroCall) -> tuple[Diagnostic, ...]:
-        """The warnings of the last good expansion."""
+        """Return the warnings of the last good expansion."""
         return self._warnings.get(call, ())
 
     def read_ns(self, call: XacroCall) -> int:
-        """When the files were last read, nanoseconds since the epoch; 0 for never."""
+        """Return when the files were last read, nanoseconds since the epoch; 0 for never."""
         return self._read_ns.get(call, 0)
 
     def files_of(self, call: XacroCall) -> tuple[Path, ...]:
-        """The files that the last good expansion read, and meshes; the model file alone while there was none."""
+        """Return the files that the last good expansion read, and meshes; only the model file before there was one."""
         if call in self._robots and call not in self._meshes:
             self._meshes[call] = _mesh_files(self._robots[call], self.finder, call.path.parent)
         if call in self._worlds and call not in self._meshes:
@@ -191,7 +191,7 @@ class Descriptions:
 
 
 def _mesh_files(robot: Robot, finder: PackageFinder, folder: Path) -> tuple[Path, ...]:
-    """The files of the meshes of a robot, each once; of those that are there."""
+    """Return the existing mesh files of a robot, each once."""
     from linkwright.urdf import Mesh
 
     found: dict[Path, None] = {}
@@ -214,7 +214,7 @@ _current: ContextVar[Descriptions | None] = ContextVar("linkwright_descriptions"
 
 
 def current_descriptions() -> Descriptions | None:
-    """The descriptions of the launch that is being loaded or run, for those who cannot be handed them."""
+    """Return the descriptions of the launch that is being loaded or run, for code without access to it."""
     return _current.get()
 
 

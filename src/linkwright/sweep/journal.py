@@ -1,4 +1,4 @@
-"""What of a sweep is done, in a file beside its table, line by line, so that it can go on after whatever stopped it."""
+"""The finished runs of a sweep, stored line by line in a file beside its table, so that it can resume."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ class Journal:
 
     Args:
         table: the file of the table.
-        fingerprint: that of the plan; a journal of another one is not gone on with.
-        resume: whether to go on with the journal that is there.
+        fingerprint: that of the plan; a journal of another plan is not resumed.
+        resume: whether to resume an existing journal.
 
     Attributes:
         path: its file.
-        outcomes: row -> what it came to.
+        outcomes: row -> outcome.
 
     Raises:
-        LinkwrightError: SWEEP107 there is one, and it is not to be gone on with; SWEEP108 it is of another plan;
+        LinkwrightError: SWEEP107 there is a journal, and `resume` is not set; SWEEP108 it is of another plan;
             SWEEP109 there is none; SWEEP110 it cannot be written.
     """
 
@@ -45,12 +45,12 @@ class Journal:
         if resume:
             if not there:
                 message = phrase("there is no unfinished sweep '{path}'", path=display_path(table))
-                hint = phrase("leave `--resume` out to begin one")
+                hint = phrase("omit `--resume` to start one")
                 raise LinkwrightError(Diagnostic("SWEEP109", message, hint=hint))
             self._read()
         elif there:
             message = phrase("the sweep '{path}' is not finished", path=display_path(table))
-            hint = phrase("go on with `--resume`, or remove '{path}' to begin anew", path=display_path(self.path))
+            hint = phrase("use `--resume` to continue, or remove '{path}' to start again", path=display_path(self.path))
             raise LinkwrightError(Diagnostic("SWEEP107", message, hint=hint))
 
     def __enter__(self) -> Self:
@@ -75,7 +75,7 @@ class Journal:
             self.remove()
 
     def add(self, outcome: Outcome) -> None:
-        """Keep an outcome.
+        """Store an outcome.
 
         Raises:
             LinkwrightError: SWEEP110 it cannot be written.
@@ -84,7 +84,7 @@ class Journal:
         self._write(_line(outcome))
 
     def remove(self) -> None:
-        """Take the file away: the sweep is finished."""
+        """Remove the file: the sweep is finished."""
         self.path.unlink()
 
     def _write(self, line: dict[str, Any]) -> None:
@@ -98,8 +98,8 @@ class Journal:
         lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
         entries = [each for each in map(_parsed, lines) if each is not None]
         if not entries or entries[0] != self._head:
-            message = phrase("the unfinished sweep '{path}' is of other runs", path=display_path(self.path))
-            hint = phrase("give the same scenario, values and seeds, or remove that file to begin anew")
+            message = phrase("the unfinished sweep '{path}' has other runs", path=display_path(self.path))
+            hint = phrase("give the same scenario, values and seeds, or remove that file to start again")
             raise LinkwrightError(Diagnostic("SWEEP108", message, hint=hint))
         for entry in entries[1:]:
             self.outcomes[entry["row"]] = Outcome(**entry)
@@ -107,7 +107,7 @@ class Journal:
 
 @contextmanager
 def refusing(path: Path) -> Iterator[None]:
-    """Tell of a file that cannot be written.
+    """Report a file that cannot be written as a diagnostic.
 
     Raises:
         LinkwrightError: SWEEP110.
@@ -126,7 +126,7 @@ def _line(outcome: Outcome) -> dict[str, Any]:
 
 
 def _parsed(line: str) -> dict[str, Any] | None:
-    """A line; None for one that was being written when the power went."""
+    """Return the entry of a line, or None for a line that was cut off."""
     try:
         entry = json.loads(line)
     except ValueError:

@@ -14,7 +14,7 @@ from linkwright.sweep.running import Result
 from linkwright.sweep.table import Table
 
 _MOST_ROWS = 1000
-"""The page lists so many rows; the table has them all."""
+"""The most rows that the page lists; the table has all of them."""
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2733; --soft: #66758a; --line: #d8dee6; --back: #f6f8fa; --card: #fff;
@@ -43,13 +43,13 @@ code { font: 12px ui-monospace, monospace; }
 
 
 def summary(table: Table, name: str, command: str, planned: int) -> str:
-    """The page.
+    """Return the summary page.
 
     Args:
-        table: what is done of the sweep.
+        table: the finished runs of the sweep.
         name: that of the scenario.
         command: the command line that reruns a row, without its number.
-        planned: how many rows there are to be.
+        planned: the number of planned runs.
     """
     failed = table.failed
     told: list[Phrase] = [counted("{count} run", "{count} runs", len(table))]
@@ -83,7 +83,7 @@ def _said(text: Phrase) -> str:
 
 
 def _finite(table: Table, name: str) -> list[int]:
-    """The places of the rows in which a result is a number; True and False count as 1 and 0."""
+    """Return the places of the rows in which a result is a number; True and False count as 1 and 0."""
     values = table.columns[name]
     return [place for place, each in enumerate(values) if isinstance(each, int | float) and isfinite(each)]
 
@@ -94,7 +94,7 @@ def _of(table: Table, name: str) -> list[float]:
 
 
 def _varied(table: Table) -> list[str]:
-    """The parameters that are not the same everywhere; the seed too, where it alone makes the difference."""
+    """Return the parameters with more than one value, or the seed if there are none."""
     varied = [parameter for parameter in table.parameters[:-1] if len(set(table.columns[parameter])) > 1]
     return varied or [parameter for parameter in table.parameters[-1:] if len(set(table.columns[parameter])) > 1]
 
@@ -129,7 +129,7 @@ def _failures(table: Table, command: str) -> str:
         row = str(table.columns["row"][place])
         lines.append([row, str(table.columns["error"][place]), f"{command} --rerun {row}"])
     heads = [phrase("row"), phrase("error"), phrase("run it again with")]
-    title = f"<h2>{_said(phrase('What failed'))}</h2>"
+    title = f"<h2>{_said(phrase('Failed runs'))}</h2>"
     return title + _html_table([localized(head) for head in heads], lines, text=(1, 2))
 
 

@@ -1,4 +1,4 @@
-"""The runs of a scenario: which values and which seed each has."""
+"""The runs of a scenario: the values and the seed of each."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ class Run:
 
 
 def planned(scenario: Scenario) -> list[Run]:
-    """All runs of a scenario, the seeds of the same values one after the other.
+    """Return all runs of a scenario, the seeds of the same values one after the other.
 
-    What is drawn depends on the seed and on the name of the parameter alone: with other values beside it, or more
-    seeds, the same seed draws the same.
+    A drawn value depends only on the seed and on the name of the parameter: with other values beside it, or more
+    seeds, the same seed draws the same value.
     """
     lists = {name: values for name, values in scenario.parameters.items() if not isinstance(values, Uniform | Normal)}
     drawn = {seed: _drawn(scenario, seed) for seed in scenario.seeds}
@@ -49,15 +49,15 @@ def planned(scenario: Scenario) -> list[Run]:
 
 
 def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None) -> Scenario:
-    """A scenario with other values than its file says.
+    """Return a scenario with other values than those of its file.
 
     Args:
         scenario: the scenario.
         texts: name of a parameter -> values in YAML with commas between them.
-        seeds: how many seeds; None for those that the file says.
+        seeds: the number of seeds; None for those of the file.
 
     Raises:
-        LinkwrightError: SWEEP106 there is no such parameter; SWEEP105 they are no values.
+        LinkwrightError: SWEEP106 there is no such parameter; SWEEP105 the values are not valid.
     """
     parameters = dict(scenario.parameters)
     for name, text in texts.items():
@@ -69,7 +69,7 @@ def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None)
 
 
 def fingerprint(scenario: Scenario, runs: Sequence[Run]) -> str:
-    """What changes when the scenario's file or its runs do."""
+    """Return a hash that changes when the scenario's file or its runs do."""
     plan = json.dumps([(run.parameters, run.seed) for run in runs])
     return hashlib.sha256(scenario.path.read_bytes() + plan.encode()).hexdigest()
 

@@ -1,4 +1,4 @@
-"""Drawings of a sweep as SVG, which needs nothing but a browser."""
+"""Drawings of a sweep as SVG, which need only a browser."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ _WIDTH, _HEIGHT = 360.0, 220.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 56.0, 12.0, 12.0, 40.0
 _BARS = 24
 _MOST_POINTS = 2000
-"""Of more runs, so many are drawn, taken at equal distances."""
+"""The most runs that are drawn; of more runs every n-th is drawn."""
 _RADIUS = 3.0
 
 
 @dataclass(frozen=True)
 class Axis:
-    """Where values come to lie.
+    """An axis of a plot, which maps values to positions.
 
     Attributes:
-        low, high: what lies at its two ends.
-        ticks: places with what is written at them.
-        begin, end: where its ends are in the drawing.
+        low, high: the values at its two ends.
+        ticks: positions with their labels.
+        begin, end: the positions of its ends in the drawing.
     """
 
     low: float
@@ -35,7 +35,7 @@ class Axis:
 
     @classmethod
     def of_numbers(cls, values: Sequence[float], begin: float, end: float, *, from_zero: bool = False) -> Axis:
-        """One that all values fit on, with round numbers at its ticks."""
+        """Return an axis that covers all values, with round numbers at its ticks."""
         low, high = min(values), max(values)
         if from_zero:
             low = 0.0
@@ -53,16 +53,16 @@ class Axis:
 
     @classmethod
     def of_names(cls, names: Sequence[str], begin: float, end: float) -> Axis:
-        """One with a place for each name, the first at 0."""
+        """Return an axis with a place for each name, the first at 0."""
         return cls(-0.5, len(names) - 0.5, [(float(place), name) for place, name in enumerate(names)], begin, end)
 
     def __call__(self, value: float) -> float:
-        """Where a value lies in the drawing."""
+        """Return the position of a value in the drawing."""
         return self.begin + (value - self.low) / (self.high - self.low) * (self.end - self.begin)
 
 
 def histogram(values: Sequence[float], label: str) -> str:
-    """How often a result was what."""
+    """Return a histogram of a result."""
     counts, edges = np.histogram(np.asarray(values, dtype=float), bins=min(_BARS, max(len(set(values)), 5)))
     across = Axis.of_numbers([float(edges[0]), float(edges[-1])], _LEFT, _WIDTH - _RIGHT)
     upwards = Axis.of_numbers([float(counts.max())], _HEIGHT - _BOTTOM, _TOP, from_zero=True)
@@ -80,7 +80,7 @@ def histogram(values: Sequence[float], label: str) -> str:
 def scatter(
     across_values: Sequence[object], values: Sequence[float], rows: Sequence[object], across_label: str, label: str
 ) -> str:
-    """A result against a parameter, a point for each run, and a line through the means where values recur."""
+    """Return a plot of a result against a parameter: a point for each run, a line through the means of equal values."""
     numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in across_values)
     names = [] if numbers else list(dict.fromkeys(map(str, across_values)))
     places = [
@@ -102,7 +102,7 @@ def scatter(
 
 
 def _means(places: Sequence[float], values: Sequence[float], across: Axis, upwards: Axis) -> str:
-    """A line through the means of what lies at the same place; nothing where few values recur."""
+    """Return a line through the mean of the values at each position; nothing if few positions recur."""
     groups: dict[float, list[float]] = {}
     for place, value in zip(places, values, strict=True):
         groups.setdefault(place, []).append(value)
@@ -138,6 +138,6 @@ def _drawing(across: Axis, upwards: Axis, label: str, content: str, across_label
 
 
 def _round_step(least: float) -> float:
-    """The next of 1, 2, 5, 10, ... times a power of ten."""
+    """Return the next of 1, 2, 5, 10, ... times a power of ten."""
     power = 10.0 ** floor(log10(least))
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= least * (1 - 1e-9))

@@ -18,25 +18,25 @@ from linkwright.sweep.scenario import Scenario, described
 from linkwright.sweep.workers import MOST_ATTEMPTS, Report
 
 _AHEAD = 2
-"""For each processor of the cluster so many runs are handed out."""
+"""Runs that are handed out at once for each processor of the cluster."""
 
 _PATIENCE = 10.0
 """Seconds for a machine to answer."""
 
 _scenario: Scenario | None = None
-"""What a process of the cluster has loaded: processes are the cluster's, and used again."""
+"""The scenario that a process of the cluster has loaded: the cluster uses its processes for several runs."""
 
 
 def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) -> None:
-    """Run a scenario on a Ray cluster; what is in its folder is sent there.
+    """Run a scenario on a Ray cluster, which receives the files of the scenario's folder.
 
-    Where a process or machine is lost, its run is tried once more.
+    If a process or machine is lost, its run is tried once more.
 
     Args:
         path: the scenario's file.
-        runs: what is to be run.
+        runs: the runs.
         address: that of the cluster, as ``ray.init`` takes it.
-        report: told of each run when it is done.
+        report: called with the outcome of each run when it is done.
 
     Raises:
         LinkwrightError: SWEEP113 ray is not installed; SWEEP114 there is no cluster at the address.
@@ -69,7 +69,7 @@ def run_on_ray(path: Path, runs: Iterable[Run], address: str, report: Report) ->
 
 
 def _connected(path: Path, address: str) -> Any:
-    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # nothing is told to anybody unasked
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")  # Ray sends no usage data without the user's consent
     try:
         import ray  # type: ignore[import-not-found, import-untyped, unused-ignore]
     except ModuleNotFoundError as error:
@@ -85,16 +85,16 @@ def _connected(path: Path, address: str) -> Any:
     except (ConnectionError, ValueError, RuntimeError, OSError) as error:
         reason = foreign(" ".join(str(error).split()))
         message = phrase("there is no Ray cluster at '{address}': {reason}", address=address, reason=reason)
-        hint = phrase("`ray start --head` begins one; its address is then auto on that machine")
+        hint = phrase("start one with `ray start --head`; its address on that machine is then auto")
         raise LinkwrightError(Diagnostic("SWEEP114", message, hint=hint)) from None
     return ray
 
 
 def _reach(address: str) -> None:
-    """Find out whether anybody listens at an address with a port: Ray would try for minutes, and tell of each time.
+    """Check that an address with a port accepts connections: Ray would retry for minutes, and log each attempt.
 
     Raises:
-        OSError: nobody does.
+        OSError: it does not.
     """
     host, _, port = address.removeprefix("ray://").rpartition(":")
     if host and port.isdigit():
@@ -102,7 +102,7 @@ def _reach(address: str) -> None:
 
 
 def _run_there(name: str, run: Run) -> Outcome:
-    """What a process of the cluster does; its working directory has what was sent."""
+    """Make a run in a process of the cluster, whose working directory has the files that were sent."""
     global _scenario  # noqa: PLW0603 - the process is used for one run after the other
     path = Path(name).absolute()
     if _scenario is None or _scenario.path != path:

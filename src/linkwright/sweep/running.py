@@ -15,20 +15,20 @@ from linkwright.sweep.plan import Run
 from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, described, line_of, load_scenario
 
 Result = bool | int | float | str | None
-"""What a scenario may return for a name."""
+"""The types of values that a scenario may return."""
 
 _SEEDS = 1 << 32
-"""So many seeds numpy's old generator has."""
+"""The number of seeds of numpy's legacy generator."""
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What a run came to.
+    """The outcome of a run.
 
     Attributes:
         row: the number of the run.
         results: what the scenario returned.
-        error: why there are no results; empty where all went well.
+        error: why there are no results; empty if the run succeeded.
     """
 
     row: int
@@ -37,16 +37,16 @@ class Outcome:
 
 
 class BadResultError(Exception):
-    """A scenario returned what cannot stand in a table."""
+    """A scenario returned a value that a table cannot store."""
 
 
 def prepare(path: Path) -> Scenario:
-    """Load a scenario, so that it can be run in this process from now on: the working directory is its folder.
+    """Load a scenario to run it in this process, with its folder as the working directory.
 
     ROS's modules can be imported in it, such as ``rclpy`` and ``geometry_msgs.msg``.
 
     Raises:
-        LinkwrightError: as `load_scenario`.
+        LinkwrightError: see `load_scenario`.
     """
     activate()
     scenario = load_scenario(path)
@@ -55,7 +55,7 @@ def prepare(path: Path) -> Scenario:
 
 
 def run_once(scenario: Scenario, run: Run) -> Outcome:
-    """Run a scenario; what it raises becomes the outcome's error."""
+    """Run a scenario; an exception that it raises becomes the outcome's error."""
     try:
         return Outcome(run.row, results_of(scenario, run))
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
@@ -65,10 +65,10 @@ def run_once(scenario: Scenario, run: Run) -> Outcome:
 
 
 def results_of(scenario: Scenario, run: Run) -> dict[str, Result]:
-    """Run a scenario and check what it returns; ``random`` and ``numpy.random`` begin with the seed.
+    """Run a scenario and check its results; ``random`` and ``numpy.random`` start with the seed.
 
     Raises:
-        BadResultError: it cannot stand in a table.
+        BadResultError: a table cannot store them.
         Exception: whatever the scenario raises.
     """
     random.seed(run.seed)
@@ -76,7 +76,7 @@ def results_of(scenario: Scenario, run: Run) -> dict[str, Result]:
     told = {SEED: run.seed} if scenario.takes_seed else {}
     returned = scenario.function(**run.parameters, **told)
     if not isinstance(returned, Mapping):
-        raise BadResultError(f"the scenario returned no dict but {type(returned).__name__}")
+        raise BadResultError(f"the scenario must return a dict, not {type(returned).__name__}")
     taken = {*COLUMNS, *run.parameters}
     results: dict[str, Result] = {}
     for name, value in returned.items():
@@ -91,4 +91,4 @@ def _plain(name: str, value: object) -> Result:
         value = value.item()
     if value is None or isinstance(value, bool | int | float | str):
         return value
-    raise BadResultError(f"result '{name}' is no number, text, True or False but {type(value).__name__}")
+    raise BadResultError(f"result '{name}' must be a number, text, True or False, not {type(value).__name__}")

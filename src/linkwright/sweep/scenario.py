@@ -1,4 +1,4 @@
-"""What a scenario is, and reading one from its file."""
+"""Scenarios, and reading one from its file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from linkwright.diagnostics import (
 )
 
 Value = bool | int | float | str
-"""What a parameter may be."""
+"""The types of a parameter's values."""
 
 F = TypeVar("F", bound=Callable[..., Mapping[str, object]])
 
@@ -38,7 +38,7 @@ COLUMNS = ("row", SEED, "error")
 
 @dataclass(frozen=True, slots=True)
 class Uniform:
-    """A number that is drawn for each seed, all from `low` to `high` alike."""
+    """A number that is drawn for each seed, uniformly from `low` to `high`."""
 
     low: float
     high: float
@@ -53,7 +53,7 @@ class Normal:
 
 
 Values = Sequence[Value] | Uniform | Normal
-"""What a parameter is run over: each value of a list, or one that is drawn for each seed."""
+"""The values that a parameter is run over: a list, or a distribution from which each seed draws one."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Scenario:
 
     Attributes:
         path: its file.
-        function: takes the parameters by name, and ``seed`` if it wants that; returns results by name.
+        function: takes the parameters by name, and ``seed`` if it has such a parameter; returns results by name.
         parameters: name -> its values.
         seeds: the seeds.
     """
@@ -74,12 +74,12 @@ class Scenario:
 
     @property
     def takes_seed(self) -> bool:
-        """Whether the function is told the seed."""
+        """Whether the function takes the seed."""
         return SEED in inspect.signature(self.function).parameters
 
 
 def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callable[[F], F]:
-    """Declare what a function is run over by ``linkwright sweep``.
+    """Declare the parameters and seeds with which ``linkwright sweep`` runs a function.
 
     Example::
 
@@ -92,7 +92,7 @@ def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callabl
 
     Args:
         seeds: how many seeds, from 0 on, or the seeds themselves.
-        parameters: for each parameter of the function a list of values, or what it is drawn from.
+        parameters: for each parameter of the function a list of values, or a distribution.
     """
 
     def declare(function: F) -> F:
@@ -103,11 +103,11 @@ def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callabl
 
 
 def load_scenario(path: Path) -> Scenario:
-    """The scenario of a file, which is run for that as a module; modules beside it can be imported.
+    """Return the scenario of a file, which is run as a module; modules beside it can be imported.
 
     Raises:
         LinkwrightError: SWEEP101 it cannot be read; SWEEP102 it cannot be run; SWEEP103 there is no scenario in it, or
-            more than one; SWEEP104 its parameters are not those of the function; SWEEP105 they are no values.
+            more than one; SWEEP104 its parameters are not those of the function; SWEEP105 the values are not valid.
     """
     module = _loaded(path)
     found = [each for each in vars(module).values() if callable(each) and hasattr(each, _DECLARED)]
@@ -130,7 +130,7 @@ def load_scenario(path: Path) -> Scenario:
 
 
 def check_values(name: str, values: object, span: Span | None = None) -> None:
-    """Refuse what no parameter can be run over.
+    """Refuse values that a parameter cannot be run over.
 
     Raises:
         LinkwrightError: SWEEP105.
@@ -139,7 +139,7 @@ def check_values(name: str, values: object, span: Span | None = None) -> None:
         numbers = (values.low, values.high) if isinstance(values, Uniform) else (values.mean, values.stddev)
         if all(isinstance(number, int | float) and abs(number) < float("inf") for number in numbers):
             return
-        wrong: Phrase = phrase("parameter '{name}': the numbers that it is drawn by are to be finite", name=name)
+        wrong: Phrase = phrase("parameter '{name}': the numbers of its distribution must be finite", name=name)
     elif isinstance(values, str) or not isinstance(values, Sequence):
         wrong = phrase("parameter '{name}' needs a list of values, a Uniform or a Normal", name=name)
     elif not values:
@@ -150,7 +150,7 @@ def check_values(name: str, values: object, span: Span | None = None) -> None:
             return
         kind = type(bad[0]).__name__
         wrong = phrase(
-            "a value of parameter '{name}' is no number, text, True or False but {kind}", name=name, kind=kind
+            "a value of parameter '{name}' must be a number, text, True or False, not {kind}", name=name, kind=kind
         )
     raise LinkwrightError(Diagnostic("SWEEP105", wrong, span, hint=phrase("such as {name}=[0.5, 1.0]", name=name)))
 
@@ -160,7 +160,7 @@ def _seeds(seeds: object, span: Span) -> Sequence[int]:
         return range(seeds)
     if isinstance(seeds, Sequence) and seeds and all(isinstance(seed, int) and seed >= 0 for seed in seeds):
         return tuple(seeds)
-    message = phrase("the seeds are to be a positive number of them, or a list of whole numbers from 0 on")
+    message = phrase("the seeds must be a positive number of seeds, or a list of integers from 0 on")
     raise LinkwrightError(Diagnostic("SWEEP105", message, span, hint=phrase("such as {name}=100", name="seeds")))
 
 
@@ -181,12 +181,12 @@ def _check_names(function: Callable[..., object], parameters: Mapping[str, objec
         hint = phrase("give it another name")
     elif unknown:
         message = phrase(
-            "the function '{function}' takes no {names}", function=function.__name__, names=quoted_names(unknown)
+            "the function '{function}' does not take {names}", function=function.__name__, names=quoted_names(unknown)
         )
-        hint = phrase("a parameter of the scenario is one of the function")
+        hint = phrase("each parameter of the scenario must be one of the function")
     elif missing:
         message = phrase(
-            "the function '{function}' needs {names}, of which @scenario says nothing",
+            "the function '{function}' needs {names}, which @scenario does not set",
             function=function.__name__,
             names=quoted_names(missing),
         )
@@ -213,7 +213,7 @@ def _loaded(path: Path) -> ModuleType:
     except SyntaxError as error:
         line, column = error.lineno or 1, error.offset or 1
         place = Span(display_path(Path(error.filename or path)), line, column, line, column)
-        message = phrase("this is no Python: {reason}", reason=foreign(error.msg))
+        message = phrase("this is not valid Python: {reason}", reason=foreign(error.msg))
         raise LinkwrightError(Diagnostic("SWEEP102", message, place)) from None
     except OSError as error:
         if error.filename != str(path):
@@ -234,7 +234,7 @@ def _cannot_run(path: Path, error: BaseException) -> LinkwrightError:
 
 
 def line_of(path: Path, error: BaseException) -> int | None:
-    """The line of a file in which an error was raised, or which called what raised it."""
+    """Return the line of a file in which an error was raised, or that called the code that raised it."""
     lines = [
         frame_summary.lineno
         for frame_summary in traceback.extract_tb(error.__traceback__)
@@ -244,7 +244,7 @@ def line_of(path: Path, error: BaseException) -> int | None:
 
 
 def described(error: BaseException) -> str:
-    """An error in a line."""
+    """Return an error as one line of text."""
     if isinstance(error, LinkwrightError):
         first = error.diagnostics[0]
         return f"{first.code} {first.span}: {first.message}" if first.span else f"{first.code} {first.message}"

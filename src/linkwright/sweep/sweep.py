@@ -22,12 +22,12 @@ Runner = Callable[[Sequence[Run], Callable[[Outcome], None]], None]
 
 @dataclass(frozen=True)
 class Sweep:
-    """What is to be run, and where the results go.
+    """A scenario to run, and the files of its results.
 
     Attributes:
         scenario: the scenario.
-        table: the file of the table, whose ending says the format.
-        words: the command line that the sweep is run by, for what the page tells about reruns.
+        table: the file of the table; its extension selects the format.
+        words: the command line that runs the sweep, which the page shows for reruns.
     """
 
     scenario: Scenario
@@ -40,15 +40,15 @@ class Sweep:
         return self.table.with_suffix(".html")
 
     def run(self, runner: Runner, *, resume: bool, progress: Callable[[int, int, int], None]) -> Table:
-        """Make all runs that are not done yet, and write table and summary, when it is interrupted as well.
+        """Make all runs that are not done yet, and write table and summary, also after an interruption.
 
         Args:
             runner: makes them.
-            resume: whether to go on with what was begun.
-            progress: told how many are done, how many there are to be, and how many failed.
+            resume: whether to resume an unfinished sweep.
+            progress: called with the numbers of finished, planned and failed runs.
 
         Returns:
-            The table; what is missing of it was interrupted.
+            The table; without the runs that an interruption prevented.
 
         Raises:
             LinkwrightError: of the journal, see `Journal`; SWEEP110 a file cannot be written.

@@ -20,13 +20,13 @@ FORMATS = (".csv", ".parquet")
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of a sweep, in the order of their numbers, whichever was finished first.
+    """The rows of a sweep, in the order of their numbers, whichever was finished first.
 
     Attributes:
         parameters: the names of parameters, and ``seed``.
         results: the names of results, in the order in which the rows have them.
-        columns: name -> a value for each row: ``row``, parameters, ``seed``, results, ``error``; None for what is not
-            there.
+        columns: name -> a value for each row: ``row``, parameters, ``seed``, results, ``error``; None for a value that
+            a row does not have.
     """
 
     parameters: tuple[str, ...]
@@ -35,7 +35,7 @@ class Table:
 
     @classmethod
     def of(cls, runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> Table:
-        """The table of those runs that are done."""
+        """Return the table of the runs that are done."""
         done = [(run, outcomes[run.row]) for run in runs if run.row in outcomes]
         names = tuple(dict.fromkeys(name for _, outcome in done for name in outcome.results))
         parameters = tuple(runs[0].parameters) if runs else ()
@@ -51,30 +51,30 @@ class Table:
 
     @property
     def failed(self) -> list[int]:
-        """The places of the rows with an error."""
+        """Return the places of the rows with an error."""
         return [place for place, error in enumerate(self.columns["error"]) if error]
 
 
 def check_format(path: Path) -> None:
-    """Refuse a file that no table can be written to, before anything is run.
+    """Refuse a file that a table cannot be written to, before the first run.
 
     Raises:
-        LinkwrightError: SWEEP110 its ending is none of a table; SWEEP111 pyarrow is not installed.
+        LinkwrightError: SWEEP110 its extension is not that of a table; SWEEP111 pyarrow is not installed.
     """
     if path.suffix not in FORMATS or path.is_dir():
-        message = phrase("'{path}' is no file for a table", path=str(path))
-        raise LinkwrightError(Diagnostic("SWEEP110", message, hint=phrase("its name is to end in .csv or .parquet")))
+        message = phrase("'{path}' cannot be the file of a table", path=str(path))
+        raise LinkwrightError(Diagnostic("SWEEP110", message, hint=phrase("its name must end in .csv or .parquet")))
     if path.suffix == ".parquet":
         _pyarrow()
 
 
 def written(table: Table, path: Path) -> bytes:
-    """The bytes of a table in the format that the name of its file says."""
+    """Return the bytes of a table in the format that its file's extension selects."""
     return _parquet(table) if path.suffix == ".parquet" else _csv(table)
 
 
 def _csv(table: Table) -> bytes:
-    """CSV with a line of names; numbers as Python writes them, which lose nothing."""
+    """Return CSV with a line of names; numbers as Python writes them, without loss."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.columns)
@@ -99,7 +99,7 @@ def _parquet(table: Table) -> bytes:
 
 
 def _alike(values: Sequence[Result]) -> list[Result]:
-    """Values of one type, as a column of Parquet has: floats where some are, texts where they differ otherwise."""
+    """Convert values to one type, as a column of Parquet needs: floats if some are, else texts if they differ."""
     kinds = {type(value) for value in values if value is not None}
     if len(kinds) < 2:
         return list(values)

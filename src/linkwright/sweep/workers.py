@@ -19,24 +19,24 @@ from linkwright.sweep.running import Outcome, prepare, run_once
 from linkwright.sweep.scenario import described
 
 MOST_ATTEMPTS = 2
-"""A run whose process dies is tried once more."""
+"""Attempts for a run whose process dies."""
 
 _PATIENCE = 10.0
-"""Seconds for a process that was told to end, before it is killed."""
+"""Seconds that a process may take to end before it is killed."""
 
 Report = Callable[[Outcome], None]
 
 
 def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -> None:
-    """Run a scenario in processes of their own.
+    """Run a scenario in processes of its own.
 
-    Where one of them dies, another takes its place, and its run is tried once more.
+    If one of them dies, another replaces it, and its run is tried once more.
 
     Args:
         path: the scenario's file.
-        runs: what is to be run.
-        workers: how many processes there are at once.
-        report: told of each run when it is done, in the order in which they come to an end.
+        runs: the runs.
+        workers: how many processes run at once.
+        report: called with the outcome of each run, in the order in which they end.
     """
     waiting = deque(runs)
     attempts: dict[int, int] = {}
@@ -83,11 +83,11 @@ class _Worker:
     def take(self, run: Run) -> None:
         """Have it make a run."""
         self.run = run
-        with suppress(OSError):  # it has died; that is found out by who waits for the outcome
+        with suppress(OSError):  # it has died; the caller that waits for the outcome finds out
             self.connection.send(run)
 
     def outcome(self) -> Outcome | None:
-        """What the run came to; None where the process has died."""
+        """Return the outcome of the run, or None if the process has died."""
         try:
             outcome: Outcome = self.connection.recv()
         except (EOFError, OSError):
@@ -95,11 +95,11 @@ class _Worker:
         return outcome
 
     def stop(self) -> None:
-        """Tell it to end, whatever it does."""
+        """End the process, even during a run."""
         self._process.terminate()
 
     def end(self) -> str:
-        """Wait until it has ended, and tell how."""
+        """Wait until it has ended, and return how."""
         self.connection.close()
         self._process.join(_PATIENCE)
         if self._process.is_alive():
@@ -111,7 +111,7 @@ class _Worker:
 
 
 def _serve(path: Path, connection: Connection) -> None:
-    """What a worker does."""
+    """Make the runs that the connection sends; the main function of a worker."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     sys.stdout = sys.stderr
@@ -127,7 +127,7 @@ def _serve(path: Path, connection: Connection) -> None:
 
 
 def _end_with_parent() -> None:
-    """Let no run outlive what wants its outcome, whatever ended that."""
+    """End this process when its parent ends for whatever reason, so that no run outlives it."""
     parent = multiprocessing.parent_process()
     assert parent is not None, "it is a process of a pool"
     parent.join()
@@ -136,7 +136,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _no_interrupt() -> Iterator[None]:
-    """Keep Ctrl-C from a process that is started, which begins with the signals that are blocked here."""
+    """Block Ctrl-C while a process is started, because a process inherits the blocked signals."""
     if sys.platform == "win32":
         yield
         return

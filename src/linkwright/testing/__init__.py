@@ -1,6 +1,6 @@
-"""Testing nodes: graphs whose time stands still until the test lets it pass, so that an hour takes milliseconds.
+"""Testing nodes: graphs whose time passes only when the test advances it, so that an hour takes milliseconds.
 
-With `SteppedSimulation` a simulated world stands still and goes on with the graph.
+With `SteppedSimulation` a simulated world advances in step with the graph.
 """
 
 from __future__ import annotations
@@ -19,4 +19,4 @@ __all__ = ["AsyncSteppedGraph", "AsyncSteppedSimulation", "Recording", "SteppedG
 
 
 __getattr__ = deferred(__name__, {"simulated": ("AsyncSteppedSimulation", "SteppedSimulation")})
-"""What needs the simulation, which takes long to import."""
+"""Names that need the simulation, which takes long to import."""

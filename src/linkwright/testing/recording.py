@@ -1,4 +1,4 @@
-"""What was published on a topic during a test."""
+"""The messages that were published on a topic during a test."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from linkwright.graph import (
 
 
 class Recording:
-    """The messages of a topic, in the order in which they came; made by ``record`` of a stepped graph.
+    """The messages of a topic, in the order of arrival; made by ``record`` of a stepped graph.
 
-    It subscribes as soon as the type of the topic is known, which is when somebody publishes or subscribes to it, so
-    it may be made before the node under test. What a transient local publisher keeps is part of it.
+    It subscribes as soon as the topic's type is known, that is, when a node publishes or subscribes to the topic, so
+    it may be made before the node under test. It includes the messages that a transient local publisher stores.
 
     Attributes:
         topic: the topic's absolute name.
         messages: the messages.
-        times: when each came, in seconds since the beginning of the test.
+        times: the time of each message, in seconds since the beginning of the test.
     """
 
     def __init__(self, graph: Graph, node: Node, topic: str, msg_type: Any = None) -> None:
@@ -44,17 +44,17 @@ class Recording:
 
     @property
     def last(self) -> Any:
-        """The message that came last.
+        """The message that was received last.
 
         Raises:
-            AssertionError: none came.
+            AssertionError: there is none.
         """
         if not self.messages:
             raise AssertionError(f"nothing was published on '{self.topic}'")
         return self.messages[-1]
 
     def clear(self) -> None:
-        """Forget what came so far."""
+        """Drop the messages that were received so far."""
         self.messages.clear()
         self.times.clear()
 

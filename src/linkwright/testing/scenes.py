@@ -1,4 +1,4 @@
-"""Worlds and robots for simulations, each read once as long as its files stay as they are."""
+"""Worlds and robots for simulations, read again only after their files have changed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.sdf.models import Model
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
 
 _MOST = 64
-"""So many worlds and robots are kept; a sweep over arguments makes one for each value."""
+"""The most worlds and robots that are kept; a sweep over arguments makes one for each value."""
 
 
 class _Kept(NamedTuple):
@@ -26,7 +26,7 @@ _kept: dict[tuple[object, ...], _Kept] = {}
 
 
 def read_world(name: str) -> LoadedWorld:
-    """A world by its file or name, with its includes, as `load_world` reads it.
+    """Return a world by its file or name, with its includes, as `load_world` reads it.
 
     Raises:
         LinkwrightError: those of `load_world`.
@@ -41,10 +41,10 @@ def read_world(name: str) -> LoadedWorld:
 
 
 def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
-    """A robot or model of a URDF, xacro or SDF file.
+    """Return the robot or model of a URDF, xacro or SDF file.
 
     Raises:
-        LinkwrightError: SIM142 there is no model in the file; what is wrong with it.
+        LinkwrightError: SIM142 the file contains no model; the file is wrong.
     """
 
     def read() -> tuple[Model, tuple[Path, ...]]:

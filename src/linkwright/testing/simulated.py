@@ -1,4 +1,4 @@
-"""A simulated world for tests: it and the graph go on together, step by step."""
+"""A simulated world for tests that advances together with the graph, step by step."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
 
     @property
     def server(self) -> SimulationServer:
-        """What runs the plugins.
+        """The server that runs the plugins.
 
         Raises:
             RuntimeError: the test has not begun.
@@ -129,7 +129,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
 
     @property
     def simulation(self) -> Simulation:
-        """The world that moves."""
+        """The simulation of the world."""
         return self.server.simulation
 
     def spawn(
@@ -141,28 +141,28 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         namespace: str = "",
         arguments: Mapping[str, object] | None = None,
     ) -> str:
-        """Put another robot into the world; see `SteppedSimulation.spawn`."""
+        """Spawn another robot in the world; see `SteppedSimulation.spawn`."""
         model = _model(_path(robot), arguments or {})
         self.server.spawn(model, name or model.name, _transform(pose), namespace)
         return name or model.name
 
     def delete(self, name: str) -> None:
-        """Take a model out of the world; see `SteppedSimulation.delete`."""
+        """Delete a model from the world; see `SteppedSimulation.delete`."""
         self.server.delete(name)
 
     def robot_pose(self) -> Transform:
-        """Where the robot really is; see `SteppedSimulation.robot_pose`."""
+        """Return the robot's true pose; see `SteppedSimulation.robot_pose`."""
         assert self._model is not None, "there is a robot"
         return self.simulation.model_pose(self._model.name)
 
     def drive(self, linear: float, angular: float = 0.0, topic: str = "/cmd_vel") -> None:
-        """Tell the robot how to move; see `SteppedSimulation.drive`."""
+        """Command the robot's velocity; see `SteppedSimulation.drive`."""
         message = get_message(_TWIST)()
         message.linear.x, message.angular.z = float(linear), float(angular)
         self.publish(topic, message)
 
     async def settle(self) -> None:
-        """Run everything that is ready, and what comes of it, in the graph and in the simulation; time stands still.
+        """Run all callbacks that are ready, and those that they cause, in graph and simulation; time does not pass.
 
         Raises:
             Exception: the error of a callback.
@@ -178,7 +178,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         """Let time pass in the simulation and in the graph.
 
         Raises:
-            UnstableError: something in the simulation is no number any more.
+            UnstableError: a value in the simulation is not a finite number any more.
             Exception: the error of a callback; time has passed all the same.
         """
         await self.settle()
@@ -199,9 +199,9 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._raise()
 
     async def reset(self) -> None:
-        """Put everything in the world back to where it was at the start; simulated time and noise begin anew.
+        """Restore the initial state of the world; simulated time and noise start again.
 
-        Nodes and what was recorded stay, and so does the time of day.
+        Nodes and recorded messages stay, and so does the time of day.
         """
         self.server.reset()
         self._left = 0
@@ -215,7 +215,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
 def _taking_what(
     make: Callable[_P, AsyncSteppedSimulation],
 ) -> Callable[[Callable[[_T, AsyncSteppedSimulation], None]], Callable[Concatenate[_T, _P], None]]:
-    """Have an ``__init__`` take what the class that does the steps takes, and be given one of it."""
+    """Give an ``__init__`` the signature of the asynchronous class, and pass it an instance of that."""
 
     def decorate(init: Callable[[_T, AsyncSteppedSimulation], None]) -> Callable[Concatenate[_T, _P], None]:
         @wraps(AsyncSteppedSimulation.__init__)
@@ -228,7 +228,7 @@ def _taking_what(
 
 
 class SteppedSimulation(SteppedGraph):
-    """A simulated world and a graph whose time passes only in `advance`, and in both together.
+    """A simulated world and a graph; the time of both passes only in `advance`.
 
     >>> with SteppedSimulation("empty", "package://my_robot_description/urdf/mbot_gazebo.xacro") as test:
     ...     odometry = test.record("/odom")
@@ -237,37 +237,37 @@ class SteppedSimulation(SteppedGraph):
     ...     1.0 < odometry.last.pose.pose.position.x < 1.25
     True
 
-    There is neither a thread nor real time in it. The world moves for a `period`; then timers of the graph are called
-    that are due, the time is told on ``/clock``, what plugins and sensors published is received, and what comes of
-    that is done before the world moves again. What was commanded meanwhile counts from then on. Twice the same test
-    gives twice the same bits. Nodes written for rclpy live in it after `init_rclpy`, and follow simulated time with
-    the parameter ``use_sim_time``.
+    It uses neither threads nor real time. The world moves for a `period`. Then the graph calls the timers that are
+    due, publishes the time on ``/clock``, receives the messages of plugins and sensors and runs the callbacks that
+    these cause. After that the world moves again, with the commands that were received meanwhile. The same test gives
+    the same bits each time. Nodes written for rclpy run in it after `init_rclpy`, and follow simulated time with the
+    parameter ``use_sim_time``.
 
-    The services of a simulator are there: ``/spawn_entity``, ``/delete_entity``, ``/set_entity_state``,
-    ``/pause_physics`` and so on; `spawn` and `delete` do the first two with a file.
+    It offers the services of a simulator: ``/spawn_entity``, ``/delete_entity``, ``/set_entity_state``,
+    ``/pause_physics`` and so on; `spawn` and `delete` call the first two with a file.
 
-    The names of topics are those of ``linkwright sim``: ``/cmd_vel``, ``/odom``, ``/scan``. Worlds and robots are
-    read once in a process; a robot whose files have changed is read anew.
+    Topics have the names that ``linkwright sim`` gives them: ``/cmd_vel``, ``/odom``, ``/scan``. Worlds and robots are
+    read once in a process; a robot whose files have changed is read again.
 
     Args:
         world: a file in SDF, or the name of a world.
-        robot: a file in URDF, xacro or SDF that is put into it, or its ``package://`` address; None for none.
+        robot: a file in URDF, xacro or SDF to spawn in the world, or its ``package://`` address; None for no robot.
         arguments: values for its ``<xacro:arg>``.
-        pose: where it begins: x, y, z in m, roll, pitch, yaw in rad.
-        seed: what all noise follows from.
-        friction: the coefficient of friction of all that stands still in the world, of the ground above all; None for
-            what is written. Of two that touch, the lesser counts.
-        mass: how many times as heavy as written the robot is, its inertias too.
-        noise: how many times as noisy as written its sensors are; 0 for exact ones.
-        robot_state_publisher: whether that node is there for the robot, with its description and the transforms of its
+        pose: the robot's initial pose: x, y, z in m, roll, pitch, yaw in rad.
+        seed: the seed of all noise.
+        friction: the coefficient of friction of the world's static models, above all of the ground; None for the
+            values of the file. Between two bodies in contact the lower value applies.
+        mass: the factor for the robot's masses and inertias.
+        noise: the factor for the noise of its sensors; 0 for exact ones.
+        robot_state_publisher: whether this node runs for the robot, with its description and the transforms of its
             links, which follow ``/joint_states``.
-        period: how long the world moves between two looks at the graph, in s.
+        period: how long the world moves between two steps of the graph, in s.
         start: the time of day at the beginning, in seconds since the epoch.
         strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
 
     Raises:
-        LinkwrightError: SIM101 MuJoCo is not installed; SIM150 there is no such world; SIM142 there is no model in
-            the file; what is wrong with either.
+        LinkwrightError: SIM101 MuJoCo is not installed; SIM150 there is no such world; SIM142 the file contains no
+            model; one of the files is wrong.
     """
 
     _steps: AsyncSteppedSimulation
@@ -284,7 +284,7 @@ class SteppedSimulation(SteppedGraph):
 
     @property
     def simulation(self) -> Simulation:
-        """The world that moves: where links and joints are, what pushes them."""
+        """The simulation of the world: poses of links, positions of joints, forces."""
         return self._steps.simulation
 
     def spawn(
@@ -296,53 +296,53 @@ class SteppedSimulation(SteppedGraph):
         namespace: str = "",
         arguments: Mapping[str, object] | None = None,
     ) -> str:
-        """Put another robot, or any model, into the world, as ``/spawn_entity`` does with a text.
+        """Spawn another robot or model in the world, as ``/spawn_entity`` does with a text.
 
         Args:
             robot: a file in URDF, xacro or SDF, or its ``package://`` address.
-            name: what it is called; that in the file if empty.
-            pose: of its frame: x, y, z in m, roll, pitch, yaw in rad.
-            namespace: of the nodes of its plugins that name none.
+            name: the model's name; that in the file if empty.
+            pose: the pose of its frame: x, y, z in m, roll, pitch, yaw in rad.
+            namespace: the namespace of the nodes of those plugins that name none.
             arguments: values for its ``<xacro:arg>``.
 
         Returns:
-            What it is called.
+            The model's name.
 
         Raises:
-            LinkwrightError: SIM102 there is a model of that name; SIM140 it cannot be simulated; SIM142 there is no
-                model in the file; what is wrong with it.
+            LinkwrightError: SIM102 there is a model of that name; SIM140 it cannot be simulated; SIM142 the file
+                contains no model; the file is wrong.
         """
         return self._steps.spawn(robot, name, pose=pose, namespace=namespace, arguments=arguments)
 
     def delete(self, name: str) -> None:
-        """Take a model out of the world.
+        """Delete a model from the world.
 
         Raises:
-            LinkwrightError: SIM141 there is none of that name.
+            LinkwrightError: SIM141 there is no model of that name.
         """
         self._steps.delete(name)
 
     def robot_pose(self) -> Transform:
-        """Where the frame of the robot really is in the world: x, y, z in m and a quaternion x, y, z, w."""
+        """Return the true pose of the robot's frame in the world: x, y, z in m and a quaternion x, y, z, w."""
         return self._steps.robot_pose()
 
     def drive(self, linear: float, angular: float = 0.0, topic: str = "/cmd_vel") -> None:
-        """Tell the robot how to move from the next step on.
+        """Command the robot's velocity from the next step on.
 
         Args:
             linear: forwards, in m/s.
             angular: to the left, in rad/s.
-            topic: where it listens for a ``Twist``.
+            topic: the topic on which it receives a ``Twist``.
         """
         self._steps.drive(linear, angular, topic)
 
     def reset(self) -> None:
-        """Begin anew; see `AsyncSteppedSimulation.reset`."""
+        """Restore the initial state; see `AsyncSteppedSimulation.reset`."""
         self._run(self._steps.reset())
 
 
 def _gripping(world: World, friction: float) -> World:
-    """A world in which what stands still has another coefficient of friction."""
+    """Return a world whose static models have another coefficient of friction."""
     models = tuple(with_friction(model, friction) if model.static else model for model in world.models)
     return replace(world, models=models)
 
@@ -373,7 +373,7 @@ def _model(path: Path, arguments: Mapping[str, object]) -> Model:
 
 
 def _described(path: Path, arguments: Mapping[str, object]) -> str:
-    """The text of a robot.
+    """Return the text of a robot.
 
     Raises:
         LinkwrightError: what is wrong with it.
@@ -392,5 +392,5 @@ def _transform(pose: Sequence[float]) -> Transform:
 
 
 def _text(value: object) -> str:
-    """A value as xacro arguments are written."""
+    """Return a value in the notation of xacro arguments."""
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -25,10 +25,10 @@ _NODE = "test"
 
 
 class AsyncSteppedGraph:
-    """A graph whose time passes only in `advance`: what timers, rates and throttles do in an hour takes milliseconds.
+    """A graph whose time passes only in `advance`: an hour of timers, rates and throttles takes milliseconds.
 
     Everything runs in one thread, in an order that is the same each time. An error of a callback is raised by the
-    step in which it happens. For tests that are no coroutines there is `SteppedGraph`.
+    step in which it happens. For tests that are not coroutines there is `SteppedGraph`.
 
     Example::
 
@@ -47,11 +47,11 @@ class AsyncSteppedGraph:
         strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
 
     Attributes:
-        clock: the clock; ``clock.jump(seconds)`` sets the time of day alone, as a corrected system clock.
+        clock: the clock; ``clock.jump(seconds)`` changes only the time of day, like a corrected system clock.
         graph: the graph.
         node: a node of the test's own, ``/test``, to make clients and the like with.
-        log: what nodes said.
-        errors: what callbacks raised, where that is not `strict`.
+        log: the log messages of nodes.
+        errors: the errors of callbacks, if it is not `strict`.
     """
 
     def __init__(self, *, start: float = 1_700_000_000.0, strict: bool = True) -> None:
@@ -99,20 +99,20 @@ class AsyncSteppedGraph:
         return self.clock.steady_ns() / 1e9
 
     def create_node(self, name: str, **options: Any) -> Node:
-        """A node in the graph; arguments are those of ``Graph.create_node``."""
+        """Create a node in the graph; arguments are those of ``Graph.create_node``."""
         return self.graph.create_node(name, **options)
 
     def record(self, topic: str, msg_type: Any = None) -> Recording:
-        """Keep what is published on a topic from now on.
+        """Record the messages that are published on a topic from now on.
 
         Args:
             topic: the topic's name.
-            msg_type: its message class; found out when somebody publishes, where it is left out.
+            msg_type: its message class; by default that of its first publisher or subscriber.
         """
         return Recording(self.graph, self.node, topic, msg_type)
 
     def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
-        """Publish a message; those who receive it do so in the next step. The publisher stays for the next message."""
+        """Publish a message, which subscribers receive in the next step. The publisher stays for the next message."""
         publisher = self._publishers.get(topic)
         if publisher is None:
             publisher = self.node.create_publisher(type(message), topic, qos_profile)
@@ -120,7 +120,7 @@ class AsyncSteppedGraph:
         publisher.publish(message)
 
     async def settle(self) -> None:
-        """Run everything that is ready, and what comes of it, while time stands still.
+        """Run all callbacks that are ready, and those that they cause, while time does not pass.
 
         Raises:
             Exception: the error of a callback.
@@ -131,7 +131,7 @@ class AsyncSteppedGraph:
     spin = settle
 
     async def advance(self, seconds: float) -> None:
-        """Let time pass. Each timer is called when it is due, and what comes of it is done before the next.
+        """Let time pass. Each timer is called when it is due, and the callbacks that it causes run before the next.
 
         Raises:
             Exception: the error of a callback; time has passed all the same.
@@ -140,19 +140,19 @@ class AsyncSteppedGraph:
         self._raise()
 
     async def call(self, service: str, request: Any, *, timeout: float = 0.0) -> Any:
-        """Ask a service of the graph.
+        """Call a service of the graph.
 
         Args:
             service: the service's name.
             request: the request.
-            timeout: how many seconds may pass until the response is there.
+            timeout: how many seconds may pass before the response arrives.
 
         Returns:
             The response.
 
         Raises:
             LookupError: there is no service of that name.
-            TimeoutError: the response did not come.
+            TimeoutError: the response did not arrive in time.
         """
         client = self._client(service)
         future = client.call_async(request)

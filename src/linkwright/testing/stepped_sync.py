@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class SteppedGraph:
-    """`AsyncSteppedGraph` for tests that are no coroutines; it has an event loop of its own, in the test's thread.
+    """`AsyncSteppedGraph` for tests that are not coroutines; it has its own event loop, in the test's thread.
 
     >>> from linkwright.messages import String
     >>> with SteppedGraph() as test:
@@ -42,7 +42,7 @@ class SteppedGraph:
     Args:
         start: the time of day at the beginning, in seconds since the epoch.
         strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
-        steps: what it is the plain form of, where that is a class of its own; `start` and `strict` are its then.
+        steps: the asynchronous graph to wrap, if it has a class of its own; `start` and `strict` are then its own.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class SteppedGraph:
 
     @property
     def clock(self) -> JumpClock:
-        """The clock; ``clock.jump(seconds)`` sets the time of day alone."""
+        """The clock; ``clock.jump(seconds)`` changes only the time of day."""
         return self._steps.clock
 
     @property
@@ -90,12 +90,12 @@ class SteppedGraph:
 
     @property
     def log(self) -> list[LogRecord]:
-        """What nodes said."""
+        """The log messages of all nodes."""
         return self._steps.log
 
     @property
     def errors(self) -> list[BaseException]:
-        """What callbacks raised, where the step does not raise it."""
+        """The errors of callbacks that the step does not raise."""
         return self._steps.errors
 
     @property
@@ -107,7 +107,7 @@ class SteppedGraph:
         """Initialise rclpy with the test's graph; it is shut down with the test.
 
         Args:
-            args: the command line, with ROS arguments; none when left out.
+            args: the command line, with ROS arguments; none by default.
 
         Returns:
             The default context of rclpy, in which nodes are made.
@@ -118,19 +118,19 @@ class SteppedGraph:
         return self._context
 
     def create_node(self, name: str, **options: Any) -> Node:
-        """A node in the graph; arguments are those of ``Graph.create_node``."""
+        """Create a node in the graph; arguments are those of ``Graph.create_node``."""
         return self._steps.create_node(name, **options)
 
     def record(self, topic: str, msg_type: Any = None) -> Recording:
-        """Keep what is published on a topic from now on; see `AsyncSteppedGraph.record`."""
+        """Record the messages that are published on a topic from now on; see `AsyncSteppedGraph.record`."""
         return self._steps.record(topic, msg_type)
 
     def publish(self, topic: str, message: Any, qos_profile: QoSProfile | int = DEFAULT_QOS) -> None:
-        """Publish a message; those who receive it do so in the next step."""
+        """Publish a message, which subscribers receive in the next step."""
         self._steps.publish(topic, message, qos_profile)
 
     def settle(self) -> None:
-        """Run everything that is ready, and what comes of it, while time stands still.
+        """Run all callbacks that are ready, and those that they cause, while time does not pass.
 
         Raises:
             Exception: the error of a callback.
@@ -148,16 +148,16 @@ class SteppedGraph:
         self._run(self._steps.advance(seconds))
 
     def call(self, service: str, request: Any, *, timeout: float = 0.0) -> Any:
-        """Ask a service of the graph; see `AsyncSteppedGraph.call`.
+        """Call a service of the graph; see `AsyncSteppedGraph.call`.
 
         Raises:
             LookupError: there is no service of that name.
-            TimeoutError: the response did not come.
+            TimeoutError: the response did not arrive in time.
         """
         return self._run(self._steps.call(service, request, timeout=timeout))
 
     def run(self, coroutine: Any) -> Any:
-        """Run a coroutine of the test on the graph's loop, and give what it returns; time stands still."""
+        """Run a coroutine of the test on the graph's loop, and return its result; time does not pass."""
         return self._run(coroutine)
 
     def _run(self, coroutine: Any) -> Any:
